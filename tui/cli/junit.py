@@ -32,12 +32,10 @@ def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -
     """Report checks that failed, write the XML where it is asked for, and return the exit code."""
     failed = [check for check in checks if check.failure is not None]
     if failed:
-        first = failed[0]
-        where = f" in {len(failed)} of {len(checks)} runs, first at {first.name}"
-        warn(
-            f"the check failed{where if len(checks) > 1 else ''}: {options.fail_if} "
-            f"({first.failure})"
-        )
+        where = ""
+        if len(checks) > 1:
+            where = f" in {len(failed)} of {len(checks)} runs, first at {failed[0].name}"
+        warn(f"the check failed{where}: {options.fail_if} ({failed[0].failure})")
     if options.junit:
         write_junit(options.junit, suite, checks)
     return Exit.CHECK_FAILED if failed else Exit.FINE

@@ -3,9 +3,8 @@
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from datetime import timedelta
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,6 @@ from engine.scenes import LIMITS, Scene
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
-    from rich.progress import Progress
 
 
 def warn(sentence: str) -> None:
@@ -24,7 +22,7 @@ def warn(sentence: str) -> None:
 
 
 def _wrapped(text: str) -> str:
-    """Wrap a text to the terminal, which would break words; a path, for example, stays whole."""
+    """Return a text in lines that fit the terminal; no word or path is broken."""
     columns = shutil.get_terminal_size().columns
     return "\n".join(
         textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False)
@@ -55,19 +53,15 @@ def console(piped_width: int | None = None) -> "Console":
     """Return where to draw: as wide as the terminal, or `piped_width` where there is none."""
     from rich.console import Console
 
-    return Console(
-        width=None if sys.stdout.isatty() else piped_width,
-        markup=False,
-        emoji=False,
-        highlight=False,
-    )
+    width = None if sys.stdout.isatty() else piped_width
+    return Console(width=width, markup=False, emoji=False, highlight=False)
 
 
-def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
-    """Print what Rich draws: `how` is for its `print`."""
+def draw(renderable: "RenderableType") -> None:
+    """Print what Rich draws, in 240 columns where the output is no terminal."""
+    on = console(240)
     with on.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
-        for renderable in renderables:
-            on.print(renderable, **how)
+        on.print(renderable, no_wrap=True, overflow="crop")
     print(drawn.get(), end="")
 
 
@@ -75,27 +69,23 @@ def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> 
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
-    A terminal shows a bar and an estimate of the time left once the work takes over a second; where
-    stderr is none, there is a line after half a minute, and whenever the time has doubled.
+    A terminal shows a bar and the time left once the work takes over a second.
     """
     began = monotonic()
-    next_line = 30.0  # s since then
     bar: Any = None
 
     def show(done: float, total: float) -> None:
-        nonlocal bar, next_line
-        elapsed = monotonic() - began
+        nonlocal bar
+        is_long = monotonic() > began + 1 and 0 < done < total
+        if bar is None and is_long and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import Progress
+
+            columns = Progress.get_default_columns()
+            bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
+            bar.add_task(what)
+            bar.start()
         if bar is not None:
-            bar.update(0, completed=done, total=total)
-        elif not done or done == total:
-            return
-        elif not sys.stderr.isatty():
-            if elapsed > next_line:
-                next_line = 2 * elapsed
-                left = timedelta(seconds=round(elapsed * (total - done) / done))
-                warn(f"{what}: {done / total:.0%} done, about {left} left.")
-        elif elapsed > 1:
-            bar = _bar(what)
             bar.update(0, completed=done, total=total)
 
     try:
@@ -103,15 +93,3 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     finally:
         if bar is not None:
             bar.stop()
-
-
-def _bar(what: str) -> "Progress":
-    """Return a bar on stderr with the time left; it begins to be drawn."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    columns = Progress.get_default_columns()
-    bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
-    bar.add_task(what)
-    bar.start()
-    return bar

@@ -15,7 +15,7 @@ from recordings.errors import printable
 from recordings.files import is_stream
 from tui.cli.files import text_file
 from tui.cli.options import add_file
-from tui.cli.output import console, draw, print_lines
+from tui.cli.output import draw, print_lines
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 Form = Literal["table", "json", "csv"]
 MAX_CELL = 1000  # characters
-WIDTH_OF_FILES = 240  # columns of a table where the output is no terminal
 
 
 class Column(NamedTuple):
@@ -48,11 +47,7 @@ class Table:
     columns: Sequence[Column]
     rows: Iterable[Any]
 
-    def show(self) -> None:
-        draw(console(WIDTH_OF_FILES), [self.drawn()])
-
-    def drawn(self) -> "RichTable":
-        """Return the table as Rich draws it."""
+    def __rich__(self) -> "RichTable":
         from rich.table import Table as RichTable
 
         headed = any(column.head for column in self.columns)
@@ -61,8 +56,8 @@ class Table:
             side: Literal["left", "right"] = "right" if column.right or column.form else "left"
             table.add_column(column.head, justify=side, overflow="fold", no_wrap=number == 0)
         for row in self.rows:
-            is_head = isinstance(row, str)
-            table.add_row(*([row] if is_head else [column.text(row) for column in self.columns]))
+            cells = [row] if isinstance(row, str) else [each.text(row) for each in self.columns]
+            table.add_row(*cells)
         return table
 
 
@@ -70,9 +65,8 @@ class Table:
 class Report:
     """The result of a command.
 
-    The table shows `rows` in `columns`, below `title` and above `notes`: sentences, more tables and
-    pictures.  JSON is the one object of `fields`; CSV has a line for each of `records`, which are
-    the rows by default.
+    The table shows `rows` in `columns`, below `title` and above `notes`.  JSON is the one object of
+    `fields`; CSV has a line for each of `records`, which are the rows by default.
     """
 
     name: str  # of the schema
@@ -93,23 +87,16 @@ class Report:
             schema = f"pendu.{self.name}/{self.version}"
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
             print(text, file=out)
-        elif form == "csv":
+            return
+        if form == "csv":
             write_records(self.rows if self.records is None else self.records, out or sys.stdout)
-        else:
-            self._show_table()
-
-    def _show_table(self) -> None:
-        if self.title:
-            print_lines(self.title)
-        if self.columns:
-            Table(self.columns, self.rows).show()
-        for note in self.notes:
-            if isinstance(note, str):
-                print_lines(note)
-            elif isinstance(note, Table):
-                note.show()
+            return
+        table = [Table(self.columns, self.rows)] if self.columns else []
+        for part in (*([self.title] if self.title else []), *table, *self.notes):
+            if isinstance(part, str):
+                print_lines(part)
             else:
-                draw(console(WIDTH_OF_FILES), [note], no_wrap=True, overflow="crop")
+                draw(part)
 
 
 def finite(row: Mapping[str, Any]) -> dict[str, Any]:
@@ -120,8 +107,7 @@ def finite(row: Mapping[str, Any]) -> dict[str, Any]:
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
     """Write CSV headed by the fields of the first record."""
     rest = iter(records)
-    first = next(rest, None)
-    if first is not None:
+    for first in rest:
         write_csv(out, list(first), (record.values() for record in chain([first], rest)))
 
 

@@ -32,8 +32,6 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 MAX_AHEAD = 4096  # tasks that are handed out before the first of them is done
-MAX_PROCESSES = 4  # for each processor
-MAX_RESTARTS = 3  # of an executor that breaks before one and the same task is done
 
 
 def add_worker_options(parser: argparse.ArgumentParser) -> None:
@@ -76,33 +74,29 @@ class Workers:
             yield from map(function, tasks)
             return
         rest = iter(tasks)
-        while True:
-            try:
+        try:
+            while True:
                 for task in islice(rest, MAX_AHEAD - len(self._pending)):
                     self._pending.append((task, self._executor.submit(function, task)))
                 if not self._pending:
                     return
-                result = self._next(function)
-            except Exception as error:
-                raise _explained(error) from error
-            yield result
+                yield self._next(function)
+                self._pending.popleft()
+        except Exception as error:
+            raise _explained(error) from error
 
-    def _next(self, function: Callable[[Any], Result]) -> Result:
+    def _next(self, function: Callable[[Any], Result], restarts: int = 3) -> Result:
         """Return the result of the first task that is pending."""
-        for _ in range(MAX_RESTARTS):
-            try:
-                result: Result = self._pending[0][1].result()
-                break
-            except BrokenExecutor:
-                assert self._start is not None
-                self._executor = self._start()
-                for place, (task, future) in enumerate(self._pending):
-                    if not future.done() or future.cancelled() or future.exception():
-                        self._pending[place] = task, self._executor.submit(function, task)
-        else:
-            result = self._pending[0][1].result()
-        self._pending.popleft()
-        return result
+        try:
+            result: Result = self._pending[0][1].result()
+            return result
+        except BrokenExecutor:
+            if not restarts or not self._start:
+                raise
+        executor = self._executor = self._start()
+        again = [(task, executor.submit(function, task)) for task, _ in self._pending]
+        self._pending = deque(again)
+        return self._next(function, restarts - 1)
 
     def close(self, wait: bool = True) -> None:
         """Cancel what is pending and shut the executor down."""
@@ -133,10 +127,9 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
         if client is not None:
             start = partial(client.get_executor, pure=False)
         elif options.executor:
-            start = _callable(options.executor)
+            start = partial(_made_by, options.executor)
         elif options.workers > 1:
-            most = MAX_PROCESSES * (os.cpu_count() or 1)
-            start = partial(_processes, min(options.workers, most))
+            start = partial(_processes, min(options.workers, 4 * (os.cpu_count() or 1)))
         workers = Workers(start)
         try:
             yield workers
@@ -156,29 +149,20 @@ def _processes(count: int) -> Executor:
     return ProcessPoolExecutor(count, get_context("spawn"), signal.signal, ignore)
 
 
-def _callable(text: str) -> Callable[[], Executor]:
-    """Return what makes the executor of MODULE:CALLABLE."""
+def _made_by(text: str) -> Executor:
+    """Return the executor that MODULE:CALLABLE makes."""
     module, _, name = text.partition(":")
     try:
-        start = getattr(import_module(module), name)
-    except (ImportError, AttributeError, ValueError) as error:
-        why = printable(str(error), 100)
-        raise UserError(f"--executor {text!r} is not MODULE:CALLABLE: {why}.") from None
-
-    def checked() -> Executor:
-        try:
-            executor = start()
-        except Exception as error:
-            why = printable(f"{type(error).__name__}: {error}", 200)
-            raise UserError(f"--executor {text!r} gives no executor: {why}.") from error
-        if not isinstance(executor, Executor):
-            kind = type(executor).__name__
-            raise UserError(
-                f"--executor {text!r} returns a {kind}, not a concurrent.futures.Executor."
-            )
-        return executor
-
-    return checked
+        executor = getattr(import_module(module), name)()
+        if isinstance(executor, Executor):
+            return executor
+        why = f"it returns a {type(executor).__name__}"
+    except Exception as error:
+        why = printable(f"{type(error).__name__}: {error}", 200)
+    raise UserError(
+        f"--executor {text!r} is no MODULE:CALLABLE that returns a concurrent.futures.Executor: "
+        f"{why}."
+    )
 
 
 def _client(address: str) -> Any:

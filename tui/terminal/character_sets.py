@@ -9,15 +9,14 @@ from textual.filter import LineFilter
 
 from tui.terminal.options import CharacterSet
 
-# the dots of a cell, in Unicode's order
-_UPPER = 0x01 | 0x08 | 0x02 | 0x10
-_LOWER = 0x04 | 0x20 | 0x40 | 0x80
-
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:
+    """Return what stands for each character of braille, by its dots above and below the middle."""
+    upper = 0x01 | 0x08 | 0x02 | 0x10  # in Unicode's order
+    lower = 0x04 | 0x20 | 0x40 | 0x80
     return {
-        0x2800 + bits: blank_upper_lower_both[bool(bits & _UPPER) + 2 * bool(bits & _LOWER)]
-        for bits in range(256)
+        0x2800 + dots: blank_upper_lower_both[bool(dots & upper) + 2 * bool(dots & lower)]
+        for dots in range(256)
     }
 
 
@@ -42,11 +41,9 @@ class _Ascii(dict[int, str]):
     """A table for str.translate; a character without a likeness becomes question marks."""
 
     def __missing__(self, code: int) -> str:
-        character = chr(code)
-        plain = unicodedata.normalize("NFKD", character)[0]
-        self[code] = (
-            plain if plain.isascii() and cell_len(character) == 1 else "?" * cell_len(character)
-        )
+        width = cell_len(chr(code))
+        plain = unicodedata.normalize("NFKD", chr(code))[0]
+        self[code] = plain if plain.isascii() and width == 1 else "?" * width
         return self[code]
 
 
@@ -55,12 +52,11 @@ class CharacterSetFilter(LineFilter):
 
     def __init__(self, character_set: CharacterSet) -> None:
         super().__init__(enabled=character_set != "braille")
-        self._table: dict[int, str] = _braille(" ▀▄█")
+        self._table = _braille(" ▀▄█")
         if character_set == "ascii":
             self._table = _Ascii(_braille(" '.:"))
-            self._table.update(
-                (ord(character), like) for like, those in _LIKE.items() for character in those
-            )
+            for like, those in _LIKE.items():
+                self._table.update(str.maketrans(dict.fromkeys(those, like)))
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         table = self._table

@@ -12,21 +12,14 @@ from tui.cli.errors import Exit, UserError
 
 def check_terminal() -> None:
     """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
-    if not all(
-        stream is not None and stream.isatty()
-        for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)
-    ):
-        raise UserError(
-            "not a terminal: the lab is interactive. Use pendu-tui run, or --plain.",
-            Exit.TERMINAL_UNSUITABLE,
-        )
+    streams = (sys.__stdin__, sys.__stdout__, sys.__stderr__)
+    if not all(stream is not None and stream.isatty() for stream in streams):
+        why = "not a terminal: the lab is interactive. Use pendu-tui run, or --plain."
+        raise UserError(why, Exit.TERMINAL_UNSUITABLE)
     term = os.environ.get("TERM", "")
     if term in ("", "dumb", "unknown"):
-        raise UserError(
-            f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g. "
-            "xterm-256color.",
-            Exit.TERMINAL_UNSUITABLE,
-        )
+        why = f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g."
+        raise UserError(f"{why} xterm-256color.", Exit.TERMINAL_UNSUITABLE)
 
 
 def is_gone() -> bool:
@@ -49,11 +42,6 @@ def is_writing(app: Any) -> bool:
     return queue is not None and not queue.empty()
 
 
-BACKGROUND = re.compile(rb"\x1b\]11;rgba?:([0-9a-fA-F]+)/([0-9a-fA-F]+)/([0-9a-fA-F]+)")
-ATTRIBUTES = re.compile(rb"\x1b\[\?[\d;]*c")
-MAX_WAIT = 1.0  # s, for a terminal that never answers
-
-
 def background() -> Literal["light", "dark"] | None:
     """Ask the terminal for its background, before Textual reads from it; None if it does not say.
 
@@ -65,37 +53,26 @@ def background() -> Literal["light", "dark"] | None:
         import tty
     except ImportError:  # Windows
         return None
-    if sys.__stdin__ is None or sys.__stderr__ is None:
-        return None
-    if not (sys.__stdin__.isatty() and sys.__stderr__.isatty()):
-        return None
+    assert sys.__stdin__ is not None
+    assert sys.__stderr__ is not None
     keyboard = sys.__stdin__.fileno()
-    screen = sys.__stderr__.fileno()
     before = termios.tcgetattr(keyboard)
+    reply = b""
+    end = time.monotonic() + 1.0  # s, for a terminal that never answers
     try:
         tty.setcbreak(keyboard, termios.TCSANOW)
-        os.write(screen, b"\x1b]11;?\x1b\\\x1b[c")
-        return _tone(_reply(keyboard))
+        os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")
+        while not re.search(rb"\x1b\[\?[\d;]*c", reply):
+            left = max(0.0, end - time.monotonic())
+            if not select.select([keyboard], [], [], left)[0]:
+                break
+            reply += os.read(keyboard, 1024)
     finally:
         termios.tcsetattr(keyboard, termios.TCSAFLUSH, before)
-
-
-def _reply(keyboard: int) -> bytes:
-    """Return what comes up to the terminal's attributes, or within MAX_WAIT."""
-    reply = b""
-    end = time.monotonic() + MAX_WAIT
-    while not ATTRIBUTES.search(reply):
-        ready, _, _ = select.select([keyboard], [], [], max(0.0, end - time.monotonic()))
-        if not ready:
-            break
-        reply += os.read(keyboard, 1024)
-    return reply
-
-
-def _tone(reply: bytes) -> Literal["light", "dark"] | None:
-    """Return whether the colour in a reply is light, by its luminance (ITU-R BT.709)."""
-    found = BACKGROUND.search(reply)
+    colour = rb"\x1b\]11;rgba?:([0-9a-fA-F]+)/([0-9a-fA-F]+)/([0-9a-fA-F]+)"
+    found = re.search(colour, reply)
     if found is None:
         return None
     red, green, blue = (int(part, 16) / (16 ** len(part) - 1) for part in found.groups())
-    return "light" if 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.5 else "dark"
+    luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue  # ITU-R BT.709
+    return "light" if luminance > 0.5 else "dark"

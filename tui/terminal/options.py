@@ -14,7 +14,6 @@ CharacterSet = Literal["braille", "half", "ascii"]
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS = 30
 CALM_FPS = 10
-MOST_FPS = 60
 SMALLEST = (60, 16)  # columns and rows of the smallest terminal on which the lab fits
 LARGEST = (400, 200)
 
@@ -33,21 +32,13 @@ USUAL = TerminalOptions()
 
 def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for showing the lab; `terminal_options_of` reads them."""
-    group = add_picture_options(parser, "auto", "auto")
-    group.add_argument(
-        "--plain", action="store_true", help="no TUI: print a sentence per second; Ctrl+C to stop"
-    )
-    group.add_argument(
-        "--no-mouse",
-        action="store_true",
-        help="disable the mouse; every mouse action also has a key",
-    )
-    group.add_argument(
-        "--fps",
-        metavar="N",
-        type=frames_per_second,
-        help=f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)",
-    )
+    add = add_picture_options(parser, "auto", "auto").add_argument
+    plain = "no TUI: print a sentence per second; Ctrl+C to stop"
+    add("--plain", action="store_true", help=plain)
+    no_mouse = "disable the mouse; every mouse action also has a key"
+    add("--no-mouse", action="store_true", help=no_mouse)
+    fps = f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
+    add("--fps", metavar="N", type=frames_per_second, help=fps)
 
 
 def add_picture_options(
@@ -55,18 +46,13 @@ def add_picture_options(
 ) -> argparse._ArgumentGroup:
     """Add only those that also apply to a picture of the lab, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
-    group = parser.add_argument_group(
-        "display", "auto: detected from the terminal (see pendu-tui doctor)"
-    )
-    group.add_argument(
-        "--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)"
-    )
-    group.add_argument(
-        "--pixels",
-        choices=("auto", *CHARACTER_SETS),
-        default=character_set,
-        help="what to draw with (%(default)s)",
-    )
+    about = "auto: detected from the terminal (see pendu-tui doctor)"
+    group = parser.add_argument_group("display", about)
+    themes = ("auto", *PALETTES)
+    group.add_argument("--theme", choices=themes, default=theme, help="colours (%(default)s)")
+    sets = ("auto", *CHARACTER_SETS)
+    what = "what to draw with (%(default)s)"
+    group.add_argument("--pixels", choices=sets, default=character_set, help=what)
     return group
 
 
@@ -84,10 +70,8 @@ def cells(text: str) -> tuple[int, int]:
 
 def frames_per_second(text: str) -> int:
     """A frame rate that the lab can be shown at."""
-    if count(text) > MOST_FPS:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is out of range; use 1 to {MOST_FPS} frames per second"
-        )
+    if count(text) > 60:
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use 1 to 60 frames per second")
     return count(text)
 
 
@@ -95,15 +79,15 @@ def terminal_options_of(
     options: argparse.Namespace, environment: Mapping[str, str], encoding: str
 ) -> TerminalOptions:
     """What the options ask for; `auto` is decided by the terminal's environment and encoding."""
+    theme = options.theme
+    if theme == "auto":
+        theme = fitting_theme(environment)
+    pixels = options.pixels
+    if pixels == "auto":
+        pixels = "braille" if is_utf8(encoding) else "ascii"
     calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
-    return TerminalOptions(
-        fitting_theme(environment) if options.theme == "auto" else options.theme,
-        ("braille" if is_utf8(encoding) else "ascii")
-        if options.pixels == "auto"
-        else options.pixels,
-        not options.no_mouse,
-        options.fps or (CALM_FPS if calm else FPS),
-    )
+    fps = options.fps or (CALM_FPS if calm else FPS)
+    return TerminalOptions(theme, pixels, mouse=not options.no_mouse, fps=fps)
 
 
 def is_utf8(encoding: str) -> bool:
