@@ -27,7 +27,9 @@ class Parser(argparse.ArgumentParser):
             sentence += f"; {self.prog} --help shows the options."
         raise UserError(sentence)
 
-    def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
+    def parse_args(  # type: ignore[override]
+        self, arguments: Sequence[str], namespace: Any = None
+    ) -> Any:
         """Parse the arguments; optional words, such as a SCENE, may also follow options."""
         if {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
             return super().parse_args(arguments, namespace)
