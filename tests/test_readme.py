@@ -12,9 +12,6 @@ from pathlib import Path
 import pytest
 
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
-from engine.run.lockstep import Lockstep
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
 from tui.commands.files.export import columns_of
@@ -29,7 +26,6 @@ LINKS = [
     for page in PAGES
     for target in re.findall(r"\]\((?!http)(.*?)\)", page.read_text(encoding="utf-8"))
 ]
-ON_SCREEN = {"live", "replay"}
 
 
 def blocks(language: str) -> list[str]:
@@ -95,9 +91,8 @@ def shell(tmp_path):
 def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
     for line in "".join(blocks("sh")).splitlines():
         shell(line)
-    assert {"crossover.mcap", "crossover.csv", "saved.mcap"} <= {
-        path.name for path in tmp_path.iterdir()
-    }
+    for name in ("crossover.mcap", "crossover.csv", "saved.mcap"):
+        assert (tmp_path / name).exists()
 
 
 @pytest.mark.slow
@@ -247,79 +242,35 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
     assert float(words[2]) == pytest.approx(3, abs=0.01)
     assert re.search(r"Ruth 3 +bounded", on_stage)
     beside = shell(f"{commands[1]} --methods rk4")
-    assert re.findall(r"^(\w+(?: \w+)?)  +(?:bounded|loses|grows)", beside, re.MULTILINE) == [
-        "RK4",
-        "Ruth 3",
-    ]
+    assert re.findall(r"^(.+?)  +(?:bounded|loses)", beside, re.MULTILINE) == ["RK4", "Ruth 3"]
 
 
 @pytest.mark.slow
 def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for package in ("engine", "recordings", "tui"):
-        shutil.copytree(
-            ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__")
-        )
+        shutil.copytree(ROOT / package, tmp_path / package)
     family = tmp_path / "engine" / "methods" / "splitting.py"
-    function, entry = block_with("python", "def ruth_3"), block_with("python", "Method(")
     source, of_family, members = family.read_text(encoding="utf-8").partition("FAMILY = (")
-    family.write_text(
-        f"{source}{function}\n\n{entry}\n{of_family}RUTH_3, {members}", encoding="utf-8"
-    )
+    method = block_with("python", "def ruth_3") + "\n\n" + block_with("python", "Method(")
+    family.write_text(f"{source}{method}\n{of_family}RUTH_3, {members}", encoding="utf-8")
 
     def run(*arguments: str) -> str:
         done = ran(sys.executable, "-P", *arguments, folder=tmp_path, PYTHONPATH=str(tmp_path))
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    for command, word in [
-        ("methods", "ruth_3"),
-        ("run --time 60 --methods ruth,rk4 --record two.mcap", "Ruth 3  bounded"),
-        ("verify two.mcap golden", "11 recordings, 11 identical"),
-    ]:
+    def pendu_there(command: str) -> str:
         program = "import sys; from tui.cli.dispatch import main; sys.exit(main())"
-        assert word in run("-c", program, *command.split())
+        return run("-c", program, *command.split())
+
+    assert "ruth_3" in pendu_there("methods")
+    record = "run --time 60 --methods ruth,rk4 --record two.mcap"
+    assert "Ruth 3  bounded" in pendu_there(record)
+    assert "11 recordings, 11 identical" in pendu_there("verify two.mcap golden")
     claims = str(ROOT / "tests" / "engine" / "methods" / "test_claims.py")
     alone = ("-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider")
     told = run("-m", "pytest", *alone, claims, "-k", "ruth_3")
     assert re.search(r"= [7-9] passed, \d+ deselected", told)
-
-
-def methods_after(seconds: float, scene: str, *options: str) -> dict[str, dict]:
-    """What `run` says of each method."""
-    told = pendu("run", "--scene", scene, "--time", seconds, "--json", *options)
-    return {row["method"]: row for row in told.json["methods"]}
-
-
-def test_rk4_falls_behind_verlet_after_half_a_minute_in_crossover():
-    for seconds, rk4_is_ahead in [(5, True), (20, True), (40, False), (100, False)]:
-        rows = methods_after(seconds, "crossover")
-        assert (
-            rows["rk4"]["max_energy_error"] < rows["velocity_verlet"]["max_energy_error"]
-        ) == rk4_is_ahead
-
-
-def test_next_to_the_separatrix_rk4_has_the_best_energy_and_falls_at_the_wrong_time():
-    rows = methods_after(100, "near-separatrix")
-    assert rows["rk4"]["max_energy_error"] == min(row["max_energy_error"] for row in rows.values())
-    assert rows["rk4"]["theta_error"] > 1
-
-
-def test_beyond_z_2_the_pendulum_catches_verlet():
-    rows = methods_after(1e5, "verlet-limit-above", "--methods", "velocity_verlet")
-    assert abs(rows["velocity_verlet"]["theta"]) < 1  # it started at 0.1
-
-
-def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
-    lockstep = Lockstep(DEFAULT_SCENE)
-    for h in (DEFAULT_SCENE.h, -DEFAULT_SCENE.h):
-        lockstep.set_stepping(Stepping(h))
-        lockstep.advance(200)
-    missed = {
-        method.key: abs(reading.theta - DEFAULT_SCENE.theta)
-        for method, reading in zip(DEFAULT_SCENE.cast, lockstep.sample().readings, strict=True)
-    }
-    assert missed["velocity_verlet"] < 1e-12
-    assert missed["symplectic_euler"] > 1e-3
 
 
 def test_verdicts_have_the_definitions_of_the_help():

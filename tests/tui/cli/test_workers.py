@@ -14,7 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.workers import workers_of
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
-SECTION = ("stability", "--section", "--steps", 200, "--starts", 60, "--size", "60x20")
+SECTION = ("stability", "--section", "--steps", 200, "--starts", 60)
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 20)
 
 
