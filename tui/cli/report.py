@@ -11,6 +11,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
+from engine.methods import Method
 from recordings.errors import printable
 from recordings.files import is_stream
 from tui.cli.files import text_file
@@ -30,14 +31,22 @@ class Column(NamedTuple):
 
     head: str
     cell: str | Callable[[Any], Any]  # the name of a field, or a function of the row
-    form: str = ""  # a format specification; cells written with one are aligned right
+    form: str | Callable[[Any], str] = ""  # how a value is written; if given, aligned right
     right: bool = False
 
     def text(self, row: Any) -> str:
         """Return the cell of a row; a dash where there is no value."""
         value = row[self.cell] if isinstance(self.cell, str) else self.cell(row)
-        text = "-" if value is None else format(value, self.form)
+        if value is None:
+            return "-"
+        text = format(value, self.form) if isinstance(self.form, str) else self.form(value)
         return printable(text, MAX_CELL)  # no text may steer the terminal
+
+
+def method_column(cast: Sequence[Method]) -> Column:
+    """Return the column of the labels of methods, whose keys the rows have."""
+    labels = {method.key: method.label for method in cast}
+    return Column("method", lambda row: labels[row["method"]])
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,7 +71,6 @@ def _lab() -> tuple[str, str]:
 
 
 def size(columns: int, rows: int) -> tuple[str, str]:
-    """Return the terminal's size, and whether it is enough."""
     advice = ""
     if columns < SMALLEST[0] or rows < SMALLEST[1]:
         advice = f"too small: the lab needs {SMALLEST[0]}x{SMALLEST[1]}, better 80x24"
@@ -81,7 +80,6 @@ def size(columns: int, rows: int) -> tuple[str, str]:
 
 
 def colour(environment: Mapping[str, str]) -> tuple[str, str]:
-    """Return what the environment says of colours, and how to get more."""
     number = colours(environment)
     found = str(number)
     advice = "if your terminal supports true colour, set COLORTERM=truecolor"

@@ -20,7 +20,6 @@ EXAMPLES = """\
 examples:
   pendu-tui methods
   pendu-tui methods rk4 verlet
-  pendu-tui methods --method mine.py:my_step
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
 """
 
@@ -65,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
         Column("symplectic", lambda row: "yes" if _known(row, "symplectic") else "no"),
         Column("reversible", lambda row: "yes" if _known(row, "reversible") else "no"),
-        Column("z limit", _limit, right=True),
+        Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
     )
     report = Report(
         name="methods",
@@ -112,15 +111,11 @@ def _by_family(rows: list[Row]) -> Iterator[Any]:
 
 
 def _known(row: Row, name: str) -> Any:
-    """Return a property as measured, or as claimed where it is not measured."""
     measured = row[f"measured_{name}"]
     return row[name] if measured is None else measured
 
 
-def _limit(row: Row) -> str | None:
-    z = _known(row, "linear_limit")
-    if z is None:
-        return None
+def _limit(z: float) -> str:
     if z == math.inf:
         return "any"
     return f"{z:.3f}" if z else "none"

@@ -14,8 +14,6 @@ EXAMPLES = """\
 examples:
   pendu-tui scenes
   pendu-tui scenes crossover
-  pendu-tui crossover
-  pendu-tui --scene mine.toml
   pendu-tui scenes --json | jq -r '.scenes[].name'
 """
 

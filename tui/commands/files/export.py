@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   pendu-tui export latest -o latest.csv
-  pendu-tui export drift | head -3
   pendu-tui export drift --format parquet -o drift.parquet
 """
 
@@ -71,7 +70,6 @@ def columns_of(models: Iterable[str]) -> tuple[str, ...]:
 
 
 def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
-    """Yield a row for each method of each sample."""
     from recordings.fields import EXTRA, READING
 
     extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])

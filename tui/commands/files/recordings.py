@@ -79,16 +79,12 @@ def _list(options: argparse.Namespace) -> Report:
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
         for path in library.leftovers()
     ]
-
-    def finished(row: dict[str, Any]) -> str:
-        return time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
-
     columns = (
         Column("recording, newest first", "file"),
-        Column("finished", finished),
+        Column("finished", "modified", _date),
         Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
-        Column("length", lambda row: row["seconds"] and seconds(row["seconds"]), right=True),
-        Column("size", lambda row: file_size(row["bytes"]), right=True),
+        Column("length", "seconds", seconds),
+        Column("size", "bytes", file_size),
     )
     return Report(
         name="recordings",
@@ -98,6 +94,10 @@ def _list(options: argparse.Namespace) -> Report:
         fields={"folder": str(folder), "recordings": rows},
         notes=notes,
     )
+
+
+def _date(when: float) -> str:
+    return time.strftime("%Y-%m-%d %H:%M", time.localtime(when))
 
 
 def _facts(item: "Item") -> dict[str, Any]:

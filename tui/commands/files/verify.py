@@ -71,7 +71,6 @@ def _files(name: str) -> list[Path]:
 
 
 def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str, Any]:
-    """Verify a recording, and return the result, or the reason why it cannot be read."""
     from recordings.verification import Verification, verify
 
     result = Verification(path)

@@ -17,8 +17,6 @@ EXAMPLES = """\
 examples:
   pendu-tui
   pendu-tui live --scene crossover
-  pendu-tui live --methods rk4,verlet
-  pendu-tui live --method mine.py:my_step
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
   pendu-tui live --ghost swing.mcap --h 0.05
   pendu-tui live --scene crossover --equal-cost

@@ -12,7 +12,6 @@ from tui.terminal.options import add_terminal_options
 EXAMPLES = """\
 examples:
   pendu-tui replay latest
-  pendu-tui replay drift
   pendu-tui replay drift --methods rk4,verlet
   pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """

@@ -13,7 +13,6 @@ from tui.terminal.options import add_picture_options, terminal_options_of
 
 EXAMPLES = """\
 examples:
-  pendu-tui serve
   pendu-tui serve --port 8080 --scene crossover
   pendu-tui serve --at-most 30 --record recorded/
 

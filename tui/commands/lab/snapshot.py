@@ -49,7 +49,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def moment(text: str) -> float:
-    """Return a time since the start [s]."""
     if not 0 <= (value := number(text)) <= 3600:
         raise argparse.ArgumentTypeError(f"{text!r} is not a valid time; use 0 to 3600 s")
     return value

@@ -16,7 +16,6 @@ examples:
   pendu-tui accuracy --all --cost seconds --target 1e-9
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
-  pendu-tui accuracy --all --time 1000 --workers 4
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
 """
 
@@ -47,7 +46,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def times(text: str) -> list[float]:
-    """Return one time or several [s], ascending."""
     return sorted({positive(part) for part in text.split(",")})
 
 
@@ -63,7 +61,6 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 
 def budget(text: str) -> int:
-    """Return a number of force evaluations."""
     if not 1 <= (evaluations := positive(text)) <= MAX_BUDGET:
         raise argparse.ArgumentTypeError(f"{text} is out of range; use 1 to {MAX_BUDGET:g}")
     return int(evaluations)

@@ -74,7 +74,6 @@ def scale(text: str) -> float | str:
 
 
 def steps(text: str) -> list[float]:
-    """Return step sizes, in order."""
     return [positive(part) for part in text.split(",")]
 
 

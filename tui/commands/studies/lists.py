@@ -58,7 +58,6 @@ class Task:
         return {"model": self.scene.model, **numbers, "time": self.time}
 
     def rows(self) -> list[Row]:
-        """Run and return a row for each method."""
         lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
         with limited_steps():  # in a worker, too
             for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
@@ -92,7 +91,6 @@ class Tasks:
 
 
 def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
-    """Return rows as CSV; numbers read back the same, None is an empty field."""
     text = io.StringIO()
     records = for_csv(rows)
     writer = csv.DictWriter(text, records[0], lineterminator="\n")
@@ -189,7 +187,6 @@ def _resumed(file: IO[bytes], tasks: Tasks) -> int:
 
 
 def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) -> Exit:
-    """Run every combination, and print or keep the rows."""
     tasks = Tasks(scenes, options.time, not options.no_compiled)
     checks: list[Check] = []
     ended: UserError | None = None
@@ -228,7 +225,6 @@ def _check(scenes: SceneList, task: Task, rows: Sequence[Row], gate: Gate) -> Ch
 
 
 def _report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:
-    """Return the report of the runs that are done."""
     starts = [_column(name) for name, axis in scenes.axes.items() if len(axis) > 1]
     return Report(
         name="runs",

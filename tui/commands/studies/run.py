@@ -71,7 +71,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check_time(scene: Scene, seconds: float | None) -> None:
-    """Raise UserError if a run has no steps, or far too many."""
     if seconds is None:  # last: argparse would say it before what else is wrong
         raise UserError("--time is missing: how many seconds to simulate, for example --time 60.")
     if seconds > MAX_TIME:
@@ -83,7 +82,6 @@ def _check_time(scene: Scene, seconds: float | None) -> None:
 
 
 def _check_list(options: argparse.Namespace, is_figure: bool) -> None:
-    """Raise UserError for what a list of runs cannot do."""
     if options.record or is_figure:
         what = "--record" if options.record else f"{options.output}, a figure,"
         raise UserError(f"{what} is for one run; leave it out, or give each number one value.")

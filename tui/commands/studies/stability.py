@@ -16,9 +16,7 @@ from tui.commands.studies.reports import figures
 EXAMPLES = """\
 examples:
   pendu-tui stability --theta 120deg --h 0.3
-  pendu-tui stability --method mine.py:my_step
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
-  pendu-tui stability --map --workers 4
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
   pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
 """

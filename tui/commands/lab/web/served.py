@@ -25,7 +25,6 @@ class BoundedDriver(WebDriver):
 
 
 def bounded(size: Any) -> dict[str, int]:
-    """Return a size within reason."""
     sides = zip(("width", "height"), LARGEST, strict=True)
     return {side: int(min(max(float(size[side]), 1), largest)) for side, largest in sides}
 

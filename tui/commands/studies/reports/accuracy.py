@@ -33,7 +33,7 @@ from engine.run import compiled, loops
 from engine.scenes import Scene, check_h
 from tui.cli.errors import UserError
 from tui.cli.output import console, fields_of, progress, scene_line
-from tui.cli.report import Column, Report, Table
+from tui.cli.report import Column, Report, Table, method_column
 from tui.cli.workers import workers_of
 from tui.commands.studies.reports.figures import lines_of
 from tui.drawing.palette import PALETTES
@@ -119,7 +119,6 @@ def measure(found: Findings) -> None:
 
 
 def _ladder(found: Findings) -> list[int]:
-    """Return the numbers of steps to measure: the usual ones, those of --all, or as given."""
     w0 = found.scene.w0
     z_max, z_min, rungs = ALL_LADDER if found.options.all else Z_LADDER
     largest = min(z_max / w0, found.time)
@@ -141,7 +140,6 @@ def _ladder(found: Findings) -> list[int]:
 
 
 def report(found: Findings, interrupted: bool) -> Report:
-    """Return the report of what was found."""
     kind = found.options.error
     points = list(_records(found))
     durations = [_advice_fields(found, advice) for advice in found.advice]
@@ -251,7 +249,6 @@ def _claimed(method: Method) -> int | None:
 
 
 def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
-    """Yield the recommendation for one time, and what was tried for it."""
     options = found.options
     kind = options.error
     wish = f"smallest {kind} error"
@@ -268,13 +265,12 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
         cost = f"{point.force_evaluations} force evaluations{_seconds(point)}"
         yield f"{cost}, {kind} error {point.error(kind):.2e}, confirmed"
     rows = [_attempt_fields(found, attempt) for attempt in advice.attempts]
-    labels = {attempt.method.key: attempt.method.label for attempt in advice.attempts}
-    timed = [Column("seconds", _written("seconds", length), right=True)]
+    timed = [Column("seconds", "seconds", length)]
     columns = [
-        Column("method", lambda row: labels[row["method"]]),
+        method_column([attempt.method for attempt in advice.attempts]),
         Column("h [s]", "h", ".5g"),
         Column("z", "z", ".3g"),
-        Column("steps a swing", _written("steps_per_swing", few), right=True),
+        Column("steps a swing", "steps_per_swing", few),
         Column("evaluations", "force_evaluations", "d"),
         *(timed if any(row["seconds"] is not None for row in rows) else ()),
         Column(f"{kind} error", "error", ".1e"),
@@ -288,13 +284,7 @@ def _times(row: dict[str, Any]) -> str:
     return row["why_not"] or "" if times is None else f"{times:.3g}"
 
 
-def _written(name: str, write: Any) -> Any:
-    """Return a function of a row: its field as `write` writes it, if there is one."""
-    return lambda row: None if row[name] is None else write(row[name])
-
-
 def _winners(advice: Sequence[Advice]) -> str:
-    """Return where the recommended method changes with the time."""
     names = [each.point.method.label if each.point else "no method" for each in advice]
     changes = [
         f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)"
@@ -305,7 +295,6 @@ def _winners(advice: Sequence[Advice]) -> str:
 
 
 def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
-    """Return a method, its run and its cost; None for what there is not."""
     numbers = ("h", "z", "steps_per_swing", "force_evaluations", "error", "seconds")
     fields = {"method": attempt.method.key, **dict.fromkeys(numbers)}
     if point := attempt.point:

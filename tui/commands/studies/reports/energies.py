@@ -94,7 +94,6 @@ def _skipped(skipped: dict[str, int]) -> list[str]:
 
 
 def _size(table: Table, energies: Any, scale: float | str) -> float:
-    """Return the energy that errors are relative to."""
     if isinstance(scale, float):
         return scale
     if scale == "first":
@@ -139,7 +138,6 @@ def _trend(
 
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
-    """Return the trend per ns and atom, in the energy's unit and in kT."""
     time_unit = fields["time_unit"]
     energy_unit = fields["energy_unit"].casefold()
     if time_unit not in NANOSECONDS:
@@ -183,7 +181,6 @@ def _power(steps: Sequence[float], values: Sequence[float]) -> float | None:
 
 
 def title_of(fields: dict[str, Any]) -> str:
-    """Return what was judged."""
     name = "stdin" if fields["file"] == "-" else printable(fields["file"])
     span = f"from {fields['first_time']:g} to {fields['last_time']:g}{_unit(fields, 'time')}"
     text = f"{name}: {counted(fields['samples'], 'sample')} {span}"
@@ -199,7 +196,6 @@ def _unit(fields: dict[str, Any], name: str) -> str:
 
 
 def lines_of(fields: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the result for people: names and texts."""
     time_unit = _unit(fields, "time")
     energy_unit = _unit(fields, "energy")
     verdict = fields["verdict"]

@@ -121,7 +121,6 @@ def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> N
 
 
 def draw_accuracy(options: Namespace, cast: Cast, points: Sequence["Point"]) -> None:
-    """Draw error against cost, a line for each method; flawed points are left out."""
     from engine.accuracy.front import cost_of
 
     what = {"theta": "largest error of θ / rad", "final": "error of θ at the end / rad"}
@@ -171,7 +170,6 @@ def draw_map(options: Namespace, grid: "Grid", cells: "Cells") -> None:
 def draw_section(
     options: Namespace, title: str, orbits: Sequence["Points"], edges: tuple[float, float]
 ) -> None:
-    """Draw the orbits of a method's own map, a point for each step."""
     import numpy as np
 
     look = {"color": "black", "rasterized": True, "markersize": 0.5, "mew": 0}

@@ -21,7 +21,7 @@ from tui.cli.fail_if import Gate
 from tui.cli.files import stop_requests
 from tui.cli.junit import Check, conclude
 from tui.cli.output import fields_of, progress, scene_line, warn
-from tui.cli.report import Column, Report, publish
+from tui.cli.report import Column, Report, method_column, publish
 from tui.commands.studies.reports import figures
 from tui.words.insight import irregular, milestone_insight, sentence
 from tui.words.numbers import file_size, z_text
@@ -33,7 +33,6 @@ Row = dict[str, Any]
 
 
 def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
-    """Run one scene and report it."""
     curve: list[Sample] = []
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
@@ -162,15 +161,12 @@ def for_json(rows: Sequence[Row]) -> list[Row]:
 
 
 def for_csv(rows: Sequence[Row]) -> list[Row]:
-    """Return rows of numbers and texts."""
     return [{name: row[name] for name in row if name != "progress"} for row in rows]
 
 
 def columns_of(scene: Scene, *trend: Column) -> list[Column]:
-    """Return the columns of the table."""
-    labels = {method.key: method.label for method in scene.cast}
     return [
-        Column("method", lambda row: labels[row["method"]]),
+        method_column(scene.cast),
         Column("verdict", verdict_of),
         *(Column(each.label, each.name, ".4g") for each in scene.equations.quantities()),
         Column(scene.equations.energy_error.name, "energy_error", "+.2e"),

@@ -61,7 +61,6 @@ def run(scene: Scene, options: argparse.Namespace, is_figure: bool) -> None:
 def _orbits(
     scene: Scene, method: Method, options: argparse.Namespace, viewport: Viewport
 ) -> list[Points]:
-    """Return orbits from all over a portrait."""
     orbits: list[Points] = []
     followed = partial(iterate, method, scene.equations, scene.h, steps=options.steps)
     done = 0
@@ -87,7 +86,6 @@ def _portrait(scene: Scene, method: Method, options: argparse.Namespace) -> list
 
 
 def _report(scene: Scene, method: Method, title: str, steps: int, picture: list[Text]) -> Report:
-    """Return the report of the orbits of the scene's start, below the picture."""
     model = scene.equations
     start = State(scene.theta, scene.omega)
     kinds = {

@@ -2,7 +2,7 @@
 
 import math
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_o
 from tui.cli.errors import UserError, explained
 from tui.cli.files import whole_file
 from tui.cli.output import console, progress
-from tui.cli.report import Column, Report, Table, finite
+from tui.cli.report import Column, Report, Table, finite, method_column
 from tui.cli.workers import workers_of
 from tui.commands.studies.reports.figures import lines_of
 from tui.drawing.palette import PALETTES
@@ -97,29 +97,28 @@ def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], 
 
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
     """Return the report of a table's grid and a map's: neither for the linear oscillator."""
-    rows: list[Row] = []
-    notes: list[Any] = [LINEAR]
-    if computed:
-        complete = is_whole or len(computed) > 1
-        rows = [row for row in table(scene, *computed[0]) if row.failure or complete]
-        notes = [*_words(scene), Table(_columns(scene, steps), rows)]
+    maps = computed[1:]
+    rows = table(scene, *computed[0]) if computed else []
+    if not (is_whole or maps):
+        rows = [row for row in rows if row.failure]
     pendulum = [_row_fields(row) for row in rows]
     here = [None if row.here["fate"] == UNKNOWN else _cell_fields(row.here) for row in rows]
-    maps = computed[1:]
+    notes: list[Any] = [LINEAR]
+    if computed:
+        notes = [*_words(scene), Table(_columns(scene, steps), pendulum)]
     for grid, cells in maps:
         on = console()
         is_coloured = on.color_system is not None and not on.no_color and "utf" in on.encoding
         palette = PALETTES["dark"] if is_coloured else None
         notes += ["", *lines_of(picture(grid, cells, max(40, on.width), palette), None)]
     linear = [_linear(scene, method) for method in scene.cast]
-    labels = {method.key: method.label for method in scene.cast}
     return Report(
         name="stability",
         title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
         columns=(
-            Column("method", lambda row: labels[row["method"]]),
-            Column("measured", lambda row: _limit(row["limit_z"]), right=True),
-            Column("theory", lambda row: _limit(row["theory_z"]), right=True),
+            method_column(scene.cast),
+            Column("measured", "limit_z", _limit),
+            Column("theory", "theory_z", _limit),
             Column(f"radius at z = {scene.z:.4g}", "amplification", ".9f"),
         ),
         rows=linear,
@@ -144,9 +143,7 @@ def _linear(scene: Scene, method: Method) -> dict[str, Any]:
     return fields | {"amplification": amplification(method, scene.z)}
 
 
-def _limit(z: float | None) -> str | None:
-    if z is None:
-        return None
+def _limit(z: float) -> str:
     if z == math.inf:
         return "any"
     return f"{z:.9f}" if z else "none"
@@ -180,7 +177,6 @@ def _map_fields(grid: Grid, cells: Cells) -> dict[str, Any]:
 
 
 def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
-    """Yield a record for each swing that was computed."""
     for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
         cell = cells[z, m, t]
         if cell["fate"] != UNKNOWN:
@@ -189,7 +185,6 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    """Yield what is to be known of the pendulum's table."""
     yield "\nPendulum: the z from which a swing is lost in so many steps; with more steps, it is lower."
     yield (
         "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
@@ -206,17 +201,14 @@ def _words(scene: Scene) -> Iterator[str]:
 
 
 def _columns(scene: Scene, steps: int) -> list[Column]:
-    def of_failure(head: str, write: Callable[[Any], str]) -> Column:
-        return Column(head, lambda row: row.failure and write(row.failure), right=head != "failure")
-
     return [
-        Column("method", lambda row: row.method.label),
-        Column("from", lambda row: f"{math.degrees(row.theta):.4g}°", right=True),
-        Column(f"in {early_steps(steps):,}", lambda row: row.early and row.early.z, ".4g"),
-        of_failure(f"in {steps:,}", lambda failure: f"{failure.z:.4g}"),
-        of_failure("h [s]", lambda failure: f"{failure.z / scene.w0:.3g}"),
-        of_failure("failure", lambda failure: failure.reason),
-        of_failure("margin", lambda failure: f"{failure.z / scene.z:.3g}"),
+        method_column(scene.cast),
+        Column("from", "theta", lambda theta: f"{math.degrees(theta):.4g}°"),
+        Column(f"in {early_steps(steps):,}", "first_failure_z_early", ".4g"),
+        Column(f"in {steps:,}", "first_failure_z", ".4g"),
+        Column("h [s]", "first_failure_z", lambda z: f"{z / scene.w0:.3g}"),
+        Column("failure", "reason"),
+        Column("margin", "first_failure_z", lambda z: f"{z / scene.z:.3g}"),
     ]
 
 
