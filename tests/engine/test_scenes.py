@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.run.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import (
     DEFAULT_SCENE,
@@ -25,7 +25,7 @@ from engine.scenes import (
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
 
-def watch(name: str, seconds: float, every: int = 1) -> list[Sample]:
+def watch(name, seconds, every=1):
     """A sample at every step, or at one of so many."""
     lockstep = Lockstep(SCENES[name])
     samples = [lockstep.sample()]
@@ -35,33 +35,33 @@ def watch(name: str, seconds: float, every: int = 1) -> list[Sample]:
     return samples
 
 
-def over_the_top(samples: list[Sample], method: int) -> float:
+def over_the_top(samples, method):
     """When it first was above the pivot [s]; inf: never."""
     return next(
         (sample.t for sample in samples if abs(sample.readings[method].theta) > math.pi), math.inf
     )
 
 
-def worst(samples: list[Sample], method: int) -> float:
+def worst(samples, method):
     return max(abs(sample.readings[method].energy_error) for sample in samples)
 
 
 @pytest.mark.parametrize("field", LIMITS)
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e10, -1e10])
-def test_a_value_that_is_no_pendulum_is_refused_in_a_sentence(field: str, value: float) -> None:
+def test_a_value_that_is_no_pendulum_is_refused_in_a_sentence(field, value):
     with pytest.raises(SceneError, match=rf"^{field} = .* is out of range; use .* to .*\.$"):
         Scene(**{field: value})
 
 
 @pytest.mark.parametrize("field", ["length", "gravity"])
 @pytest.mark.parametrize("value", [0.0, -1.0, 1e-7, 1e7])
-def test_length_and_gravity_are_positive_and_of_this_world(field: str, value: float) -> None:
+def test_length_and_gravity_are_positive_and_of_this_world(field, value):
     with pytest.raises(SceneError, match=field):
         Scene(**{field: value})
 
 
 @pytest.mark.parametrize("h", [0.0, -0.05, math.nan, math.inf, -math.inf, 1e9, 1e-12])
-def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h: float) -> None:
+def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h):
     with pytest.raises(
         SceneError, match=r"^h = .* is not a usable step; use .* for example 0\.05\.$"
     ):
@@ -69,7 +69,7 @@ def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h: fl
 
 
 @given(length=st.floats(*LIMITS["length"]), gravity=st.floats(*LIMITS["gravity"]))
-def test_the_step_size_that_the_sentence_names_is_usable(length: float, gravity: float) -> None:
+def test_the_step_size_that_the_sentence_names_is_usable(length, gravity):
     w0 = math.sqrt(gravity / length)
     with pytest.raises(SceneError) as refusal:
         Scene(length=length, gravity=gravity, h=1e3 * Z_LIMITS[1] / w0)
@@ -78,9 +78,7 @@ def test_the_step_size_that_the_sentence_names_is_usable(length: float, gravity:
 
 
 @given(**{name: st.floats(*limits) for name, limits in LIMITS.items()}, z=st.floats(1e-8, 999))
-def test_everything_within_the_limits_is_a_scene(
-    theta: float, omega: float, length: float, gravity: float, z: float
-) -> None:
+def test_everything_within_the_limits_is_a_scene(theta, omega, length, gravity, z):
     scene = Scene(
         theta=theta, omega=omega, length=length, gravity=gravity, h=z / math.sqrt(gravity / length)
     )
@@ -88,14 +86,14 @@ def test_everything_within_the_limits_is_a_scene(
     check_h(-scene.h, scene.w0)  # time may run backwards later
 
 
-def test_a_scene_keeps_its_name_only_while_nothing_is_changed() -> None:
+def test_a_scene_keeps_its_name_only_while_nothing_is_changed():
     scene = SCENES["spin"]
     assert scene.altered(omega=scene.omega) is scene
     changed = scene.altered(omega=9.0)
     assert (changed.name, changed.watch, changed.omega, changed.h) == ("custom", "", 9.0, scene.h)
 
 
-def test_every_scene_has_its_name_and_says_what_to_watch() -> None:
+def test_every_scene_has_its_name_and_says_what_to_watch():
     assert SCENES["drift"] == DEFAULT_SCENE
     for name, scene in SCENES.items():
         assert scene.name == name
@@ -108,7 +106,7 @@ def test_every_scene_has_its_name_and_says_what_to_watch() -> None:
 # What the scenes tell people to watch.
 
 
-def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses() -> None:
+def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses():
     samples = watch("drift", 120)
     last = samples[-1].readings
     assert over_the_top(samples, EXPLICIT) == pytest.approx(7.15)
@@ -122,7 +120,7 @@ def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses() -> None
     assert -4e-4 < last[RK4].energy_error < -3e-4
 
 
-def test_gentle_the_textbooks_formulas_hold() -> None:
+def test_gentle_the_textbooks_formulas_hold():
     scene, samples = SCENES["gentle"], watch("gentle", 60)
     z, first, last = scene.z, samples[1].readings, samples[-1].readings
     assert scene.exact().period == pytest.approx(
@@ -136,7 +134,7 @@ def test_gentle_the_textbooks_formulas_hold() -> None:
     assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)
 
 
-def test_linear_theory_is_exact_at_any_size() -> None:
+def test_linear_theory_is_exact_at_any_size():
     scene, samples = SCENES["linear"], watch("linear", 20)
     z = scene.z
     assert z == 0.5
@@ -155,7 +153,7 @@ def test_linear_theory_is_exact_at_any_size() -> None:
     )  # 1/(1 + z/2) and 1/(1 - z/2)
 
 
-def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> None:
+def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first():
     scene, samples = SCENES["large-swing"], watch("large-swing", 10)
     period = scene.exact().period
     assert period is not None
@@ -165,7 +163,7 @@ def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> No
     assert all(over_the_top(samples, method) == math.inf for method in (SYMPLECTIC, VERLET, RK4))
 
 
-def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_minute() -> None:
+def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_minute():
     samples = watch("crossover", 60)
     behind = [
         s.readings[RK4].max_energy_error > s.readings[VERLET].max_energy_error for s in samples
@@ -180,9 +178,7 @@ def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_
     ("name", "seconds", "least", "most"),
     [("crossover", 60, 0, 1e-13), ("crossover", 600, 0, 1e-11), ("chaos-fenced", 200, 0.1, 100)],
 )
-def test_turned_round_verlet_comes_back_but_not_in_chaos(
-    name: str, seconds: float, least: float, most: float
-) -> None:
+def test_turned_round_verlet_comes_back_but_not_in_chaos(name, seconds, least, most):
     scene, lockstep = SCENES[name], Lockstep(SCENES[name])
     lockstep.advance(steps := round(seconds / scene.h))
     lockstep.set_stepping(Stepping(-scene.h))
@@ -191,10 +187,10 @@ def test_turned_round_verlet_comes_back_but_not_in_chaos(
     assert least <= math.hypot(verlet.theta - scene.theta, verlet.omega / scene.w0) < most
 
 
-def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
+def test_near_separatrix_the_best_energy_does_not_mean_the_right_time():
     exact, samples = SCENES["near-separatrix"].exact(), watch("near-separatrix", 120)
 
-    def late(method: int) -> float:
+    def late(method):
         return next(
             (s.t for s in samples if abs(s.readings[method].theta - exact.at(s.t).theta) > 1),
             math.inf,
@@ -205,7 +201,7 @@ def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
     assert late(VERLET) == late(SYMPLECTIC) == math.inf
 
 
-def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() -> None:
+def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second():
     """Half a kick apart they are one method; at the bottom, where this starts, the kick is 0."""
     samples = watch("spin", 60)
     last = samples[-1].readings
@@ -219,7 +215,7 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
     assert [round(reading.theta / math.tau) for reading in last] == [94, 61, 61, 61]
 
 
-def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its_energy() -> None:
+def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its_energy():
     scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"], judged=True)
     turns, energies = [], []
     while lockstep.t < 10 * scene.speed:  # seconds of watching
@@ -240,7 +236,7 @@ def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its
     assert lockstep.judgements[EXPLICIT].verdict == "caught"
 
 
-def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps() -> None:
+def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps():
     samples = watch("verlet-limit", 2000)
     errors = [sample.readings[VERLET].energy_error for sample in samples]
     assert -0.981 < min(errors) < -0.97
@@ -249,14 +245,14 @@ def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps() -
         assert max(errors[start : start + 11]) > -0.06
 
 
-def test_verlet_limit_above_verlet_leaves_the_bottom_and_is_caught() -> None:
+def test_verlet_limit_above_verlet_leaves_the_bottom_and_is_caught():
     samples = watch("verlet-limit-above", 4_000)
     amplitudes = [abs(sample.readings[VERLET].theta) for sample in samples]
     assert max(amplitudes) == pytest.approx(0.48, abs=0.005)
     assert max(amplitudes[:20]) > 0.45
 
 
-def test_rk4_limit_rk4_loses_half_its_energy_in_four_steps_and_the_others_go_over_the_top() -> None:
+def test_rk4_limit_rk4_loses_half_its_energy_in_four_steps_and_the_others_go_over_the_top():
     samples = watch("rk4-limit", 300)
     assert samples[4].readings[RK4].energy_error == pytest.approx(-0.5, abs=0.01)
     assert samples[8].readings[RK4].energy_error == pytest.approx(-0.74, abs=0.01)
@@ -264,7 +260,7 @@ def test_rk4_limit_rk4_loses_half_its_energy_in_four_steps_and_the_others_go_ove
     assert samples[-1].readings[RK4].energy_error < -0.999
 
 
-def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad() -> None:
+def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad():
     samples = watch("rk4-limit-above", 4_000)
     late = [sample.readings[RK4] for sample in samples[100:]]
     assert max(abs(reading.theta) for reading in late) == pytest.approx(0.196, abs=0.002)
@@ -278,20 +274,18 @@ def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad() -> Non
         ("rk4-limit", "rk4-limit-above", 2 * math.sqrt(2)),
     ],
 )
-def test_the_limit_scenes_stand_on_either_side_of_their_limit(
-    below: str, above: str, limit: float
-) -> None:
+def test_the_limit_scenes_stand_on_either_side_of_their_limit(below, above, limit):
     assert SCENES[below].z < limit < SCENES[above].z
     assert replace(SCENES[below], name="", watch="", h=1.0) == replace(
         SCENES[above], name="", watch="", h=1.0
     )
 
 
-def test_every_scene_is_in_one_group() -> None:
+def test_every_scene_is_in_one_group():
     assert [scene for group in GROUPS.values() for scene in group] == list(SCENES.values())
 
 
-def test_resonance_verlet_doubles_its_energy_and_comes_back() -> None:
+def test_resonance_verlet_doubles_its_energy_and_comes_back():
     scene, samples = SCENES["resonance"], watch("resonance", 1000)
     errors = [sample.readings[0].energy_error for sample in samples]
     assert max(errors) == pytest.approx(1.15, abs=0.01)
@@ -302,7 +296,7 @@ def test_resonance_verlet_doubles_its_energy_and_comes_back() -> None:
     )  # exact; Verlet's is 4 steps
 
 
-def test_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> None:
+def test_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h():
     scene = SCENES["resonance"]
     golden = (1 + math.sqrt(5)) / 2
     for h in (scene.h / golden, 5 / 8 * scene.h):
@@ -313,7 +307,7 @@ def test_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> 
         assert verlet.energy_error_high < 0.001
 
 
-def test_halving_gains_19_percent_a_minute_and_verlet_stays_within_8() -> None:
+def test_halving_gains_19_percent_a_minute_and_verlet_stays_within_8():
     samples = watch("halving", 60)
     halving, richardson, _, rk4 = samples[-1].readings
     assert halving.energy_error == pytest.approx(0.19, abs=0.005)
@@ -324,7 +318,7 @@ def test_halving_gains_19_percent_a_minute_and_verlet_stays_within_8() -> None:
     assert first.force_evaluations == 8 * third.force_evaluations
 
 
-def test_precision_32_bits_go_over_the_top_at_five_and_a_half_seconds() -> None:
+def test_precision_32_bits_go_over_the_top_at_five_and_a_half_seconds():
     scene, samples = SCENES["precision"], watch("precision", 100, every=8)
     exact = scene.exact()
     assert over_the_top(samples, 0) == pytest.approx(5.5, abs=0.05)
@@ -333,7 +327,7 @@ def test_precision_32_bits_go_over_the_top_at_five_and_a_half_seconds() -> None:
         assert abs(sample.readings[1].theta - exact.at(sample.t).theta) < 0.003
 
 
-def test_precision_deep_64_bits_lose_the_angle_at_35_seconds_and_compensated_sums_do_not() -> None:
+def test_precision_deep_64_bits_lose_the_angle_at_35_seconds_and_compensated_sums_do_not():
     scene, lockstep = SCENES["precision-deep"], Lockstep(SCENES["precision-deep"])
     exact, worst = scene.exact(), [0.0, 0.0, 0.0]
     late: float | None = None
@@ -348,7 +342,7 @@ def test_precision_deep_64_bits_lose_the_angle_at_35_seconds_and_compensated_sum
     assert worst[2] < 3e-4 < 0.1 < worst[1] < worst[0]
 
 
-def test_damped_explicit_euler_gains_energy_against_friction_and_the_others_slow_down() -> None:
+def test_damped_explicit_euler_gains_energy_against_friction_and_the_others_slow_down():
     samples = watch("damped", 60)
     reference = SCENES["damped"].equations.reference(2.0, 0.0)
     euler, *others = samples[-1].readings
@@ -361,7 +355,7 @@ def test_damped_explicit_euler_gains_energy_against_friction_and_the_others_slow
     assert rk4 < conformal < lagged
 
 
-def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all() -> None:
+def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all():
     verlet, rk4, respa, midpoint, imex = watch("stiff-slow", 30)[-1].readings
     assert SCENES["stiff-slow"].z == pytest.approx(1)
     assert rk4.extra["spring_energy"] < 1e-3
@@ -370,7 +364,7 @@ def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all() -> None:
     assert max(verlet.max_energy_error, respa.max_energy_error, midpoint.max_energy_error) < 0.1
 
 
-def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone() -> None:
+def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone():
     samples = watch("stiff-limit", 0.25)
     assert SCENES["stiff-limit"].z == pytest.approx(2.5)
     verlet, _, *others = (
@@ -380,7 +374,7 @@ def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone() -> None:
     assert all(length < 1.05 for length in others)
 
 
-def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> None:
+def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds():
     samples = watch("stiff-resonance", 30)
     assert SCENES["stiff-resonance"].h == pytest.approx(math.tau / 50, rel=0.01)
     last = samples[-1].readings
@@ -392,7 +386,7 @@ def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> No
     )  # yet at the wrong time
 
 
-def test_learned_field_and_map_lose_60_percent_hamiltonian_and_sympnet_less_than_one() -> None:
+def test_learned_field_and_map_lose_60_percent_hamiltonian_and_sympnet_less_than_one():
     lockstep = Lockstep(SCENES["learned"])
     lockstep.advance(3125)
     sample = lockstep.sample()
@@ -429,14 +423,14 @@ MOMENTS = {  # simulated seconds until what the scene says is there to be seen
 
 @pytest.mark.parametrize("name", SCENES)
 def test_at_its_speed_a_scene_takes_a_few_steps_a_second_and_shows_its_point_within_half_a_minute(
-    name: str,
-) -> None:
+    name,
+):
     scene = SCENES[name]
     assert scene.h / scene.speed < 0.4
     assert MOMENTS.get(name, 1.0) / scene.speed < 30
 
 
-def test_a_speed_changes_no_number() -> None:
+def test_a_speed_changes_no_number():
     assert replace(DEFAULT_SCENE, speed=3.0) == DEFAULT_SCENE
     assert DEFAULT_SCENE.altered(theta=2.0, speed=3.0).speed == 3.0
     for speed in (0.0, -1.0, math.inf, math.nan):
@@ -444,7 +438,7 @@ def test_a_speed_changes_no_number() -> None:
             Scene(speed=speed)
 
 
-def test_in_chaos_loose_omega_passes_2_pi_over_h_within_half_a_minute_of_the_clock() -> None:
+def test_in_chaos_loose_omega_passes_2_pi_over_h_within_half_a_minute_of_the_clock():
     scene = SCENES["chaos-loose"]
     lockstep, seen = Lockstep(scene), 0.0
     while lockstep.t < 20 * scene.speed and seen <= math.tau / scene.h:

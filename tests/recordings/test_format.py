@@ -19,13 +19,7 @@ from recordings.arithmetic import fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
 from recordings.events import Event, noticed
 from recordings.fields import EVENT_SCHEMA, EXTRA, sample_schema, values_of, without_extremes
-from recordings.format import (
-    decode_event,
-    decode_reading,
-    encode_event,
-    encode_readings,
-    topics_of,
-)
+from recordings.format import decode_event, decode_reading, encode_event, encode_readings, topics_of
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")

@@ -8,13 +8,7 @@ import pytest
 
 from recordings import library
 from recordings.errors import RecordingError
-from recordings.library import (
-    GOLDEN,
-    free_path,
-    leftovers,
-    listing,
-    new_path,
-)
+from recordings.library import GOLDEN, free_path, leftovers, listing, new_path
 from recordings.recorder import Recorder
 from tests.recordings.examples import start, tiny
 from tui.cli.options import resolve

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import VELOCITY_VERLET, Method
+from engine.methods import VELOCITY_VERLET
 from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MOST_HALVINGS, halving
 from engine.methods.verlet import velocity_verlet
 from engine.models.pendulum import Pendulum
@@ -20,7 +20,7 @@ SCENE = SCENES["halving"]
 both = pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=lambda m: m.key)
 
 
-def energy_error(method: Method, h: float, time: float) -> tuple[float, float]:
+def energy_error(method, h, time):
     """The relative energy error at the end, and its largest size on the way."""
     energy, start = PENDULUM.energy(), (2.0, 0.0)
     _, _, end, low, high = PlainLoops(method, PENDULUM).advance(start, h, round(time / h), math.inf)
@@ -29,7 +29,7 @@ def energy_error(method: Method, h: float, time: float) -> tuple[float, float]:
 
 
 @both
-def test_with_small_steps_it_has_the_claimed_order(method: Method) -> None:
+def test_with_small_steps_it_has_the_claimed_order(method):
     exact, errors, steps = Scene(theta=1.0).exact(), [], (80, 113, 160, 226, 320)
     for n in steps:
         theta, _ = PlainLoops(method, PENDULUM).travel((1.0, 0.0), 1.0 / n, n)
@@ -38,9 +38,7 @@ def test_with_small_steps_it_has_the_claimed_order(method: Method) -> None:
 
 
 @both
-def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided(
-    method: Method,
-) -> None:
+def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided(method):
     counted = count_evaluations(
         method, PENDULUM, (SCENE.theta, SCENE.omega), SCENE.h, 300
     )  # a minute
@@ -49,9 +47,7 @@ def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided
     assert count_evaluations(method, PENDULUM, (0.1, 0.0), 0.05, 10) == 60
 
 
-def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length() -> (
-    None
-):
+def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length():
     phases = halving(velocity_verlet, 0.1)
     small = next(phases(FORCE, (2.0, 0.0), 0.05))
     assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
@@ -62,28 +58,26 @@ def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_hal
 
 @both
 @given(theta=st.floats(-1e9, 1e9), omega=st.floats(-1e9, 1e9), h=st.floats(-100, 100))
-def test_where_nothing_looks_accurate_a_step_still_ends(
-    method: Method, theta: float, omega: float, h: float
-) -> None:
+def test_where_nothing_looks_accurate_a_step_still_ends(method, theta, omega, h):
     count = 0
 
-    def counted(theta: float) -> float:
+    def counted(theta):
         nonlocal count
         count += 1
-        return FORCE(theta)  # type: ignore[no-any-return]
+        return FORCE(theta)
 
     assert all(map(math.isfinite, method.step(counted, (theta, omega), h)))
     assert count <= 6 * (2 ** (MOST_HALVINGS + 1) - 1)
 
 
 @both
-def test_nothing_is_kept_from_step_to_step(method: Method) -> None:
+def test_nothing_is_kept_from_step_to_step(method):
     travel = PlainLoops(method, PENDULUM).travel
     assert travel(travel((2.0, 0.0), 0.2, 7), 0.2, 5) == travel((2.0, 0.0), 0.2, 12)
 
 
 @both
-def test_there_and_back_it_misses_its_start(method: Method) -> None:
+def test_there_and_back_it_misses_its_start(method):
     travel = PlainLoops(method, PENDULUM).travel
     theta, omega = travel((2.0, 0.3), 0.2, 50)
     theta, omega = travel((theta, -omega), 0.2, 50)
@@ -92,7 +86,7 @@ def test_there_and_back_it_misses_its_start(method: Method) -> None:
     assert not method.symplectic
 
 
-def test_in_ten_minutes_it_changes_the_energy_and_verlet_at_the_same_cost_does_not() -> None:
+def test_in_ten_minutes_it_changes_the_energy_and_verlet_at_the_same_cost_does_not():
     assert energy_error(HALVING_VERLET, 0.2, 600)[0] > 0.1  # +0.88
     assert energy_error(HALVING_RICHARDSON, 0.2, 600)[0] < -0.1  # -0.48
     assert energy_error(VELOCITY_VERLET, 1 / 40, 600)[1] < 0.003  # 0.0012

@@ -17,7 +17,6 @@ from engine.methods import (
     METHODS,
     RK4,
     USUAL_CAST,
-    Method,
     implicit,
     matching,
     measure,
@@ -25,7 +24,6 @@ from engine.methods import (
 from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
 from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
-from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum, acceleration
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
@@ -34,14 +32,14 @@ W0_SQUARED = 9.81
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 
 
-def travel(method: Method, force: Force, phase: Phase, h: float, n: int) -> Phase:
+def travel(method, force, phase, h, n):
     for _ in range(n):
         phase = method.step(force, phase, h)
     return phase
 
 
 @each_method
-def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
+def test_the_measured_properties_are_the_claimed_ones(method):
     found = measure.measured(method.phases)
     assert found.order == pytest.approx(method.order, abs=0.1)
     assert found.linear_limit == pytest.approx(method.linear_limit, abs=2e-9)  # to 1e-9 each
@@ -58,7 +56,7 @@ def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
 )  # nearer to the edge it is a matter of rounding
 def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(
     share, beyond
-) -> None:
+):
     for method in GENERAL:
         assert measure.is_stable(method.phases, share * min(method.linear_limit, 10.0))
     for method in USUAL_CAST[1:]:
@@ -68,9 +66,7 @@ def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_
 @pytest.mark.parametrize(
     ("method", "island"), [(BLANES_MOAN_4, (3.1686, 5.02)), (BLANES_MOAN_6, (3.1424, 6.34))]
 )
-def test_above_the_first_edge_lies_a_gap_and_then_an_island(
-    method: Method, island: tuple[float, float]
-) -> None:
+def test_above_the_first_edge_lies_a_gap_and_then_an_island(method, island):
     gap = np.linspace(method.linear_limit + 1e-6, island[0] - 3e-4, 100)
     assert all(measure.is_stable(method.phases, z) for z in np.linspace(*island, 100))
     assert not any(measure.is_stable(method.phases, z) for z in gap)
@@ -78,9 +74,7 @@ def test_above_the_first_edge_lies_a_gap_and_then_an_island(
 
 @each_method
 @pytest.mark.parametrize("start", [(2.5, 0.5), (0.5, 8.0)])
-def test_the_error_falls_with_the_claimed_power_of_h(
-    method: Method, start: tuple[float, float]
-) -> None:
+def test_the_error_falls_with_the_claimed_power_of_h(method, start):
     assert measure.order(method.phases, start) == pytest.approx(
         method.order, abs=0.1
     )  # the next power of h is felt
@@ -88,7 +82,7 @@ def test_the_error_falls_with_the_claimed_power_of_h(
 
 @pytest.mark.parametrize("method", [m for m in GENERAL if m.symplectic], ids=lambda m: m.key)
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
-def test_area_is_kept_where_claimed(method: Method, theta: float, omega: float, h: float) -> None:
+def test_area_is_kept_where_claimed(method, theta, omega, h):
     # Jacobian entries up to 3 and a few products of them, each rounded.
     assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(
         1, abs=1e-14
@@ -96,17 +90,13 @@ def test_area_is_kept_where_claimed(method: Method, theta: float, omega: float, 
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
-def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(
-    theta: float, omega: float, h: float
-) -> None:
+def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(theta, omega, h):
     determinant = jacobian(EXPLICIT_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
     assert determinant == pytest.approx(1 + h**2 * W0_SQUARED * math.cos(theta), abs=1e-14)
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(0.0, 0.3))
-def test_backward_euler_shrinks_area_by_what_explicit_euler_adds_on_the_way_back(
-    theta: float, omega: float, h: float
-) -> None:
+def test_backward_euler_shrinks_area_by_what_explicit_euler_adds_on_the_way_back(theta, omega, h):
     force = acceleration(W0_SQUARED)
     end, _ = BACKWARD_EULER.step(force, (theta, omega), h)
     determinant = jacobian(BACKWARD_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
@@ -119,9 +109,7 @@ def test_backward_euler_shrinks_area_by_what_explicit_euler_adds_on_the_way_back
     z=st.floats(0.0, 0.99),
     method=st.sampled_from(implicit.FAMILY),
 )
-def test_newtons_iteration_solves_the_equation_of_the_step(
-    theta: float, omega: float, z: float, method: Method
-) -> None:
+def test_newtons_iteration_solves_the_equation_of_the_step(theta, omega, z, method):
     h = z / math.sqrt(W0_SQUARED)
     force = acceleration(W0_SQUARED)
     theta_end, omega_end = method.step(force, (theta, omega), h)
@@ -133,14 +121,14 @@ def test_newtons_iteration_solves_the_equation_of_the_step(
 
 
 @pytest.mark.parametrize("h", [0.001, 0.05, 0.3])
-def test_backward_euler_loses_energy_and_heun_and_the_midpoint_rule_gain_some(h: float) -> None:
+def test_backward_euler_loses_energy_and_heun_and_the_midpoint_rule_gain_some(h):
     for method, sign in ((BACKWARD_EULER, -1), (HEUN, 1), (EXPLICIT_MIDPOINT, 1)):
         judge = simulate(time=60.0, methods=[method.key], h=h)
         assert sign * judge[method.key].energy_error[-1] > 0
 
 
 @given(z=st.floats(0.001, 5.0))
-def test_of_small_swings_a_step_keeps_or_multiplies_the_energy_as_the_cards_say(z: float) -> None:
+def test_of_small_swings_a_step_keeps_or_multiplies_the_energy_as_the_cards_say(z):
     start = (0.6, 0.8)
     for method, factor in (
         (HEUN, 1 + z**4 / 4),
@@ -151,7 +139,7 @@ def test_of_small_swings_a_step_keeps_or_multiplies_the_energy_as_the_cards_say(
         assert theta**2 + omega**2 == pytest.approx(factor, rel=1e-12)
 
 
-def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
+def test_rk4_loses_area_with_the_sixth_power_of_h():
     """det - 1 of a step at the bottom is -z⁶/72 + z⁸/576; along a swing the power is the same."""
     exact = Scene().exact()
     lost = []
@@ -167,9 +155,7 @@ def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
 
 @each_method
 @given(theta=st.floats(-3, 3), omega=st.floats(-6, 6))
-def test_a_negative_step_undoes_a_step_only_where_reversible(
-    method: Method, theta: float, omega: float
-) -> None:
+def test_a_negative_step_undoes_a_step_only_where_reversible(method, theta, omega):
     """Time reversed by h -> -h, as the lab does it; all methods keep the symmetry omega, h -> -omega, -h."""
     force = acceleration(W0_SQUARED)
     back = method.step(force, method.step(force, (theta, omega), 0.05), -0.05)
@@ -180,7 +166,7 @@ def test_a_negative_step_undoes_a_step_only_where_reversible(
 
 
 @each_method
-def test_one_definition_serves_floats_arrays_complex_and_mpmath(method: Method) -> None:
+def test_one_definition_serves_floats_arrays_complex_and_mpmath(method):
     start, h = (0.8, -1.1), 0.05
     expected = travel(method, acceleration(W0_SQUARED), start, h, 20)
     arrays = travel(
@@ -206,7 +192,7 @@ def test_one_definition_serves_floats_arrays_complex_and_mpmath(method: Method) 
         )  # 20 steps' rounding; their sines may differ in the last bit
 
 
-def test_names_are_unique_and_every_method_has_a_reference() -> None:
+def test_names_are_unique_and_every_method_has_a_reference():
     for method in METHODS:
         for name in method.names:
             assert matching(name) == [method]
@@ -220,7 +206,7 @@ def test_names_are_unique_and_every_method_has_a_reference() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
-def test_every_general_method_names_a_use_and_its_source(method: Method) -> None:
+def test_every_general_method_names_a_use_and_its_source(method):
     if method.used is None:
         assert not method.general
     else:

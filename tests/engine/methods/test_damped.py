@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from engine.methods import EXPLICIT_EULER, RK4, Method
+from engine.methods import EXPLICIT_EULER, RK4
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from engine.models.damped import DampedPendulum
 from engine.run.loops import PlainLoops, count_evaluations
@@ -16,7 +16,7 @@ CAST = (EXPLICIT_EULER, LAGGED_VERLET, CONFORMAL_VERLET, RK4)
 each_method = pytest.mark.parametrize("method", CAST, ids=lambda m: m.key)
 
 
-def log_energy_error(method: Method, friction: float, h: float, time: float = 60.0) -> float:
+def log_energy_error(method, friction, h, time=60.0):
     """The largest |ln(E/E_true)| from 2 rad."""
     model = DampedPendulum(9.81, friction)
     reference, energy = model.reference(2.0, 0.0), model.energy()
@@ -28,7 +28,7 @@ def log_energy_error(method: Method, friction: float, h: float, time: float = 60
 
 
 @each_method
-def test_the_error_falls_with_the_claimed_power_of_h(method: Method) -> None:
+def test_the_error_falls_with_the_claimed_power_of_h(method):
     model, steps = (
         DampedPendulum(9.81, 0.5),
         {1: (4000, 5600, 8000), 2: (200, 280, 400), 4: (100, 140, 200)}[method.order],
@@ -42,7 +42,7 @@ def test_the_error_falls_with_the_claimed_power_of_h(method: Method) -> None:
     assert slope == pytest.approx(method.order, abs=0.05 if method.order == 2 else 0.2)
 
 
-def test_taking_friction_from_the_omega_before_costs_verlet_an_order() -> None:
+def test_taking_friction_from_the_omega_before_costs_verlet_an_order():
     errors = [
         log_energy_error(method, 0.2, h)
         for method in (LAGGED_VERLET, CONFORMAL_VERLET)
@@ -54,7 +54,7 @@ def test_taking_friction_from_the_omega_before_costs_verlet_an_order() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2])
-def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction: float) -> None:
+def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction):
     model = DampedPendulum(9.81, friction)
     for share, gains in ((0.95, False), (1.05, True)):
         h = share * friction / 9.81
@@ -64,24 +64,17 @@ def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction: flo
 
 @pytest.mark.parametrize(
     ("method", "off"),
-    [
-        (CONFORMAL_VERLET, 0.0),
-        (RK4, 5e-8),
-        (LAGGED_VERLET, -2.5e-5),
-        (EXPLICIT_EULER, 1.3e-2),
-    ],
+    [(CONFORMAL_VERLET, 0.0), (RK4, 5e-8), (LAGGED_VERLET, -2.5e-5), (EXPLICIT_EULER, 1.3e-2)],
     ids=lambda value: getattr(value, "key", ""),
 )
-def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(
-    method: Method, off: float
-) -> None:
+def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method, off):
     h, friction = 0.05, 0.2
     determinant = jacobian(method, DampedPendulum(9.81, friction), 1.0, 1.0, h).determinant
     assert determinant / math.exp(-friction * h) - 1 == pytest.approx(off, rel=0.1, abs=1e-14)
 
 
 @each_method
-def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
+def test_a_step_evaluates_the_force_as_often_as_claimed(method):
     for steps in (1, 2, 10):
         assert count_evaluations(
             method, DampedPendulum(9.81, 0.1), (1.0, 0.5), 0.05, steps
@@ -89,13 +82,13 @@ def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
 
 
 @each_method
-def test_however_a_run_is_cut_the_bits_are_the_same(method: Method) -> None:
+def test_however_a_run_is_cut_the_bits_are_the_same(method):
     travel = PlainLoops(method, DampedPendulum(9.81, 0.1)).travel
     assert travel(travel((1.0, 0.5), 0.05, 3), 0.05, 4) == travel((1.0, 0.5), 0.05, 7)
 
 
-def test_conformal_verlet_is_cheapest_at_one_percent_and_rk4_from_a_thousandth_on() -> None:
-    def error(method: Method, evaluations: int) -> float:
+def test_conformal_verlet_is_cheapest_at_one_percent_and_rk4_from_a_thousandth_on():
+    def error(method, evaluations):
         return log_energy_error(method, 0.05, 60 * method.force_evaluations / evaluations)
 
     assert error(CONFORMAL_VERLET, 1440) < 1e-2 < error(RK4, 1440)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import RK4, Method
+from engine.methods import RK4
 from engine.methods.learned import (
     FAMILY,
     LEARNED_MAP,
@@ -20,7 +20,6 @@ from engine.methods.learned import (
 )
 from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
 from engine.methods.runge_kutta import rk4_on_rates
-from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 from tests.bench import learn
@@ -31,7 +30,7 @@ STARTS = (0.5, 1.0, 1.5, 2.0)
 each_way = pytest.mark.parametrize("method", FAMILY, ids=lambda m: m.key)
 
 
-def learned_energy(theta: float, omega: float) -> float:
+def learned_energy(theta, omega):
     """The learned Hamiltonian [s⁻²], up to a constant."""
     rows = [
         tuple(map(float, row.split(",")))
@@ -45,7 +44,7 @@ def learned_energy(theta: float, omega: float) -> float:
 
 
 @pytest.mark.slow
-def test_the_numbers_are_those_that_the_script_learns() -> None:
+def test_the_numbers_are_those_that_the_script_learns():
     """But for the last digits, which depend on the library behind NumPy."""
     weights, biases, theta, omega, energy = learn.learned(learn.SEED)
     found = (np.column_stack((weights, biases)), np.column_stack((theta, omega)), energy[:, None])
@@ -57,7 +56,7 @@ def test_the_numbers_are_those_that_the_script_learns() -> None:
         assert stored == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
 
 
-def test_both_fields_are_about_as_far_from_the_true_one() -> None:
+def test_both_fields_are_about_as_far_from_the_true_one():
     states, rates = learn.measurements(np.random.default_rng(7), 500, 0.0)
     w0 = math.sqrt(W0_SQUARED)
     for field in (learned_field(W0_SQUARED), learned_hamiltonian(W0_SQUARED)):
@@ -66,7 +65,7 @@ def test_both_fields_are_about_as_far_from_the_true_one() -> None:
         assert 0.005 < error < 0.008  # .0064 and .0062, of measurements with 2 % noise
 
 
-def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
+def largest_energy_errors(method, start):
     """The largest relative errors of the true energy in 50 s and in 100 s, w0 h being 0.1."""
     energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
     _, phase, _, low, high = advance((start, 0.0), 0.032, 1562, math.inf)
@@ -80,9 +79,7 @@ def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
     ("keeps", "plain"),
     [(RK4_LEARNED_HAMILTONIAN, RK4_LEARNED_FIELD), (LEARNED_SYMPLECTIC_MAP, LEARNED_MAP)],
 )
-def test_the_energy_error_is_bounded_where_structure_is_kept_and_else_grows(
-    start: float, keeps: Method, plain: Method
-) -> None:
+def test_the_energy_error_is_bounded_where_structure_is_kept_and_else_grows(start, keeps, plain):
     early, late = largest_energy_errors(keeps, start)
     assert late == pytest.approx(early, rel=0.005)
     assert late < 0.044
@@ -91,10 +88,8 @@ def test_the_energy_error_is_bounded_where_structure_is_kept_and_else_grows(
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0), (1.0, 1.0), (-2.0, 1.0), (0.5, -3.0)])
-def test_the_symplectic_map_keeps_area_and_the_plain_one_does_not(
-    start: tuple[float, float],
-) -> None:
-    def determinant(method: Method) -> float:
+def test_the_symplectic_map_keeps_area_and_the_plain_one_does_not(start):
+    def determinant(method):
         columns = []
         for along in ((1e-5, 0.0), (0.0, 1e-5)):
             ends = [
@@ -117,13 +112,13 @@ def test_the_symplectic_map_keeps_area_and_the_plain_one_does_not(
         (2.0, (0.15, 0.0033, 0.17, 0.0032)),
     ],
 )
-def test_the_cards_figures_belong_to_their_starts(start: float, errors: tuple[float, ...]) -> None:
+def test_the_cards_figures_belong_to_their_starts(start, errors):
     for method, error in zip(FAMILY, errors, strict=True):
         assert largest_energy_errors(method, start)[1] == pytest.approx(error, rel=0.1)
 
 
 @each_way
-def test_what_was_learned_holds_for_any_length_and_gravity(method: Method) -> None:
+def test_what_was_learned_holds_for_any_length_and_gravity(method):
     """In units of w0 the motion is the same: here on the Moon."""
     moon = Pendulum(1.62)
     share = PENDULUM.w0 / moon.w0
@@ -133,7 +128,7 @@ def test_what_was_learned_holds_for_any_length_and_gravity(method: Method) -> No
 
 
 @pytest.mark.parametrize("start", STARTS[::3])
-def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> None:
+def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start):
     before = learned_energy(start, 0.0) - learned_energy(0.0, 0.0)
     theta, omega = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).travel((start, 0.0), 0.02, 5000)
     after = learned_energy(theta, omega) - learned_energy(0.0, 0.0)
@@ -141,7 +136,7 @@ def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> 
 
 
 @given(theta=st.floats(-2.4, 2.4), omega=st.floats(-5, 5))
-def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta: float, omega: float) -> None:
+def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta, omega):
     drift, kick = learned_hamiltonian(W0_SQUARED)((theta, omega))
     d = 1e-5
     assert drift == pytest.approx(
@@ -153,8 +148,8 @@ def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta: float, omeg
 
 
 @each_way
-def test_it_has_the_claimed_order_on_the_learned_field(method: Method) -> None:
-    def end(n: int) -> float:
+def test_it_has_the_claimed_order_on_the_learned_field(method):
+    def end(n):
         theta, _ = next(islice(method.on(PENDULUM)((1.0, 0.0), 2.0 / n), n - 1, None))
         return float(theta)
 
@@ -163,10 +158,10 @@ def test_it_has_the_claimed_order_on_the_learned_field(method: Method) -> None:
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.2)
 
 
-def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4() -> None:
+def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4():
     count, force = 0, PENDULUM.force()
 
-    def rates(phase: Phase) -> Phase:
+    def rates(phase):
         nonlocal count
         count += 1
         return phase[1], force(phase[0])

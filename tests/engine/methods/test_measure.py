@@ -1,16 +1,12 @@
 """The measured properties of methods that are not in METHODS; test_claims has those that are."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from engine.methods import measure
-from engine.methods.method import Phases
-from engine.models.model import Force, Phase
 
 
-def composition(*weights: float) -> Phases:
-    def composed(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+def composition(*weights):
+    def composed(force, phase, h):
         theta, omega = phase
         while True:
             for weight in weights:
@@ -22,14 +18,14 @@ def composition(*weights: float) -> Phases:
     return composed
 
 
-def test_three_steps_of_a_third_are_stable_three_times_as_far() -> None:
+def test_three_steps_of_a_third_are_stable_three_times_as_far():
     assert measure.linear_limit(composition(1 / 3, 1 / 3, 1 / 3)) == pytest.approx(
         6, abs=1e-5
     )  # where rounding turns
 
 
-def test_a_method_that_does_not_follow_the_pendulum_has_no_order() -> None:
-    def upwards(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+def test_a_method_that_does_not_follow_the_pendulum_has_no_order():
+    def upwards(force, phase, h):
         theta, omega = phase
         while True:
             theta, omega = theta + h * omega, omega - h * force(theta)

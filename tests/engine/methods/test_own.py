@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.methods import VELOCITY_VERLET
 from engine.methods.examine import load
-from engine.methods.own import LONGEST_SOURCE, OwnMethod, OwnMethodError
+from engine.methods.own import LONGEST_SOURCE, OwnMethodError
 from engine.models.pendulum import Pendulum
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
@@ -35,9 +35,7 @@ def mine(force, phase, h):
 EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
 
 
-def euler(
-    step: str = "", before: str = "pass", yields: str = "theta, omega", above: str = "pass"
-) -> str:
+def euler(step="", before="pass", yields="theta, omega", above="pass"):
     """Explicit Euler's text with something more in it; the line `step` is the seventh."""
     return f"""{above}
 def mine(force, phase, h):
@@ -50,11 +48,11 @@ def mine(force, phase, h):
 """
 
 
-def loaded(source: str, key: str = "mine") -> OwnMethod:
+def loaded(source, key="mine"):
     return load(source, key, "m", "mine.py")
 
 
-def refusal(source: str, key: str = "mine") -> str:
+def refusal(source, key="mine"):
     with pytest.raises(OwnMethodError) as refused:
         loaded(source, key)
     text = str(refused.value)
@@ -64,7 +62,7 @@ def refusal(source: str, key: str = "mine") -> str:
     return text
 
 
-def test_verlet_written_again_is_measured_to_be_verlet() -> None:
+def test_verlet_written_again_is_measured_to_be_verlet():
     mine, verlet = loaded(VERLET), VELOCITY_VERLET
     assert mine.order == 2
     assert mine.measured.order == pytest.approx(2, abs=0.01)
@@ -75,7 +73,7 @@ def test_verlet_written_again_is_measured_to_be_verlet() -> None:
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
 
 
-def test_its_steps_have_the_bits_of_the_same_method_here() -> None:
+def test_its_steps_have_the_bits_of_the_same_method_here():
     lockstep = Lockstep(DEFAULT_SCENE.with_cast((loaded(VERLET), VELOCITY_VERLET)))
     for _ in range(20):
         lockstep.advance(37)
@@ -83,18 +81,18 @@ def test_its_steps_have_the_bits_of_the_same_method_here() -> None:
         assert mine == verlet
 
 
-def test_it_keeps_its_text_and_the_hash_of_it() -> None:
+def test_it_keeps_its_text_and_the_hash_of_it():
     mine = loaded(VERLET)
     assert mine.source == VERLET
     assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
 
 
-def test_a_pickle_of_it_is_the_same_method_in_this_process() -> None:
+def test_a_pickle_of_it_is_the_same_method_in_this_process():
     mine = loaded(VERLET)
     assert pickle.loads(pickle.dumps(mine)) is mine
 
 
-def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there() -> None:
+def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there():
     grid = Grid(np.array([0.5, 2.0]), np.array([0.3, 1.9]), 50, (loaded(VERLET), VELOCITY_VERLET))
     with ProcessPoolExecutor(1, get_context("spawn")) as executor:
         cells = np.concatenate(list(executor.map(Grid.cells, grid.strips())))
@@ -102,7 +100,7 @@ def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there() 
     assert (cells == grid.cells()).all()
 
 
-def test_it_is_never_compiled_for_it_may_hold_anything() -> None:
+def test_it_is_never_compiled_for_it_may_hold_anything():
     pytest.importorskip("numba")
     mine, model = loaded(VERLET), Pendulum(9.81)
     assert isinstance(compiled(mine, model), PlainLoops)
@@ -163,25 +161,23 @@ WRONG = {
 
 
 @pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_method_gets_one_sentence_that_says_where(wrong: str) -> None:
+def test_a_wrong_method_gets_one_sentence_that_says_where(wrong):
     source, said = WRONG[wrong]
     assert said in refusal(source)
 
 
 @given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
-def test_whatever_the_text_is_there_is_a_sentence(text: str, around: str) -> None:
+def test_whatever_the_text_is_there_is_a_sentence(text, around):
     assert refusal(around.replace("{}", text)).isprintable()
 
 
-def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short() -> None:
+def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short():
     shown = "class Odd:\n    def __repr__(self): raise ValueError\n"
     assert "yields a Odd;" in refusal(shown + euler(yields="Odd()"))
     assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n')"))) < 400
 
 
-def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(capsys):
     assert (
         loaded(euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")).order
         == 1
@@ -189,7 +185,7 @@ def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(
     assert "here" in capsys.readouterr().err
 
 
-def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line() -> None:
+def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line():
     late = loaded(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
     with pytest.raises(
         OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple index out of range\.$"
@@ -197,7 +193,7 @@ def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line() -> No
         Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,))).advance(30_000)
 
 
-def test_where_its_numbers_end_it_has_diverged_as_any_method_does() -> None:
+def test_where_its_numbers_end_it_has_diverged_as_any_method_does():
     scene = SCENES["linear"].with_cast((loaded(euler()),))
     lockstep = Lockstep(scene)
     lockstep.advance(10_000)

@@ -1,14 +1,12 @@
 """Splittings: the coefficients that a step really takes, the conditions of their order, and what their cards say."""
 
 import math
-from collections.abc import Iterator
 from functools import cache
 from itertools import islice, pairwise
 
 import pytest
 
-from engine.methods import METHODS, VELOCITY_VERLET, Method
-from engine.methods.method import Phases
+from engine.methods import METHODS, VELOCITY_VERLET
 from engine.methods.splitting import (
     BLANES_MOAN_4,
     BLANES_MOAN_6,
@@ -17,7 +15,6 @@ from engine.methods.splitting import (
     composition,
     splitting,
 )
-from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
@@ -29,12 +26,12 @@ each_splitting = pytest.mark.parametrize(
 Tree = tuple[int, tuple["Tree", ...]]  # powers of the node's time, and the trees that hang from it
 
 
-def nodes_and_weights(method: Method) -> tuple[list[float], list[float]]:
+def nodes_and_weights(method):
     """When, as a fraction of the step, a method takes its forces, and how much of each goes into omega."""
     nodes: list[float] = []
     method.step(lambda theta: nodes.append(theta) or 0.0, (0.0, 1.0), 1.0)
 
-    def kicked(which: int) -> float:
+    def kicked(which):
         forces = iter(float(which == n) for n in range(len(nodes)))
         return float(method.step(lambda theta: next(forces), (0.0, 0.0), 1.0)[1])
 
@@ -42,10 +39,10 @@ def nodes_and_weights(method: Method) -> tuple[list[float], list[float]]:
 
 
 @cache
-def trees(degree: int) -> tuple[Tree, ...]:
+def trees(degree):
     """The special Nyström trees of a degree: each hanging tree counts two more than its own."""
 
-    def hung(left: int, largest: int) -> Iterator[tuple[Tree, ...]]:
+    def hung(left, largest):
         yield ()
         for size in range(min(left - 2, largest), -1, -1):
             for tree in trees(size):
@@ -60,22 +57,22 @@ def trees(degree: int) -> tuple[Tree, ...]:
     return tuple(sorted(found, key=repr))
 
 
-def degree_of(tree: Tree) -> int:
+def degree_of(tree):
     return tree[0] + sum(degree_of(hanging) + 2 for hanging in tree[1])
 
 
-def exact_coefficient(tree: Tree) -> float:
+def exact_coefficient(tree):
     sizes = [(degree_of(hanging), hanging) for hanging in tree[1]]
     return math.prod(
         exact_coefficient(hanging) / ((size + 1) * (size + 2)) for size, hanging in sizes
     )
 
 
-def residuals(method: Method, order: int) -> list[float]:
+def residuals(method, order):
     """By how much each condition of just this order is missed.  Hairer, Lubich & Wanner (2006), III.2 and II.2.3."""
     c, b = nodes_and_weights(method)
 
-    def at(tree: Tree) -> list[float]:
+    def at(tree):
         inner = [at(hanging) for hanging in tree[1]]
         return [
             c[i] ** tree[0]
@@ -83,7 +80,7 @@ def residuals(method: Method, order: int) -> list[float]:
             for i in range(len(c))
         ]
 
-    def missed(tree: Tree, weights: list[float], exact: float) -> float:
+    def missed(tree, weights, exact):
         return abs(math.fsum(w * phi for w, phi in zip(weights, at(tree), strict=True)) - exact)
 
     d = order - 1
@@ -97,7 +94,7 @@ def residuals(method: Method, order: int) -> list[float]:
     return velocity + position
 
 
-def test_there_are_as_many_conditions_as_there_are_trees() -> None:
+def test_there_are_as_many_conditions_as_there_are_trees():
     counts = [
         sum(len(residuals(VELOCITY_VERLET, order)) for order in range(1, last + 1))
         for last in (4, 6, 8)
@@ -106,16 +103,14 @@ def test_there_are_as_many_conditions_as_there_are_trees() -> None:
 
 
 @each_splitting
-def test_the_conditions_of_the_claimed_order_hold_and_those_of_the_next_do_not(
-    method: Method,
-) -> None:
+def test_the_conditions_of_the_claimed_order_hold_and_those_of_the_next_do_not(method):
     for order in range(1, method.order + 1):
         assert max(residuals(method, order)) < 1e-14  # doubles; measured up to 4e-16
     assert max(residuals(method, method.order + 1)) > 1e-6  # the smallest is BM6's, 5e-6
 
 
 @each_splitting
-def test_kicks_and_drifts_add_up_to_the_step_and_are_the_same_backwards(method: Method) -> None:
+def test_kicks_and_drifts_add_up_to_the_step_and_are_the_same_backwards(method):
     nodes, kicks = nodes_and_weights(method)
     drifts = [after - before for before, after in pairwise(nodes)]
     for parts in (kicks, drifts):
@@ -123,7 +118,7 @@ def test_kicks_and_drifts_add_up_to_the_step_and_are_the_same_backwards(method: 
         assert parts == pytest.approx(parts[::-1], abs=4e-16)
 
 
-def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit() -> None:
+def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit():
     model = Pendulum(9.81)
     for phases in (splitting((0.5, 0.5), (1.0,)), composition(1.0)):
         ours = islice(phases(model.force(), (2.0, 0.3), 0.05), 1000)
@@ -131,7 +126,7 @@ def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit() -> None:
         assert list(ours) == list(verlets)
 
 
-def test_a_composition_takes_verlet_steps_of_the_given_sizes() -> None:
+def test_a_composition_takes_verlet_steps_of_the_given_sizes():
     force, phase = Pendulum(9.81).force(), (2.0, 0.3)
     composed = next(composition(0.3, -0.1, 0.8)(force, phase, 0.05))
     for weight in (0.3, -0.1, 0.8):
@@ -140,7 +135,7 @@ def test_a_composition_takes_verlet_steps_of_the_given_sizes() -> None:
 
 
 @cache
-def largest_energy_error(method: Method, h: float, time: float = 60.0) -> float:
+def largest_energy_error(method, h, time=60.0):
     model = Pendulum(9.81)
     start: float = model.energy()((1.0, 0.0))
     _, _, _, low, high = PlainLoops(method, model).advance((1.0, 0.0), h, round(time / h), math.inf)
@@ -157,9 +152,7 @@ def largest_energy_error(method: Method, h: float, time: float = 60.0) -> float:
     ],
     ids=lambda value: getattr(value, "key", ""),
 )
-def test_energy_errors_are_the_measured_ones(
-    method: Method, at_one_step: float, at_one_cost: float, at_a_quarter: float
-) -> None:
+def test_energy_errors_are_the_measured_ones(method, at_one_step, at_one_cost, at_a_quarter):
     """At h = 0.05 s, and at 20 and 80 force evaluations a second."""
     assert largest_energy_error(method, 0.05) == pytest.approx(at_one_step, rel=0.2)
     for seconds, expected in ((0.05, at_one_cost), (0.0125, at_a_quarter)):
@@ -168,7 +161,7 @@ def test_energy_errors_are_the_measured_ones(
         )
 
 
-def test_forest_ruth_has_the_weaknesses_on_its_card() -> None:
+def test_forest_ruth_has_the_weaknesses_on_its_card():
     assert FOREST_RUTH.linear_limit == min(
         method.linear_limit for method in METHODS if method.linear_limit
     )
@@ -181,13 +174,13 @@ def test_forest_ruth_has_the_weaknesses_on_its_card() -> None:
 
 
 @each_splitting
-def test_its_energy_does_not_drift(method: Method) -> None:
+def test_its_energy_does_not_drift(method):
     h = method.linear_limit / 4 / math.sqrt(9.81)
     early, late = (largest_energy_error(method, h, steps * h) for steps in (5_000, 50_000))
     assert late == pytest.approx(early, rel=0.01)
 
 
-def position_extended(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+def position_extended(force, phase, h):
     """PEFRL.  Omelyan, Mryglod & Folk, Comput. Phys. Commun. 146 (2002) 188."""
     xi, lam, chi = 0.17861789584480907, -0.21234183106260540, -0.066264582669818496
     theta, omega = phase
@@ -201,7 +194,7 @@ def position_extended(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         yield theta, omega
 
 
-def composed(*half: float) -> tuple[int, Phases]:
+def composed(*half):
     weights = (*half, *half[-2::-1])
     return len(weights), composition(*weights)
 
@@ -229,7 +222,7 @@ LARGE = Scene(theta=2.0)
 EXACT = [LARGE.exact().at(t + 1.0).theta for t in range(100)]
 
 
-def reaches(name: str, target: float, cost: int) -> bool:
+def reaches(name, target, cost):
     """Whether so many evaluations follow a swing from 2 rad for 100 s, compared at 100 times."""
     evaluations, phases = (HERE | LEFT_OUT)[name]
     every = cost // evaluations // 100
@@ -250,13 +243,13 @@ def reaches(name: str, target: float, cost: int) -> bool:
         ("Kahan-Li 8", 1e-9, 30_600),
     ],
 )
-def test_accuracy_costs_as_much_as_the_cards_say(name: str, target: float, cost: int) -> None:
+def test_accuracy_costs_as_much_as_the_cards_say(name, target, cost):
     assert reaches(name, target, cost)
     assert not reaches(name, target, round(0.93 * cost))
 
 
 @pytest.mark.parametrize(("target", "cost"), [(1e-3, 4000), (1e-6, 13_600), (1e-9, 30_600)])
-def test_those_left_out_are_beaten_at_every_accuracy(target: float, cost: int) -> None:
+def test_those_left_out_are_beaten_at_every_accuracy(target, cost):
     """No size of their steps reaches it at a smaller cost; one of them does at this one."""
     assert any(reaches(name, target, cost) for name in LEFT_OUT)
     for name, (evaluations, _) in LEFT_OUT.items():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import RK4, VELOCITY_VERLET, Method
+from engine.methods import RK4, VELOCITY_VERLET
 from engine.methods.implicit import IMPLICIT_MIDPOINT
 from engine.methods.stiff import IMEX_EULER, RESPA, respa
 from engine.methods.verlet import POSITION_VERLET, velocity_verlet
@@ -21,9 +21,7 @@ START = SPRING.start(1.0, 0.0)
 @pytest.mark.parametrize(
     ("method", "holds", "fails"), [(VELOCITY_VERLET, 1.95, 2.05), (RK4, 2.80, 2.85)]
 )
-def test_verlet_and_rk4_fail_at_their_linear_limits(
-    method: Method, holds: float, fails: float, stiffness: float
-) -> None:
+def test_verlet_and_rk4_fail_at_their_linear_limits(method, holds, fails, stiffness):
     model = Spring(9.81, stiffness)
     reference = model.reference(1.0, 0.0)
     for z, kept in ((holds, True), (fails, False)):
@@ -35,8 +33,8 @@ def test_verlet_and_rk4_fail_at_their_linear_limits(
         assert (done == round(30 / h) and error < 1) == kept
 
 
-def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_one() -> None:
-    def largest_error(h: float) -> float:
+def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_one():
+    def largest_error(h):
         done, _, _, low, high = PlainLoops(RESPA, SPRING).advance(START, h, round(30 / h), 1e300)
         return (
             max(map(abs, map(SPRING.reference(1.0, 0.0).error, (low, high)))) if done else math.inf
@@ -46,7 +44,7 @@ def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_on
     assert errors[0.5] < errors[0.618] < 1 < 10 < errors[0.99]
 
 
-def test_respa_with_one_inner_step_is_verlet_but_for_rounding() -> None:
+def test_respa_with_one_inner_step_is_verlet_but_for_rounding():
     one = respa(velocity_verlet, 1)
     phase = START
     for _ in range(500):
@@ -56,7 +54,7 @@ def test_respa_with_one_inner_step_is_verlet_but_for_rounding() -> None:
     assert phase != expected
 
 
-def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well() -> None:
+def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well():
     stiff = Spring(9.81, 1e14)
     done, (z, w), *_ = PlainLoops(IMEX_EULER, stiff).advance(
         stiff.start(1.0, 0.0), 0.02, 1500, 100.0
@@ -75,7 +73,7 @@ def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_we
 
 
 @pytest.mark.parametrize("method", [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER], ids=lambda m: m.key)
-def test_on_a_softer_spring_it_has_the_claimed_order(method: Method) -> None:
+def test_on_a_softer_spring_it_has_the_claimed_order(method):
     """IMEX Euler on the stiff one has it only where h is far below what anybody would take."""
     exact, errors = SOFT.place(1.0, 0.0, 0.5), []
     steps = (8000, 11_300, 16_000) if method.order == 1 else (200, 283, 400)
@@ -85,7 +83,7 @@ def test_on_a_softer_spring_it_has_the_claimed_order(method: Method) -> None:
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.1)
 
 
-def determinant(method: Method) -> float:
+def determinant(method):
     """Of the derivative of a step in the plane, by central differences: four numbers, so no complex step."""
     z, w = 0.8 - 0.6j, 1.0 + 0.5j
     columns = []
@@ -103,7 +101,7 @@ def determinant(method: Method) -> float:
     [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER, VELOCITY_VERLET, POSITION_VERLET],
     ids=lambda m: m.key,
 )
-def test_volume_is_kept_and_time_turned_back_where_claimed(method: Method) -> None:
+def test_volume_is_kept_and_time_turned_back_where_claimed(method):
     assert (abs(determinant(method) - 1) < 1e-6) == method.symplectic
     travel = PlainLoops(method, SPRING).travel
     z, w = travel(START, 0.02, 50)
@@ -112,7 +110,7 @@ def test_volume_is_kept_and_time_turned_back_where_claimed(method: Method) -> No
 
 
 @pytest.mark.parametrize("method", [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER], ids=lambda m: m.key)
-def test_a_step_asks_for_the_fast_force_as_often_as_claimed(method: Method) -> None:
+def test_a_step_asks_for_the_fast_force_as_often_as_claimed(method):
     for steps in (1, 2, 5):
         claimed = steps if method is IMPLICIT_MIDPOINT else method.evaluations(steps)
         assert count_evaluations(method, SPRING, START, 0.02, steps) == claimed

@@ -77,7 +77,7 @@ def pendu(tmp_path_factory):
         'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n', "utf-8"
     )
 
-    def run(*arguments: str) -> str:
+    def run(*arguments):
         environment = os.environ | {
             "PYTHONPATH": str(copy),
             "PENDU_RECORDINGS": str(copy / "recordings-made"),

@@ -16,7 +16,7 @@ TIMES = [0.37 * n for n in range(163)]  # a minute
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 1.0, 20.0])
-def test_the_reference_is_as_accurate_as_it_says(friction: float) -> None:
+def test_the_reference_is_as_accurate_as_it_says(friction):
     model = DampedPendulum(9.81, friction)
     exact = model.exact(2.0, 0.0)
     assert exact.accuracy == ACCURACY
@@ -27,7 +27,7 @@ def test_the_reference_is_as_accurate_as_it_says(friction: float) -> None:
     assert max(abs(exact.at(t).theta - finer.at(t)[0]) for t in TIMES) < ACCURACY / 2
 
 
-def test_without_friction_the_reference_is_the_closed_form() -> None:
+def test_without_friction_the_reference_is_the_closed_form():
     model, exact = Pendulum(9.81), exact_pendulum(9.81, 2.0, 0.0)
     reference = Reference(compose_verlet(model.force()), (2.0, 0.0), STEP / model.w0)
     assert max(abs(exact.at(t).theta - reference.at(t)[0]) for t in TIMES) < ACCURACY
@@ -35,7 +35,7 @@ def test_without_friction_the_reference_is_the_closed_form() -> None:
 
 @settings(max_examples=20)
 @given(times=st.lists(st.floats(-20, 60), min_size=1, max_size=12))
-def test_it_does_not_matter_which_times_are_asked_for_first(times: list[float]) -> None:
+def test_it_does_not_matter_which_times_are_asked_for_first(times):
     model = DampedPendulum(9.81, 0.1)
     one = Reference(compose_verlet(model.force(), 0.1), (2.0, 0.0), 0.016)
     for t in times:
@@ -44,7 +44,7 @@ def test_it_does_not_matter_which_times_are_asked_for_first(times: list[float]) 
 
 
 @given(t=st.floats(0, 40))
-def test_it_loses_energy_by_gamma_omega_squared(t: float) -> None:
+def test_it_loses_energy_by_gamma_omega_squared(t):
     model = DampedPendulum(9.81, 0.2)
     true, exact = model.reference(2.0, 0.0).true, model.exact(2.0, 0.0)
     assert true is not None
@@ -54,7 +54,7 @@ def test_it_loses_energy_by_gamma_omega_squared(t: float) -> None:
     )  # the third derivative, times 1e-9
 
 
-def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one() -> None:
+def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     reference = DampedPendulum(9.81, 0.2).reference(2.0, 0.0)
     assert reference.true is not None
     assert reference.error(reference.true(30.0) * math.e, 30.0) == pytest.approx(1)
@@ -63,19 +63,19 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one() -> None:
     )
 
 
-def test_it_swings_when_it_cannot_go_over_the_top_turns_when_it_may_and_has_no_period() -> None:
+def test_it_swings_when_it_cannot_go_over_the_top_turns_when_it_may_and_has_no_period():
     model = DampedPendulum(9.81, 0.05)
     regimes = {start: model.exact(*start) for start in ((2.0, 0.0), (0.0, 8.0), (0.0, 0.0))}
     assert [exact.regime for exact in regimes.values()] == ["libration", "rotation", "equilibrium"]
     assert {exact.period for exact in regimes.values()} == {None}
 
 
-def test_far_back_in_time_where_it_was_infinitely_fast_there_are_still_numbers() -> None:
+def test_far_back_in_time_where_it_was_infinitely_fast_there_are_still_numbers():
     reference = DampedPendulum(9.81, 20.0).reference(2.0, 0.0)
     assert math.isfinite(reference.error(10.0, -1000.0))
 
 
-def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
+def test_friction_is_for_the_model_that_has_it_and_within_limits():
     with pytest.raises(SceneError, match=r"^the model pendulum has no friction; "):
         Scene(parameters={"friction": 0.1})
     with pytest.raises(
@@ -89,7 +89,7 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
     assert "stiffness" not in scene.fields()
 
 
-def test_friction_far_above_w0_is_refused_with_what_is_not() -> None:
+def test_friction_far_above_w0_is_refused_with_what_is_not():
     with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
         Scene(
             model="damped",

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, RK4, method_of
 from engine.models.mean_field import ACCURACY, STEP, MeanField, strang
-from engine.models.model import Phase
 from engine.models.reference import Reference, compose
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES
@@ -34,7 +33,7 @@ def slope_of_field(theta):
 
 
 @given(phase=phases)
-def test_the_rates_are_the_equations_of_motion(phase: Phase) -> None:
+def test_the_rates_are_the_equations_of_motion(phase):
     theta, omega, *bloch = phase
     expected = [
         omega,
@@ -45,7 +44,7 @@ def test_the_rates_are_the_equations_of_motion(phase: Phase) -> None:
 
 
 @given(phase=phases)
-def test_energy_and_probability_do_not_change_along_the_rates(phase: Phase) -> None:
+def test_energy_and_probability_do_not_change_along_the_rates(phase):
     rates = MODEL.rates()(phase)
     theta, omega, *bloch = phase
     change_of_energy = (
@@ -58,7 +57,7 @@ def test_energy_and_probability_do_not_change_along_the_rates(phase: Phase) -> N
 
 
 @given(phase=phases)
-def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase: Phase) -> None:
+def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase):
     theta, omega, *bloch = phase
     expected = omega**2 / 2 + 9.81 * (1 - math.cos(theta)) + 2.0 * field(theta) @ bloch
     assert MODEL.energy()(phase) == pytest.approx(expected, abs=1e-13)
@@ -66,7 +65,7 @@ def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase: Ph
 
 @settings(max_examples=5)
 @given(phase=phases, h=st.floats(-0.5, 0.5))
-def test_a_kick_is_the_exact_flow_at_fixed_theta(phase: Phase, h: float) -> None:
+def test_a_kick_is_the_exact_flow_at_fixed_theta(phase, h):
     theta, omega, *bloch = phase
     b = mp.matrix(field(theta))
     slope = mp.matrix(slope_of_field(theta))
@@ -84,12 +83,12 @@ def test_a_kick_is_the_exact_flow_at_fixed_theta(phase: Phase, h: float) -> None
     assert MODEL.kick(phase, h) == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_reading_holds_the_whole_phase() -> None:
+def test_a_reading_holds_the_whole_phase():
     reading = MODEL.observe(START)
     assert reading.extra == {"sx": 1.0, "sy": 0.0, "sz": 0.0, "probability_error": 0.0}
 
 
-def test_the_reference_is_as_accurate_as_it_claims_and_keeps_both_invariants() -> None:
+def test_the_reference_is_as_accurate_as_it_claims_and_keeps_both_invariants():
     exact = MODEL.exact(1.0, 0.0)
     finer = Reference(compose(lambda phase, h: strang(MODEL, phase, h)), START, STEP / 4 / 20)
     energy = MODEL.energy()
@@ -104,16 +103,14 @@ def test_the_reference_is_as_accurate_as_it_claims_and_keeps_both_invariants() -
     ("h", "frequency", "energy_error", "probability"),
     [(0.05, 20.0, 4.3e-4, 0.852), (0.05, 10.0, 4.3e-4, 0.975), (0.01, 20.0, 1.9e-6, 0.9993)],
 )
-def test_rk4_keeps_the_energy_and_loses_the_probability(
-    h: float, frequency: float, energy_error: float, probability: float
-) -> None:
+def test_rk4_keeps_the_energy_and_loses_the_probability(h, frequency, energy_error, probability):
     model = MeanField(9.81, 2.0, frequency)
     largest, left = run(RK4, model, h)
     assert largest == pytest.approx(energy_error, rel=0.03)
     assert left == pytest.approx(probability, abs=5e-4)
 
 
-def test_the_splitting_keeps_the_probability_to_rounding_and_explicit_euler_nothing() -> None:
+def test_the_splitting_keeps_the_probability_to_rounding_and_explicit_euler_nothing():
     largest, left = run(SPLITTING, MODEL, 0.05)
     assert largest == pytest.approx(6.9e-3, rel=0.03)
     assert left == pytest.approx(1.0, abs=1e-13)
@@ -121,7 +118,7 @@ def test_the_splitting_keeps_the_probability_to_rounding_and_explicit_euler_noth
     assert left > 1e12
 
 
-def run(method, model: MeanField, h: float, time: float = 60.0) -> tuple[float, float]:
+def run(method, model, h, time=60.0):
     """Return the largest relative energy error of all steps, and the probability at the end."""
     energy = model.energy()
     start = energy(START)
@@ -132,7 +129,7 @@ def run(method, model: MeanField, h: float, time: float = 60.0) -> tuple[float, 
 
 
 @pytest.mark.parametrize("method", [EXPLICIT_EULER, RK4, SPLITTING], ids=lambda method: method.key)
-def test_each_method_has_its_order_in_theta_and_in_the_bloch_vector(method) -> None:
+def test_each_method_has_its_order_in_theta_and_in_the_bloch_vector(method):
     exact = _exact_phase(1.0)
     errors = []
     for steps in (400, 800) if method.order > 1 else (40_000, 80_000):
@@ -143,15 +140,15 @@ def test_each_method_has_its_order_in_theta_and_in_the_bloch_vector(method) -> N
         assert order == pytest.approx(method.order, abs=0.15)
 
 
-def _exact_phase(t: float) -> np.ndarray:
+def _exact_phase(t):
     step = compose(lambda phase, h: strang(MODEL, phase, h))
     return np.array(Reference(step, START, STEP / 8 / 20).at(t))
 
 
 @given(phase=phases, h=st.floats(0.01, 0.5))
-def test_the_splitting_is_reversible(phase: Phase, h: float) -> None:
+def test_the_splitting_is_reversible(phase, h):
     # turning time round turns omega and the part of s across the field's plane
-    def turned_round(phase: Phase) -> Phase:
+    def turned_round(phase):
         theta, omega, sx, sy, sz = phase
         return theta, -omega, sx, -sy, sz
 
@@ -161,7 +158,7 @@ def test_the_splitting_is_reversible(phase: Phase, h: float) -> None:
 
 
 @given(phase=phases, h=st.floats(0.01, 0.3))
-def test_the_splitting_keeps_the_poisson_structure(phase: Phase, h: float) -> None:
+def test_the_splitting_keeps_the_poisson_structure(phase, h):
     jacobian = np.empty((5, 5))
     nudge = 1e-6
     for column in range(5):
@@ -175,7 +172,7 @@ def test_the_splitting_keeps_the_poisson_structure(phase: Phase, h: float) -> No
     assert there == pytest.approx(structure(strang(MODEL, phase, h)), abs=1e-6)
 
 
-def structure(phase: Phase) -> np.ndarray:
+def structure(phase):
     """Return the tensor P of y' = P grad H: canonical for the pendulum, a turn about s for the levels."""
     sx, sy, sz = phase[2:]
     tensor = np.zeros((5, 5))
@@ -185,7 +182,7 @@ def structure(phase: Phase) -> np.ndarray:
     return tensor
 
 
-def test_a_lockstep_watches_the_probability_at_every_step_however_it_is_cut() -> None:
+def test_a_lockstep_watches_the_probability_at_every_step_however_it_is_cut():
     scene = SCENES["mean-field"]
     alone = Lockstep(scene)
     alone.advance(1200)

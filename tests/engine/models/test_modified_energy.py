@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from engine.methods import METHODS, Method
+from engine.methods import METHODS
 from engine.models.pendulum import Pendulum, acceleration, energy
 
 W0_SQUARED = 9.81
 
 
-def energy_range(quantity, method: Method, h: float, time: float = 20.0) -> float:
+def energy_range(quantity, method, h, time=20.0):
     force = acceleration(W0_SQUARED)
     phase = (1.0, 0.0)
     values = []
@@ -20,16 +20,16 @@ def energy_range(quantity, method: Method, h: float, time: float = 20.0) -> floa
     return max(values) - min(values)
 
 
-def shadow_of(method: Method, h: float):
+def shadow_of(method, h):
     assert method.modified_energy is not None
     return lambda theta, omega: method.modified_energy(Pendulum(W0_SQUARED), (theta, omega), h)
 
 
-def plain_energy(theta: float, omega: float) -> float:
+def plain_energy(theta, omega):
     return energy(W0_SQUARED, theta, omega)
 
 
-def order(quantity_at, method: Method) -> float:
+def order(quantity_at, method):
     coarse, fine = (energy_range(quantity_at(h), method, h) for h in (0.05, 0.025))
     return math.log2(coarse / fine)
 
@@ -50,16 +50,14 @@ def test_only_symplectic_methods_have_one():
 
 
 @with_shadow
-def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy_with_h4(
-    method: Method,
-):
+def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy_with_h4(method):
     # the sampled extremes of a wobble are a few per cent off the true ones
     assert order(lambda h: plain_energy, method) == pytest.approx(method.order, abs=0.1)
     assert order(lambda h: shadow_of(method, h), method) == pytest.approx(4, abs=0.1)
 
 
 @with_shadow
-def test_the_modified_energy_is_flat_where_the_energy_wobbles(method: Method):
+def test_the_modified_energy_is_flat_where_the_energy_wobbles(method):
     assert (
         energy_range(shadow_of(method, 0.05), method, 0.05)
         < energy_range(plain_energy, method, 0.05) / 100

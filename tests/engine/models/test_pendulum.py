@@ -18,22 +18,20 @@ from engine.scenes import Scene
 
 
 @given(theta=st.floats(-1e6, 1e6), omega=st.floats(-1e6, 1e6), w0_squared=st.floats(1e-3, 1e3))
-def test_the_energy_is_right_to_the_last_digits_everywhere(
-    theta: float, omega: float, w0_squared: float
-) -> None:
+def test_the_energy_is_right_to_the_last_digits_everywhere(theta, omega, w0_squared):
     with mp.workdps(700):  # 1 - cos theta cancels, down to the smallest square that a float holds
         expected = float(mp.mpf(omega) ** 2 / 2 + mp.mpf(w0_squared) * (1 - mp.cos(mp.mpf(theta))))
     # A handful of roundings; 1e-300 because the squares of tiny numbers underflow.
     assert energy(w0_squared, theta, omega) == pytest.approx(expected, rel=1e-15, abs=1e-300)
 
 
-def test_near_the_bottom_it_does_not_cancel() -> None:
+def test_near_the_bottom_it_does_not_cancel():
     assert energy(9.81, 1e-8, 0.0) == pytest.approx(9.81 * 1e-16 / 2, rel=1e-15)
     assert 9.81 * (1 - math.cos(1e-8)) == 0  # what the textbook's form gives
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-8, 8), t=st.floats(-10, 10))
-def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
+def test_the_exact_swing_keeps_it(theta, omega, t):
     start = energy(9.81, theta, omega)
     # Relative to the energy where it is small: the state is right to 1e-13 of its own size.
     assert energy(9.81, *Scene(theta=theta, omega=omega).exact().at(t)) == pytest.approx(
@@ -42,30 +40,28 @@ def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
 
 
 @given(theta=st.floats(-10, 10))
-def test_the_acceleration_is_minus_the_slope_of_the_energy(theta: float) -> None:
+def test_the_acceleration_is_minus_the_slope_of_the_energy(theta):
     slope = energy(9.81, complex(theta, 1e-100), 0.0, np.sin).imag / 1e-100
     assert acceleration(9.81)(theta) == pytest.approx(-slope, abs=1e-14)
 
 
-def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
+def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix():
     assert energy(9.81, math.pi, 0.0) == separatrix_energy(9.81) == 2 * 9.81
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
-def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(
-    theta: float, omega: float
-) -> None:
+def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(theta, omega):
     share = energy(9.81, theta, omega) / separatrix_energy(9.81)
     assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(
         1 - share, abs=1e-14
     )  # roundings below 6
 
 
-def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:
+def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
     # cos²((pi - 1e-6)/2) is 2.5e-13; 1e-9 is what rounding of the angle itself costs: 2e-16 of 1e-6
     assert separatrix_margin(9.81**0.5, math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
 
 
-def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
+def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix():
     assert Pendulum(9.81).reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
     assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, separatrix_energy(9.81))

@@ -16,7 +16,7 @@ SPRING = Spring(9.81, 2500.0)
 places = st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3)
 
 
-def test_at_the_start_the_spring_is_stretched_by_4_percent_more_than_gravity_does() -> None:
+def test_at_the_start_the_spring_is_stretched_by_4_percent_more_than_gravity_does():
     z, w = SPRING.start(1.0, 0.0)
     assert z == pytest.approx(0.8769138657516443 - 0.5630599180095599j, abs=1e-15)
     assert w == 0
@@ -25,15 +25,15 @@ def test_at_the_start_the_spring_is_stretched_by_4_percent_more_than_gravity_doe
 
 
 @given(theta=st.floats(-3.1, 3.1), omega=st.floats(-5, 5))
-def test_a_start_is_seen_at_its_angle_and_angular_velocity(theta: float, omega: float) -> None:
+def test_a_start_is_seen_at_its_angle_and_angular_velocity(theta, omega):
     assert SPRING.observe(SPRING.start(theta, omega))[:2] == pytest.approx(
         (theta, omega), abs=1e-14
     )
 
 
 @given(z=places)
-def test_the_force_is_minus_the_slope_of_the_energy(z: complex) -> None:
-    def energy(x: mp.mpf, y: mp.mpf) -> mp.mpf:
+def test_the_force_is_minus_the_slope_of_the_energy(z):
+    def energy(x, y):
         return mp.mpf("9.81") * (y + 1) + 1250 * (mp.hypot(x, y) - 1) ** 2
 
     with mp.workdps(40):
@@ -44,20 +44,20 @@ def test_the_force_is_minus_the_slope_of_the_energy(z: complex) -> None:
 
 
 @given(z=places)
-def test_the_force_is_the_sum_of_its_fast_and_its_slow_part(z: complex) -> None:
+def test_the_force_is_the_sum_of_its_fast_and_its_slow_part(z):
     parts = SPRING.parts()
     assert parts.fast(z) + parts.slow(z) == SPRING.force()(z)
 
 
 @given(b=places, c=st.floats(1e-8, 1e3))
-def test_solve_finds_where_the_fast_force_leads_from_b(b: complex, c: float) -> None:
+def test_solve_finds_where_the_fast_force_leads_from_b(b, c):
     parts = SPRING.parts()
     z = parts.solve(b, c)
     rounding = 1e-15 * (1 + 2500 * c)  # of the force times c
     assert z == pytest.approx(b + c * parts.fast(z), abs=10 * rounding)
 
 
-def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy() -> None:
+def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy():
     finer = Reference(
         compose_verlet(SPRING.force()), SPRING.start(1.0, 0.0), STEP / 2 / SPRING.fastest
     )
@@ -69,7 +69,7 @@ def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy() -> None:
         )
 
 
-def test_the_true_motion_keeps_the_energy_of_the_spring_within_2_5_percent() -> None:
+def test_the_true_motion_keeps_the_energy_of_the_spring_within_2_5_percent():
     energies = [
         SPRING.spring_energy(SPRING.place(1.0, 0.0, n / 50)) for n in range(1500)
     ]  # half a minute
@@ -77,7 +77,7 @@ def test_the_true_motion_keeps_the_energy_of_the_spring_within_2_5_percent() -> 
     assert max(energies) > 1.02 * energies[0]
 
 
-def test_its_fastest_frequency_is_the_springs() -> None:
+def test_its_fastest_frequency_is_the_springs():
     scene = Scene(model="spring", parameters={"stiffness": 2500.0}, h=0.02, cast=())
     assert scene.z == pytest.approx(1.0)
     period = math.tau / 50
@@ -89,7 +89,7 @@ def test_its_fastest_frequency_is_the_springs() -> None:
     assert cmath.phase(1j * z) == pytest.approx(0)
 
 
-def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing() -> None:
+def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing():
     with pytest.raises(SceneError, match=r"^the model linear has no stiffness; "):
         Scene(model="linear", parameters={"stiffness": 1.0})
     with pytest.raises(
@@ -98,6 +98,6 @@ def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing() -> None:
         Scene(model="spring", cast=())
 
 
-def test_where_the_spring_is_too_fast_to_be_followed_the_true_motion_is_not_known() -> None:
+def test_where_the_spring_is_too_fast_to_be_followed_the_true_motion_is_not_known():
     assert math.isfinite(Spring(9.81, 1e6).exact(1.0, 0.0).at(0.1).theta)
     assert all(map(math.isnan, Spring(9.81, 1e14).exact(1.0, 0.0).at(30.0)))

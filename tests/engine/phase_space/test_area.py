@@ -17,7 +17,7 @@ INDEX = {method.key: i for i, method in enumerate(USUAL_CAST)}
 
 
 @pytest.fixture(scope="module")
-def after_ten_thousand_steps() -> dict[str, float]:
+def after_ten_thousand_steps():
     neighbourhood = Neighbourhood(DRIFT, radius=0.05)
     neighbourhood.advance(10_000, Stepping(DRIFT.h))
     return dict(zip(INDEX, neighbourhood.area_ratios, strict=True))
@@ -39,7 +39,7 @@ def test_explicit_euler_gains_area_while_it_swings():
     assert neighbourhood.area_ratios[INDEX["explicit_euler"]] > 2
 
 
-def shoelace(ring) -> float:
+def shoelace(ring):
     theta, omega = ring
     return abs(float(np.sum(theta * np.roll(omega, -1) - omega * np.roll(theta, -1)))) / 2
 
@@ -83,11 +83,11 @@ def test_a_method_that_overflows_keeps_its_last_ring():
     assert all(np.isfinite(ring).all() for ring in neighbourhood.rings)
 
 
-def rings(neighbours: Neighbours, run: RewindableRun, most: int = 10_000) -> np.ndarray:
+def rings(neighbours, run, most=10_000):
     return np.array(neighbours.follow(run.scene, run.run, run.step, run.changes, most).rings)
 
 
-def expected(*stretches: tuple[int, float], scene: Scene = DRIFT) -> np.ndarray:
+def expected(*stretches, scene=DRIFT):
     ring = Neighbourhood(scene, 0.1)
     for steps, h in stretches:
         ring.advance(steps, Stepping(h))

@@ -10,7 +10,6 @@ from engine.methods import GENERAL, USUAL_CAST, method_of
 from engine.models.linear import LinearOscillator
 from engine.models.pendulum import Pendulum
 from engine.phase_space.section import (
-    OrbitKind,
     iterate,
     kind_of,
     least_lyapunov,
@@ -26,7 +25,7 @@ UNIT = Pendulum(1.0)  # so that h is z
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
 
 
-def kind(method, theta: float, z: float, steps: int = 4000, omega: float = 0.0) -> OrbitKind:
+def kind(method, theta, z, steps=4000, omega=0.0):
     return kind_of(method, UNIT, z, orbit(method, UNIT, z, (theta, omega), steps))
 
 

@@ -7,7 +7,7 @@ from resource import RUSAGE_SELF, getrusage
 import numpy as np
 import pytest
 
-from engine.methods import GENERAL, VELOCITY_VERLET, Method
+from engine.methods import GENERAL, VELOCITY_VERLET
 from engine.models import Pendulum
 from engine.run.compiled import available
 from engine.run.ensemble import Watched, compiled, plain
@@ -21,15 +21,13 @@ THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
 PENDULUM = Pendulum(1.0)
 
 
-def watched(band: float = math.inf, which: slice = slice(None)) -> Watched:
+def watched(band=math.inf, which=slice(None)):
     start = PENDULUM.energy(np.sin)((THETA[which], OMEGA[which]))
     band, top, off, worst = (np.full_like(start, value) for value in (band, math.pi, 0.0, 0.0))
     return Watched(start, band, top, off, worst, np.abs(THETA[which]))
 
 
-def path(
-    method: Method, h: float, steps: int, fast: bool, which: slice = slice(None)
-) -> np.ndarray:
+def path(method, h, steps, fast, which=slice(None)):
     """The phases after each step: (steps, 2, swings).  A band below 0 stops at each."""
     start = THETA[which], OMEGA[which]
     stops = (compiled if fast else plain)(method, PENDULUM)(
@@ -39,14 +37,14 @@ def path(
 
 
 @each_way
-def test_no_swing_depends_on_the_others(fast: bool) -> None:
+def test_no_swing_depends_on_the_others(fast):
     together = path(VELOCITY_VERLET, 0.3, 50, fast)
     for part in (slice(0, 1), slice(5, 30), slice(30, 37)):
         assert np.array_equal(path(VELOCITY_VERLET, 0.3, 50, fast, part), together[:, :, part])
 
 
 @needs_numba
-def test_compiled_steps_are_freed() -> None:
+def test_compiled_steps_are_freed():
     """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
     many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
     seen = Watched(
@@ -60,7 +58,7 @@ def test_compiled_steps_are_freed() -> None:
 
 
 @each_way
-def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
+def test_a_swing_without_limits_does_not_stop_the_others(fast):
     seen, h = watched(), np.full(37, 0.2)
     stops = []
     for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM)(
@@ -75,9 +73,7 @@ def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
 
 @each_way
 @each_method
-def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(
-    method: Method, fast: bool
-) -> None:
+def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(method, fast):
     h = np.full(37, 0.2)
     seen = watched()
     expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.2), 10)
@@ -94,7 +90,7 @@ def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(
 
 
 @each_way
-def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast: bool) -> None:
+def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast):
     watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM), np.full(37, 0.2)
     points = path(GENERAL[0], 0.2, 100, fast)
     over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1

@@ -1,7 +1,6 @@
 """The lockstep as a machine: the same bits however it is driven, time that is never summed, nothing lost."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -9,11 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST, method_of
-from engine.methods.method import Phases
-from engine.models.model import Force, Phase
+from engine.models.model import Phase
 from engine.models.pendulum import acceleration, energy
 from engine.run.compiled import available, compiled
-from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES, Scene, SceneError
@@ -32,7 +30,7 @@ changes = st.lists(
 )  # advance so far, then use this h
 
 
-def one_by_one(scene: Scene, n: int) -> list[Sample]:
+def one_by_one(scene, n):
     lockstep = Lockstep(scene)
     samples = [lockstep.sample()]
     for _ in range(n):
@@ -41,7 +39,7 @@ def one_by_one(scene: Scene, n: int) -> list[Sample]:
     return samples
 
 
-def without_extremes(sample: Sample) -> Sample:
+def without_extremes(sample):
     """What does not depend on when the previous sample was taken."""
     readings = (
         reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings
@@ -50,7 +48,7 @@ def without_extremes(sample: Sample) -> Sample:
 
 
 @given(scene=scenes, cuts=cuts)
-def test_the_steps_may_be_cut_anyhow_the_bits_are_the_same(scene: Scene, cuts: list[int]) -> None:
+def test_the_steps_may_be_cut_anyhow_the_bits_are_the_same(scene, cuts):
     whole, pieces = Lockstep(scene), Lockstep(scene)
     whole.advance(sum(cuts))
     for n in cuts:
@@ -59,9 +57,7 @@ def test_the_steps_may_be_cut_anyhow_the_bits_are_the_same(scene: Scene, cuts: l
 
 
 @given(scene=scenes, cuts=cuts)
-def test_looking_changes_nothing_but_since_when_extremes_are_taken(
-    scene: Scene, cuts: list[int]
-) -> None:
+def test_looking_changes_nothing_but_since_when_extremes_are_taken(scene, cuts):
     watched, alone = Lockstep(scene), Lockstep(scene)
     for n in cuts:
         watched.advance(n)
@@ -71,7 +67,7 @@ def test_looking_changes_nothing_but_since_when_extremes_are_taken(
 
 
 @given(scene=scenes, n=st.integers(0, 200))
-def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene: Scene, n: int) -> None:
+def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene, n):
     lockstep = Lockstep(scene)
     lockstep.advance(n)
     force = acceleration(scene.w0_squared)
@@ -86,7 +82,7 @@ def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene: Scene,
 
 
 @pytest.mark.parametrize("key", ["blanes_moan_6", "blanes_moan_4"])
-def test_a_long_rotation_stays_in_the_band_of_its_first_turns(key: str) -> None:
+def test_a_long_rotation_stays_in_the_band_of_its_first_turns(key):
     """Rounding of theta would grow with it: within 5e5 steps it carried these energies ten bands away."""
     scene = Scene(theta=-0.538, omega=6.554, h=0.318 / Scene().w0, cast=(method_of(key),))
     lockstep = Lockstep(scene, loops=compiled if available() else PlainLoops)
@@ -102,9 +98,7 @@ def test_a_long_rotation_stays_in_the_band_of_its_first_turns(key: str) -> None:
 
 
 @given(scene=scenes, changes=changes)
-def test_time_is_counted_from_the_last_change_of_h_and_never_summed(
-    scene: Scene, changes: list[tuple[int, float]]
-) -> None:
+def test_time_is_counted_from_the_last_change_of_h_and_never_summed(scene, changes):
     lockstep, base, h = Lockstep(scene), 0.0, scene.h
     for n, following in changes:
         for done in range(1, n + 1):
@@ -117,7 +111,7 @@ def test_time_is_counted_from_the_last_change_of_h_and_never_summed(
 
 
 @given(scene=scenes, cuts=cuts)
-def test_no_extreme_of_the_energy_is_lost_between_samples(scene: Scene, cuts: list[int]) -> None:
+def test_no_extreme_of_the_energy_is_lost_between_samples(scene, cuts):
     lockstep, steps = Lockstep(scene), one_by_one(scene, sum(cuts))
     lockstep.sample()
     done = 0
@@ -134,7 +128,7 @@ def test_no_extreme_of_the_energy_is_lost_between_samples(scene: Scene, cuts: li
         done += n
 
 
-def test_errors_are_relative_to_the_start_and_to_the_separatrix_from_rest() -> None:
+def test_errors_are_relative_to_the_start_and_to_the_separatrix_from_rest():
     moving = Lockstep(Scene(theta=0.0, omega=1.0))
     moving.advance(10)
     reading = moving.sample().readings[0]
@@ -144,7 +138,7 @@ def test_errors_are_relative_to_the_start_and_to_the_separatrix_from_rest() -> N
     assert {reading.energy_error for reading in resting.sample().readings} == {0.0}
 
 
-def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
+def test_time_reversed_verlet_comes_back_and_its_run_counts_on():
     scene = SCENES["drift"]
     lockstep = Lockstep(scene)
     lockstep.advance(200)
@@ -160,7 +154,7 @@ def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
 
 
 @pytest.mark.parametrize("h", [0.0, math.nan, math.inf, 1e9, -1e9, 1e-12])
-def test_a_useless_step_size_is_refused_and_the_old_one_stays(h: float) -> None:
+def test_a_useless_step_size_is_refused_and_the_old_one_stays(h):
     lockstep = Lockstep(SCENES["drift"])
     lockstep.advance(3)
     with pytest.raises(SceneError, match="not a usable step"):
@@ -168,14 +162,14 @@ def test_a_useless_step_size_is_refused_and_the_old_one_stays(h: float) -> None:
     assert (lockstep.stepping.h, lockstep.t) == (0.05, 3 * 0.05)
 
 
-def exploding(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+def exploding(force, phase, h):
     theta, omega = phase
     while True:
         theta, omega = theta + h * omega, omega + h * force(theta) + omega * omega * omega
         yield theta, omega
 
 
-def falling_into_nan(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+def falling_into_nan(force, phase, h):
     theta, omega = phase
     while True:
         theta, omega = (
@@ -187,9 +181,7 @@ def falling_into_nan(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 @pytest.mark.parametrize("phases", [exploding, falling_into_nan])
 @given(cuts=cuts)
-def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go_on(
-    phases: Phases, cuts: list[int]
-) -> None:
+def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go_on(phases, cuts):
     scene, n = SCENES["drift"], sum(cuts) + 100
     bad = replace(USUAL_CAST[0], key="bad", phases=phases)
     lockstep, others = Lockstep(replace(scene, cast=(bad, *USUAL_CAST))), Lockstep(scene)
@@ -217,7 +209,7 @@ def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go
     assert all(map(math.isfinite, numbers(frozen)))
 
 
-def numbers(reading: Reading) -> list[float]:
+def numbers(reading):
     return [value for value in (*reading[:-1], *reading.extra.values()) if value is not None]
 
 
@@ -226,9 +218,7 @@ def numbers(reading: Reading) -> list[float]:
     z=st.floats(1e-8, 999),
     n=st.integers(1, 60),
 )
-def test_no_legal_start_gives_anything_but_finite_numbers(
-    theta: float, omega: float, length: float, gravity: float, z: float, n: int
-) -> None:
+def test_no_legal_start_gives_anything_but_finite_numbers(theta, omega, length, gravity, z, n):
     h = z / math.sqrt(gravity / length)
     lockstep = Lockstep(Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=h))
     for step_size in (h, -h / 2):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from engine.methods import METHODS
 from engine.models import MODELS
 from engine.run.compiled import available, compiled
-from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
@@ -19,13 +19,13 @@ each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], 
 PARAMETERS = {"friction": 0.1, "stiffness": 100.0, "coupling": 2.0, "level_frequency": 20.0}
 
 
-def without_extremes(sample: Sample) -> list[Reading]:
+def without_extremes(sample):
     return [
         reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings
     ]
 
 
-def verdicts(scene: Scene, steps: int, every: int) -> list[tuple[int, str, str]]:
+def verdicts(scene, steps, every):
     lockstep = Lockstep(scene, judged=True)
     for _ in range(steps // every):
         lockstep.advance(every)
@@ -35,7 +35,7 @@ def verdicts(scene: Scene, steps: int, every: int) -> list[tuple[int, str, str]]
 
 @each_scene
 @given(cuts=st.lists(st.integers(1, 30), min_size=1, max_size=6))
-def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) -> None:
+def test_the_same_bits_however_the_steps_are_cut(scene, cuts):
     alone, watched = Lockstep(scene), Lockstep(scene)
     for n in cuts:
         watched.advance(n)
@@ -46,7 +46,7 @@ def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) 
 
 
 @each_scene
-def test_readings_are_finite_floats_and_hold_every_variable(scene: Scene) -> None:
+def test_readings_are_finite_floats_and_hold_every_variable(scene):
     lockstep, model = Lockstep(scene), scene.equations
     for n in (0, 1, 1000):
         lockstep.advance(n)
@@ -57,7 +57,7 @@ def test_readings_are_finite_floats_and_hold_every_variable(scene: Scene) -> Non
 
 
 @each_scene
-def test_verdicts_do_not_depend_on_the_distance_of_samples(scene: Scene) -> None:
+def test_verdicts_do_not_depend_on_the_distance_of_samples(scene):
     steps = 14 * round(20 / scene.h / 14)
     assert verdicts(scene, steps, 1) == verdicts(scene, steps, 14)
 
@@ -77,7 +77,7 @@ def test_verdicts_do_not_depend_on_the_distance_of_samples(scene: Scene) -> None
         ),
     ],
 )
-def test_the_scenes_have_their_verdicts(name: str, expected: dict[str, str]) -> None:
+def test_the_scenes_have_their_verdicts(name, expected):
     last = {
         key: verdict
         for _, key, verdict in verdicts(
@@ -89,14 +89,14 @@ def test_the_scenes_have_their_verdicts(name: str, expected: dict[str, str]) -> 
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 @each_scene
-def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene: Scene) -> None:
+def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene):
     for method in scene.cast:
         general = method.general and scene.equations.has_force
         assert isinstance(compiled(method, scene.equations), PlainLoops) == (not general)
 
 
 @each_scene
-def test_backwards_and_at_equal_cost_there_are_still_numbers(scene: Scene) -> None:
+def test_backwards_and_at_equal_cost_there_are_still_numbers(scene):
     lockstep = Lockstep(scene)
     lockstep.set_stepping(Stepping(scene.h, True, scene.cast))
     lockstep.advance(20)
@@ -114,8 +114,8 @@ def test_backwards_and_at_equal_cost_there_are_still_numbers(scene: Scene) -> No
     h=st.floats(1e-8, 300),
 )
 def test_any_scene_within_the_limits_gives_finite_numbers(
-    model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
-) -> None:
+    model, theta, omega, friction, stiffness, h
+):
     given_values = {"friction": friction, "stiffness": stiffness}
     own = {
         each.name: given_values.get(each.name, each.default) for each in MODELS[model].parameters
@@ -133,7 +133,7 @@ def test_any_scene_within_the_limits_gives_finite_numbers(
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
+def test_a_model_refuses_a_method_that_is_not_for_it(model):
     own = {each.name: PARAMETERS[each.name] for each in MODELS[model].parameters}
     for method in METHODS:
         if model in method.models:
@@ -143,7 +143,7 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
                 Scene(model=model, cast=(method,), parameters=own)
 
 
-def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say() -> None:
+def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say():
     found = verdicts(SCENES["stiff-limit"], 20, 1)
     assert ("velocity_verlet", "grows") in [
         (key, verdict) for step, key, verdict in found if step <= 10

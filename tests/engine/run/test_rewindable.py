@@ -5,7 +5,7 @@ import itertools
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.run.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep
 from engine.run.rewindable import COPY_EVERY, RewindableRun
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
@@ -14,7 +14,7 @@ MOVES = st.lists(st.integers(-1500, 2500), min_size=1, max_size=8)
 H_VALUES = st.sampled_from([0.1, 0.02, -0.05, 0.05])
 
 
-def straight(step: int, changes: dict[int, float]) -> Sample:
+def straight(step, changes):
     """The sample of a lockstep that went to `step` without turning."""
     lockstep = Lockstep(DEFAULT_SCENE)
     for at in sorted(at for at in changes if at < step):
@@ -24,11 +24,11 @@ def straight(step: int, changes: dict[int, float]) -> Sample:
     return lockstep.sample()
 
 
-def phases(sample: Sample) -> list[tuple[float, float, float]]:
+def phases(sample):
     return [(reading.theta, reading.omega, reading.max_energy_error) for reading in sample.readings]
 
 
-def move(course: RewindableRun, n: int) -> None:
+def move(course, n):
     if n >= 0:
         course.forward(n)
     else:

@@ -1,7 +1,6 @@
 """How a run steps: h along 1, 2, 5, time both ways, and equal cost, where all meet at the same times."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -9,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST
-from engine.models.model import Force, Phase
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.scenes import DEFAULT_SCENE, Scene, SceneError
@@ -82,7 +80,7 @@ def test_a_step_is_made_with_the_last_change_before_it():
     ]
 
 
-def bits(lockstep: Lockstep) -> list[tuple[float, float, float]]:
+def bits(lockstep):
     return [
         (reading.theta, reading.omega, reading.max_energy_error)
         for reading in lockstep.sample().readings
@@ -102,7 +100,7 @@ def test_at_equal_cost_every_method_needs_the_same_number_of_evaluations():
 
 
 @pytest.mark.parametrize("index", range(len(USUAL_CAST)), ids=[method.key for method in USUAL_CAST])
-def test_a_method_takes_the_step_in_its_own_parts(index: int):
+def test_a_method_takes_the_step_in_its_own_parts(index):
     equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
     equal.set_stepping(EQUAL)
     alone.set_stepping(Stepping(EQUAL.own[index]))
@@ -113,7 +111,7 @@ def test_a_method_takes_the_step_in_its_own_parts(index: int):
 
 
 def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
-    def doubling(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    def doubling(force, phase, h):
         theta, omega = phase
         while True:
             omega = omega * 2 + 1

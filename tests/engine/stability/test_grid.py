@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.methods import GENERAL, USUAL_CAST, Cast
+from engine.methods import GENERAL, USUAL_CAST
 from engine.run.compiled import available
 from engine.stability import grid as stability_map
 from engine.stability.grid import Grid, default_grid, pieces
@@ -16,7 +16,7 @@ each_way = pytest.mark.parametrize(
 GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
 
 
-def test_cells_lie_by_z_method_and_amplitude() -> None:
+def test_cells_lie_by_z_method_and_amplitude():
     cells = GRID.cells()
     assert cells.shape == GRID.shape == (13, 4, 7)
     alone = outcomes(GENERAL[2], GRID.theta[5:6], GRID.z[4:5], 200)
@@ -26,9 +26,7 @@ def test_cells_lie_by_z_method_and_amplitude() -> None:
 
 @each_way
 @pytest.mark.parametrize("strip", [1, 8, 50])
-def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
-    strip: int, fast: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip, fast, monkeypatch):
     monkeypatch.setattr(stability_map, "STRIP", strip)
     grid = replace(GRID, fast=fast)
     strips = [strip.cells() for strip in grid.strips()]
@@ -37,12 +35,12 @@ def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
 
 
 @needs_numba
-def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_one_is_not() -> None:
+def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_one_is_not():
     for grid, fast in ((default_grid(), True), (GRID, False), (replace(GRID, fast=True), True)):
         assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
 
 
-def test_a_map_computed_in_pieces_is_not_compiled() -> None:
+def test_a_map_computed_in_pieces_is_not_compiled():
     piece = next(pieces(default_grid(), [50]))
     plain = replace(
         default_grid(), z=default_grid().z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False
@@ -51,19 +49,19 @@ def test_a_map_computed_in_pieces_is_not_compiled() -> None:
 
 
 @needs_numba
-def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding() -> None:
+def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding():
     regular = replace(GRID, z=GRID.z[:5])
     one, other = (replace(regular, fast=fast).cells() for fast in (False, True))
     assert np.array_equal(one[["fate", "steps"]], other[["fate", "steps"]])
     assert one["error"] == pytest.approx(other["error"], rel=1e-9)
 
 
-def test_cells_that_are_not_computed_are_unknown() -> None:
+def test_cells_that_are_not_computed_are_unknown():
     assert (GRID.unknown()["fate"] == UNKNOWN).all()
 
 
 @pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
-def test_the_default_grid_reaches_beyond_every_limit(cast: Cast) -> None:
+def test_the_default_grid_reaches_beyond_every_limit(cast):
     grid = default_grid(cast)
     assert grid.shape == (200, len(cast), 100)
     limits = [method.linear_limit for method in cast if method.linear_limit < np.inf]
@@ -71,5 +69,5 @@ def test_the_default_grid_reaches_beyond_every_limit(cast: Cast) -> None:
     assert 0 < grid.theta[0] < grid.theta[-1] < np.pi
 
 
-def test_the_usual_map_goes_up_to_3() -> None:
+def test_the_usual_map_goes_up_to_3():
     assert default_grid().z[-1] + default_grid().z[0] == pytest.approx(3)

@@ -5,13 +5,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import GENERAL
-from engine.models.model import Number
 from engine.stability.linear import amplification, wobble
 
 BY_KEY = {method.key: method for method in GENERAL}
 
 
-def on_the_unit_circle_below_two(z: float) -> float:
+def on_the_unit_circle_below_two(z):
     return 1.0 if z <= 2 else z**2 / 2 - 1 + z * math.sqrt(z**2 / 4 - 1)
 
 
@@ -24,21 +23,19 @@ FORMULAS = {
 
 
 @given(z=st.floats(1e-6, 3).filter(lambda z: abs(z - 2) > 1e-3))
-def test_the_amplification_is_the_textbooks(z: float) -> None:
+def test_the_amplification_is_the_textbooks(z):
     # At z = 2 two multipliers meet and rounding shows as its square root; 1e-3 away it is below 1e-13.
     for key, formula in FORMULAS.items():
         assert amplification(BY_KEY[key], z) == pytest.approx(formula(z), rel=1e-12)
 
 
-def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six() -> None:
+def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six():
     assert amplification(BY_KEY["rk4"], math.sqrt(6)) == pytest.approx(0.5, rel=1e-12)
 
 
 @given(z=st.floats(0.05, 1.9), steps=st.just(2000))
-def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(
-    z: float, steps: int
-) -> None:
-    def spring(theta: Number) -> Number:
+def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z, steps):
+    def spring(theta):
         return -theta
 
     for key in ("symplectic_euler", "velocity_verlet"):
@@ -61,19 +58,19 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(
 
 
 @given(z=st.floats(0.05, 1.9))
-def test_the_wobble_of_the_symplectic_steps_has_a_closed_form(z: float) -> None:
+def test_the_wobble_of_the_symplectic_steps_has_a_closed_form(z):
     assert wobble(BY_KEY["velocity_verlet"], z) == pytest.approx((1 - z**2 / 4, 1, 1), rel=1e-12)
     expected = (1 / (1 + z / 2), 1 / (1 - z / 2), 1 / math.sqrt(1 - z**2 / 4))
     assert wobble(BY_KEY["symplectic_euler"], z) == pytest.approx(expected, rel=1e-12)
 
 
 @given(z=st.floats(0.01, 2.8))
-def test_explicit_euler_and_rk4_do_not_wobble(z: float) -> None:
+def test_explicit_euler_and_rk4_do_not_wobble(z):
     for key in ("explicit_euler", "rk4"):
         assert wobble(BY_KEY[key], z)[:2] == pytest.approx((1.0, 1.0), abs=1e-9)
 
 
 @given(z=st.floats(2.001, 1000))
-def test_beyond_its_limit_a_symplectic_step_has_no_ellipse(z: float) -> None:
+def test_beyond_its_limit_a_symplectic_step_has_no_ellipse(z):
     for key in ("symplectic_euler", "velocity_verlet"):
         assert wobble(BY_KEY[key], z) == (0.0, 1.0, 1.0)

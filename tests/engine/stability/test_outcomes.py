@@ -1,5 +1,4 @@
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -7,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, GENERAL, RK4, USUAL_CAST, VELOCITY_VERLET, Method
-from engine.models.model import Model, Phase
+from engine.methods import EXPLICIT_EULER, GENERAL, RK4, USUAL_CAST, VELOCITY_VERLET
+from engine.models.model import Phase
 from engine.models.pendulum import acceleration, energy, energy_of
-from engine.run.ensemble import Arrays, Floats, Watch, Watched, plain
+from engine.run.ensemble import plain
 from engine.stability.linear import wobble
 from engine.stability.outcomes import (
     BAND,
@@ -30,20 +29,18 @@ BY_KEY = {method.key: method for method in GENERAL}
 FORCE = acceleration(1.0)
 
 
-def after(method: Method, theta: float, z: float, steps: int) -> Phase:
+def after(method, theta, z, steps):
     phase: Phase = (theta, 0.0)
     for _ in range(steps):
         phase = method.step(FORCE, phase, z)
     return phase
 
 
-def fate(key: str, theta: float, z: float, steps: int = 2000) -> str:
+def fate(key, theta, z, steps=2000):
     return FATES[outcomes(BY_KEY[key], np.array([theta]), np.array([z]), steps)["fate"][0]]
 
 
-def failure_of(
-    key: str, theta: float, ladder: np.ndarray, steps: int, within: int | None = None
-) -> tuple[float, str] | None:
+def failure_of(key, theta, ladder, steps, within=None):
     cells = outcomes(BY_KEY[key], np.full(len(ladder), theta), ladder, steps)
     failure = first_failure(ladder, cells, within)
     return failure and (failure.z, failure.reason)
@@ -54,9 +51,7 @@ def failure_of(
     st.lists(st.tuples(st.floats(0.01, 3.14), st.floats(0.01, 3.5)), min_size=1, max_size=30),
     st.integers(1, 60),
 )
-def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(
-    method: Method, swings: list[tuple[float, float]], steps: int
-) -> None:
+def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, steps):
     force, value = (
         acceleration(1.0, np.sin),
         energy_of(1.0, np.sin),
@@ -88,16 +83,12 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(
         assert (cell["steps"], cell["error"]) == (survived, worst)
 
 
-def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch):
     """Numba never frees what a generator holds that has not ended, so there should not be one for each lost swing."""
     begun: list[int] = []
 
-    def counting(method: Method, model: Model) -> Watch:
-        def watch(
-            phase: Arrays, h: Floats, watched: Watched, n: int
-        ) -> Iterator[tuple[int, Arrays]]:
+    def counting(method, model):
+        def watch(phase, h, watched, n):
             begun.append(len(h))
             return plain(method, model)(phase, h, watched, n)
 
@@ -112,19 +103,19 @@ def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(
 
 @pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
 @pytest.mark.parametrize("theta", [0.01, 1.0, 2.0, 2.8])
-def test_symplectic_methods_hold_every_swing_at_small_steps(key: str, theta: float) -> None:
+def test_symplectic_methods_hold_every_swing_at_small_steps(key, theta):
     ladder = np.linspace(0.05, 0.6, 12)
     assert not is_lost(outcomes(BY_KEY[key], np.full(12, theta), ladder, 2000)).any()
 
 
 @pytest.mark.parametrize("theta", [0.1, 1.0, 2.0, 3.0])
-def test_explicit_euler_always_fails(theta: float) -> None:
+def test_explicit_euler_always_fails(theta):
     # Energy grows by about z² a step, so 10/z² steps are plenty.
     for z in (0.03, 0.1, 1.0):
         assert fate("explicit_euler", theta, z, round(10 / z**2)) in ("grows", "over the top")
 
 
-def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
+def test_explicit_eulers_time_to_the_top_goes_as_one_over_z():
     times = []
     for z in (0.01, 0.005, 0.0025):
         phase, steps = (2.0, 0.0), 0
@@ -138,7 +129,7 @@ def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
 
 
 @pytest.mark.parametrize("theta", [0.5, 1.0, 2.5])
-def test_rk4_loses_energy_as_h_to_the_fifth(theta: float) -> None:
+def test_rk4_loses_energy_as_h_to_the_fifth(theta):
     start = energy(1.0, theta, 0.0)
     drifts = [energy(1.0, *after(RK4, theta, z, round(200 / z))) - start for z in (0.05, 0.1, 0.2)]
     assert all(drift < 0 for drift in drifts)
@@ -147,7 +138,7 @@ def test_rk4_loses_energy_as_h_to_the_fifth(theta: float) -> None:
 
 
 @pytest.mark.parametrize("theta", [0.01, 0.05])
-def test_small_swings_are_held_no_longer_at_the_linear_limit(theta: float) -> None:
+def test_small_swings_are_held_no_longer_at_the_linear_limit(theta):
     # RK4's growth sets in slowly above its limit, and its decay below is no failure in 60 steps.
     ladder, steps = np.linspace(1.9, 3, 111), {"rk4": 60}
     for method in USUAL_CAST:
@@ -160,7 +151,7 @@ def test_small_swings_are_held_no_longer_at_the_linear_limit(theta: float) -> No
 
 
 @pytest.mark.parametrize("z", [2.01, 2.05, 2.5, 3.0])
-def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z: float) -> None:
+def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z):
     low, high = 1e-6, math.pi
     while high - low > 1e-14:  # z² sin q = 4 q
         q = (low + high) / 2
@@ -171,9 +162,7 @@ def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z: float
 
 
 @pytest.mark.parametrize(("z", "q"), [(2.01, 0.2444), (2.02, 0.3449), (2.05, 0.5417)])
-def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(
-    z: float, q: float
-) -> None:
+def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(z, q):
     assert z**2 * math.sin(q) == pytest.approx(4 * q, rel=1e-4)
     phase, largest = (1e-3, 0.0), 0.0
     for _ in range(5000):
@@ -183,7 +172,7 @@ def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(
     assert largest == pytest.approx(math.sqrt(2) * q, rel=0.02)
 
 
-def test_a_resonance_that_the_swing_comes_back_from_loses_nothing() -> None:
+def test_a_resonance_that_the_swing_comes_back_from_loses_nothing():
     """Beside z = 2 sin(pi/4) velocity Verlet swings 10 % wider than it should, and back; on both sides it does not."""
     fates = [fate("velocity_verlet", 0.5, z) for z in (1.3, 1.43, 1.6)]
     assert fates == ["holds", "holds, wobbling", "holds"]
@@ -199,18 +188,18 @@ def test_a_resonance_that_the_swing_comes_back_from_loses_nothing() -> None:
         ("velocity_verlet", 57.3, 1.53),
     ],
 )
-def test_the_first_real_losses(key: str, degrees: float, z: float) -> None:
+def test_the_first_real_losses(key, degrees, z):
     found = failure_of(key, math.radians(degrees), np.arange(1.0, 2.3, 0.01), 10_000)
     assert found is not None
     assert found[0] == pytest.approx(z, abs=0.015)
 
 
-def test_beyond_its_linear_limit_velocity_verlet_is_caught_as_in_the_scene() -> None:
+def test_beyond_its_linear_limit_velocity_verlet_is_caught_as_in_the_scene():
     assert fate("velocity_verlet", 0.518, 2.092, 10_000) == "caught"
     assert fate("velocity_verlet", 0.1, 2.02, 10_000) == "caught"
 
 
-def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
+def test_the_limit_moves_with_the_steps_that_it_rests_on():
     ladder = np.arange(1.0, 1.5, 0.01)
     limits = [
         failure_of("velocity_verlet", 2.0, ladder, 10_000, within) for within in (100, 10_000)
@@ -231,9 +220,7 @@ def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
         ("rk4", 3.0, 0.3, 0.6, "loses"),
     ],
 )
-def test_methods_fail_each_in_its_way(
-    key: str, theta: float, start: float, end: float, reason: str
-) -> None:
+def test_methods_fail_each_in_its_way(key, theta, start, end, reason):
     ladder = np.geomspace(start, end, 40)
     found = failure_of(key, theta, ladder, 10_000)
     assert found is not None
@@ -241,9 +228,9 @@ def test_methods_fail_each_in_its_way(
     assert ladder[0] < found[0] < ladder[-1]
 
 
-def test_a_symplectic_swing_in_the_chaotic_sea_is_called_chaotic_before_it_goes_over() -> None:
+def test_a_symplectic_swing_in_the_chaotic_sea_is_called_chaotic_before_it_goes_over():
     assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.52]), 2000) == (1.52, "chaotic")
 
 
-def test_a_swing_that_holds_on_the_whole_ladder_has_no_failure() -> None:
+def test_a_swing_that_holds_on_the_whole_ladder_has_no_failure():
     assert failure_of("velocity_verlet", 1.0, np.linspace(0.1, 1, 10), 500) is None
