@@ -1,8 +1,9 @@
-"""Every field of METHODS is a claim; here each is measured, on the nonlinear pendulum unless it says linear."""
+"""Every field of METHODS is a claim; here each is measured, on the nonlinear pendulum."""
 
 import cmath
 import math
 import re
+from itertools import islice
 
 import mpmath as mp
 import numpy as np
@@ -23,19 +24,14 @@ from engine.methods import (
 )
 from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
-from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
+from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, composition
 from engine.models.pendulum import Pendulum, acceleration
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
 W0_SQUARED = 9.81
+PENDULUM = Pendulum(W0_SQUARED)
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-
-
-def travel(method, force, phase, h, n):
-    for _ in range(n):
-        phase = method.step(force, phase, h)
-    return phase
 
 
 @each_method
@@ -51,9 +47,22 @@ def test_the_measured_properties_are_the_claimed_ones(method):
         assert (found.force_evaluations, found.more_at_the_start) == cost
 
 
-@given(
-    share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4)
-)  # nearer to the edge it is a matter of rounding
+def test_a_method_that_does_not_follow_the_pendulum_has_no_order():
+    def upwards(force, phase, h):
+        theta, omega = phase
+        while True:
+            theta, omega = theta + h * omega, omega - h * force(theta)
+            yield theta, omega
+
+    assert measure.order(upwards) is None
+
+
+def test_three_steps_of_a_third_are_stable_three_times_as_far():
+    thirds = composition(1 / 3, 1 / 3, 1 / 3)
+    assert measure.linear_limit(thirds) == pytest.approx(6, abs=1e-5)  # where rounding turns
+
+
+@given(share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4))  # nearer, rounding decides
 def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(
     share, beyond
 ):
@@ -75,89 +84,73 @@ def test_above_the_first_edge_lies_a_gap_and_then_an_island(method, island):
 @each_method
 @pytest.mark.parametrize("start", [(2.5, 0.5), (0.5, 8.0)])
 def test_the_error_falls_with_the_claimed_power_of_h(method, start):
-    assert measure.order(method.phases, start) == pytest.approx(
-        method.order, abs=0.1
-    )  # the next power of h is felt
+    # 0.1: the next power of h is felt
+    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)
 
 
 @pytest.mark.parametrize("method", [m for m in GENERAL if m.symplectic], ids=lambda m: m.key)
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
 def test_area_is_kept_where_claimed(method, theta, omega, h):
-    # Jacobian entries up to 3 and a few products of them, each rounded.
-    assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(
-        1, abs=1e-14
-    )
-
-
-@given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
-def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(theta, omega, h):
-    determinant = jacobian(EXPLICIT_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
-    assert determinant == pytest.approx(1 + h**2 * W0_SQUARED * math.cos(theta), abs=1e-14)
+    determinant = jacobian(method, PENDULUM, theta, omega, h).determinant
+    assert determinant == pytest.approx(1, abs=1e-14)  # products of a few numbers up to 3
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(0.0, 0.3))
-def test_backward_euler_shrinks_area_by_what_explicit_euler_adds_on_the_way_back(theta, omega, h):
-    force = acceleration(W0_SQUARED)
-    end, _ = BACKWARD_EULER.step(force, (theta, omega), h)
-    determinant = jacobian(BACKWARD_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
-    assert 1 / determinant == pytest.approx(1 + h**2 * W0_SQUARED * math.cos(end), abs=1e-9)
+def test_explicit_euler_blows_area_up_as_backward_euler_shrinks_it(theta, omega, h):
+    def blown_up(angle):
+        return 1 + h**2 * W0_SQUARED * math.cos(angle)
+
+    explicit = jacobian(EXPLICIT_EULER, PENDULUM, theta, omega, h).determinant
+    assert explicit == pytest.approx(blown_up(theta), abs=1e-14)
+    end, _ = BACKWARD_EULER.step(PENDULUM.force(), (theta, omega), h)
+    backward = jacobian(BACKWARD_EULER, PENDULUM, theta, omega, h).determinant
+    assert 1 / backward == pytest.approx(blown_up(end), abs=1e-9)
 
 
-@given(
-    theta=st.floats(-4, 4),
-    omega=st.floats(-8, 8),
-    z=st.floats(0.0, 0.99),
-    method=st.sampled_from(implicit.FAMILY),
-)
-def test_newtons_iteration_solves_the_equation_of_the_step(theta, omega, z, method):
-    h = z / math.sqrt(W0_SQUARED)
-    force = acceleration(W0_SQUARED)
+@pytest.mark.parametrize("method", implicit.FAMILY, ids=lambda method: method.key)
+@given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), z=st.floats(0.0, 0.99))
+def test_newtons_iteration_solves_the_equation_of_the_step(method, theta, omega, z):
+    h, force = z / PENDULUM.w0, PENDULUM.force()
     theta_end, omega_end = method.step(force, (theta, omega), h)
-    share = 1.0 if method is BACKWARD_EULER else 0.5
-    inside = theta + share * (theta_end - theta)
+    share = {BACKWARD_EULER: 1.0, IMPLICIT_MIDPOINT: 0.5}[method]
+    inside, middle = theta + share * (theta_end - theta), omega + share * (omega_end - omega)
     assert omega_end == pytest.approx(omega + h * force(inside), abs=1e-11)
-    middle = omega + share * (omega_end - omega)
     assert theta_end == pytest.approx(theta + h * middle, abs=1e-11)
 
 
-@pytest.mark.parametrize("h", [0.001, 0.05, 0.3])
-def test_backward_euler_loses_energy_and_heun_and_the_midpoint_rule_gain_some(h):
-    for method, sign in ((BACKWARD_EULER, -1), (HEUN, 1), (EXPLICIT_MIDPOINT, 1)):
-        judge = simulate(time=60.0, methods=[method.key], h=h)
-        assert sign * judge[method.key].energy_error[-1] > 0
+@pytest.mark.parametrize("h", [0.01, 0.05, 0.3])
+@pytest.mark.parametrize(
+    ("method", "sign"), [(BACKWARD_EULER, -1), (HEUN, 1), (EXPLICIT_MIDPOINT, 1)]
+)
+def test_backward_euler_loses_energy_and_heun_and_the_midpoint_rule_gain_some(method, sign, h):
+    run = simulate(time=60.0, methods=[method], h=h)
+    assert sign * run[method.key].energy_error[-1] > 0
 
 
 @given(z=st.floats(0.001, 5.0))
 def test_of_small_swings_a_step_keeps_or_multiplies_the_energy_as_the_cards_say(z):
-    start = (0.6, 0.8)
-    for method, factor in (
-        (HEUN, 1 + z**4 / 4),
-        (EXPLICIT_MIDPOINT, 1 + z**4 / 4),
-        (IMPLICIT_MIDPOINT, 1),
-    ):
-        theta, omega = method.step(lambda angle: -angle, start, z)
+    gain = 1 + z**4 / 4
+    for method, factor in ((HEUN, gain), (EXPLICIT_MIDPOINT, gain), (IMPLICIT_MIDPOINT, 1)):
+        theta, omega = method.step(lambda angle: -angle, (0.6, 0.8), z)
         assert theta**2 + omega**2 == pytest.approx(factor, rel=1e-12)
 
 
 def test_rk4_loses_area_with_the_sixth_power_of_h():
     """det - 1 of a step at the bottom is -z⁶/72 + z⁸/576; along a swing the power is the same."""
-    exact = Scene().exact()
-    lost = []
-    for h in (0.02, 0.04):
-        states = [exact.at(k * 0.1) for k in range(22)]  # a period
-        logs = [
-            math.log(jacobian(RK4, Pendulum(W0_SQUARED), *state, h).determinant) for state in states
-        ]
-        lost.append(sum(logs))
-    assert all(loss < 0 for loss in lost)
-    assert math.log2(lost[1] / lost[0]) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
+
+    def lost(h):
+        period = [Scene().exact().at(k * 0.1) for k in range(22)]
+        return -sum(math.log(jacobian(RK4, PENDULUM, *state, h).determinant) for state in period)
+
+    assert lost(0.02) > 0
+    assert math.log2(lost(0.04) / lost(0.02)) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
 
 
 @each_method
 @given(theta=st.floats(-3, 3), omega=st.floats(-6, 6))
-def test_a_negative_step_undoes_a_step_only_where_reversible(method, theta, omega):
-    """Time reversed by h -> -h, as the lab does it; all methods keep the symmetry omega, h -> -omega, -h."""
-    force = acceleration(W0_SQUARED)
+def test_a_negative_step_undoes_a_step_where_reversible(method, theta, omega):
+    """The lab reverses time by h -> -h; all methods keep the symmetry omega, h -> -omega, -h."""
+    force = PENDULUM.force()
     back = method.step(force, method.step(force, (theta, omega), 0.05), -0.05)
     if method.reversible:
         assert back == pytest.approx((theta, omega), abs=1e-14)  # rounding of one step
@@ -166,48 +159,34 @@ def test_a_negative_step_undoes_a_step_only_where_reversible(method, theta, omeg
 
 
 @each_method
-def test_one_definition_serves_floats_arrays_complex_and_mpmath(method):
-    start, h = (0.8, -1.1), 0.05
-    expected = travel(method, acceleration(W0_SQUARED), start, h, 20)
-    arrays = travel(
-        method,
-        acceleration(W0_SQUARED, np.sin),
-        (np.full(3, start[0]), np.full(3, start[1])),
-        h,
-        20,
-    )
-    complexes = travel(
-        method, acceleration(W0_SQUARED, cmath.sin), (complex(start[0]), complex(start[1])), h, 20
-    )
-    exact = travel(
-        method, acceleration(mp.mpf(W0_SQUARED), mp.sin), tuple(map(mp.mpf, start)), mp.mpf(h), 20
-    )
-    for other in (
-        [float(values[0]) for values in arrays],
-        complexes,
-        [float(value) for value in exact],
-    ):
-        assert other == pytest.approx(
-            expected, abs=1e-13
-        )  # 20 steps' rounding; their sines may differ in the last bit
+@pytest.mark.parametrize(
+    ("kind", "sin"), [(lambda x: np.full(3, x), np.sin), (complex, cmath.sin), (mp.mpf, mp.sin)]
+)
+def test_one_definition_serves_floats_arrays_complex_and_mpmath(method, kind, sin):
+    def travel(kind, sin):
+        phases = method.phases(acceleration(kind(W0_SQUARED), sin), (kind(0.8), kind(-1.1)), 0.05)
+        return [complex(np.ravel(value)[0]) for value in next(islice(phases, 19, None))]
+
+    # 20 steps' rounding; their sines may differ in the last bit
+    assert travel(kind, sin) == pytest.approx(travel(float, math.sin), abs=1e-13)
 
 
-def test_names_are_unique_and_every_method_has_a_reference():
+@pytest.mark.parametrize("field", ["key", "label", "letter", "phases", "formula"])
+def test_no_two_methods_share_a_name(field):
+    users = {}
     for method in METHODS:
-        for name in method.names:
-            assert matching(name) == [method]
-    for field in ("key", "label", "letter", "phases", "formula"):
-        assert len({getattr(method, field) for method in METHODS}) == len(METHODS)
-    for method in METHODS:
-        assert re.fullmatch("[a-zA-Z]", method.letter)
-        assert method.other_names
-        assert re.search(r"\(\d{4}\)", method.reference)
-        assert method.phases.__doc__
+        users.setdefault(getattr(method, field), []).append(method.key)
+    assert not [keys for keys in users.values() if len(keys) > 1]
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
-def test_every_general_method_names_a_use_and_its_source(method):
+def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method):
+    assert all(matching(name) == [method] for name in method.names)
+    assert method.other_names
+    assert re.fullmatch("[a-zA-Z]", method.letter)
+    assert re.search(r"\(\d{4}\)", method.reference)
+    assert method.phases.__doc__
     if method.used is None:
         assert not method.general
     else:
-        assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9.-]+\.(io|org|pw|com|ai), [^\[\]]+\]", method.used)
+        assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9-]+(\.[a-z0-9-]+)+, [^\[\]]+\]", method.used)

@@ -73,22 +73,10 @@ def test_verlet_written_again_is_measured_to_be_verlet():
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
 
 
-def test_its_steps_have_the_bits_of_the_same_method_here():
-    lockstep = Lockstep(DEFAULT_SCENE.with_cast((loaded(VERLET), VELOCITY_VERLET)))
-    for _ in range(20):
-        lockstep.advance(37)
-        mine, verlet = lockstep.sample().readings
-        assert mine == verlet
-
-
-def test_it_keeps_its_text_and_the_hash_of_it():
+def test_it_keeps_its_text_and_the_hash_of_it_and_is_itself_after_a_pickle():
     mine = loaded(VERLET)
     assert mine.source == VERLET
     assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
-
-
-def test_a_pickle_of_it_is_the_same_method_in_this_process():
-    mine = loaded(VERLET)
     assert pickle.loads(pickle.dumps(mine)) is mine
 
 
@@ -117,12 +105,8 @@ WRONG = {
                              "line 2: mine ends while the run goes on"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
     "three numbers": (euler(yields="theta, omega, h"), "line 2: mine yields (1.015, -0.11"),
-    "a string": (euler(yields="'ab'"), "line 2: mine yields 'ab';"),
     "None for a number": (euler(yields="theta, None"), "line 2: mine yields (1.015, None);"),
-    "an exception at once": (euler("1 / 0"), "line 7: `1 / 0` raises ZeroDivisionError: division by zero."),
     "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
-    "a name that is not there": (euler("omega = omega * gamma"), "line 7: `omega = omega * gamma` raises NameError"),
-    "a square root of less than 0": (euler("__import__('math').sqrt(-1)"), "raises ValueError: "),
     "an array changed in place": (
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
         "        omega += h * force(theta)\n        yield theta, omega",
@@ -153,9 +137,7 @@ WRONG = {
     "no Python": ("def mine(:", "line 1: invalid syntax."),
     "a zero byte": ("\0", "source code string cannot contain null bytes."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
-    "an import of nothing": ("import nothing_of_this_name", "raises ModuleNotFoundError"),
     "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
-    "a class": ("class mine: pass", "has no function 'mine'"),
     "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
@@ -177,25 +159,21 @@ def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short():
     assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n')"))) < 400
 
 
-def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(capsys):
-    assert (
-        loaded(euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")).order
-        == 1
-    )
+def test_it_may_print_to_stderr_and_yield_a_list(capsys):
+    source = euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")
+    assert loaded(source).order == 1
     assert "here" in capsys.readouterr().err
 
 
-def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line():
+def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
     late = loaded(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
-    with pytest.raises(
-        OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple index out of range\.$"
-    ):
-        Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,))).advance(30_000)
+    lockstep = Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,)))
+    with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple "):
+        lockstep.advance(30_000)
 
 
 def test_where_its_numbers_end_it_has_diverged_as_any_method_does():
-    scene = SCENES["linear"].with_cast((loaded(euler()),))
-    lockstep = Lockstep(scene)
+    lockstep = Lockstep(SCENES["linear"].with_cast((loaded(euler()),)))
     lockstep.advance(10_000)
     (reading,) = lockstep.sample().readings
     assert reading.diverged_at is not None

@@ -128,35 +128,6 @@ def run(method, model, h, time=60.0):
     return largest, model.invariant()(phase)
 
 
-@pytest.mark.parametrize("method", [EXPLICIT_EULER, RK4, SPLITTING], ids=lambda method: method.key)
-def test_each_method_has_its_order_in_theta_and_in_the_bloch_vector(method):
-    exact = _exact_phase(1.0)
-    errors = []
-    for steps in (400, 800) if method.order > 1 else (40_000, 80_000):
-        phase = next(islice(method.on(MODEL)(START, 1.0 / steps), steps - 1, None))
-        errors.append(np.abs(np.array(phase) - exact))
-    for index in (0, 2, 3, 4):
-        order = math.log2(errors[0][index] / errors[1][index])
-        assert order == pytest.approx(method.order, abs=0.15)
-
-
-def _exact_phase(t):
-    step = compose(lambda phase, h: strang(MODEL, phase, h))
-    return np.array(Reference(step, START, STEP / 8 / 20).at(t))
-
-
-@given(phase=phases, h=st.floats(0.01, 0.5))
-def test_the_splitting_is_reversible(phase, h):
-    # turning time round turns omega and the part of s across the field's plane
-    def turned_round(phase):
-        theta, omega, sx, sy, sz = phase
-        return theta, -omega, sx, -sy, sz
-
-    there = strang(MODEL, phase, h)
-    back = turned_round(strang(MODEL, turned_round(there), h))
-    assert back == pytest.approx(phase, abs=1e-10)
-
-
 @given(phase=phases, h=st.floats(0.01, 0.3))
 def test_the_splitting_keeps_the_poisson_structure(phase, h):
     jacobian = np.empty((5, 5))

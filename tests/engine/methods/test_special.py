@@ -1,0 +1,248 @@
+"""The methods that belong to a scene: METHODS' claims of them, and their cards' notes."""
+
+import math
+from fractions import Fraction
+from itertools import islice
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
+from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MOST_HALVINGS, halving
+from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
+from engine.methods.implicit import IMPLICIT_MIDPOINT
+from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
+from engine.methods.stiff import IMEX_EULER, RESPA, respa
+from engine.methods.verlet import POSITION_VERLET, velocity_verlet
+from engine.models.damped import DampedPendulum
+from engine.models.mean_field import MeanField
+from engine.models.pendulum import Pendulum
+from engine.models.spring import Spring
+from engine.run.loops import PlainLoops, count_evaluations
+from engine.run.tangent import jacobian
+
+PENDULUM, DAMPED, SPRING = Pendulum(9.81), DampedPendulum(9.81, 0.5), Spring(9.81, 100.0)
+MEAN_FIELD = MeanField(9.81, 2.0, 20.0)
+FORCE = PENDULUM.force()
+SPECIAL = [
+    *((method, PENDULUM) for method in (HALVING_VERLET, HALVING_RICHARDSON)),
+    *((method, PENDULUM) for method in (VERLET_FLOAT32, VERLET_COMPENSATED)),
+    *((method, DAMPED) for method in (LAGGED_VERLET, CONFORMAL_VERLET)),
+    *((method, SPRING) for method in (RESPA, IMEX_EULER)),
+    (method_of("mean_field_splitting"), MEAN_FIELD),
+]
+SPRUNG = [(method, SPRING) for method in (VELOCITY_VERLET, POSITION_VERLET, IMPLICIT_MIDPOINT)]
+RATES = [(method, model) for method in (EXPLICIT_EULER, RK4) for model in (DAMPED, MEAN_FIELD)]
+STIFF = Spring(9.81, 2500.0)
+STEPS = {1: (8000, 16_000), 2: (100, 141, 200, 283), 3: (80, 113, 160), 4: (100, 140, 200)}
+
+
+def with_models(cases):
+    names = [f"{method.key}-{model.key}" for method, model in cases]
+    return pytest.mark.parametrize(("method", "model"), cases, ids=names)
+
+
+@with_models(SPECIAL + SPRUNG + RATES)
+def test_it_has_the_claimed_order(method, model):
+    exact, steps, errors = model.exact(1.0, 0.0).at(1.0).theta, STEPS[method.order], []
+    for n in steps:
+        phase = PlainLoops(method, model).travel(model.start(1.0, 0.0), 1.0 / n, n)
+        errors.append(abs(model.observe(phase).theta - exact))
+    slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(method.order, abs=0.15)
+
+
+@with_models(SPECIAL[:8])
+def test_a_run_evaluates_the_force_as_often_as_claimed(method, model):
+    if method.varies:
+        counted = count_evaluations(method, model, (2.0, 0.0), 0.2, 300)  # a minute
+        assert counted / 300 == pytest.approx(method.force_evaluations, abs=0.5)
+        assert count_evaluations(method, model, (0.1, 0.0), 0.05, 10) == 60  # undivided
+    else:
+        for steps in (1, 2, 10):
+            start = model.start(1.0, 0.5)
+            assert count_evaluations(method, model, start, 0.05, steps) == method.evaluations(steps)
+
+
+@with_models(SPECIAL + SPRUNG + RATES)
+def test_time_turned_round_leads_back_to_the_start_where_claimed(method, model):
+    start = model.start(2.0, 0.3)
+    travel = PlainLoops(method, model).travel
+    turned = np.array([1, -1, 1, -1, 1])[: len(start)]
+    back = travel(tuple((travel(start, 0.2, 50) * turned).tolist()), 0.2, 50)
+    assert (np.abs(back * turned - start).max() < 1e-9) == method.reversible
+
+
+def flat(phase):
+    return np.array(phase).view(float)
+
+
+@with_models([*SPECIAL[6:8], *SPRUNG, *((method, PENDULUM) for method in learned.FAMILY[2:])])
+def test_a_step_keeps_volume_where_claimed(method, model):
+    start, columns = np.array(model.start(1.0, 0.5)), []
+    for nudge in 1e-6 * np.eye(len(flat(start))):
+        off = nudge.view(start.dtype)
+        starts = [tuple(each.tolist()) for each in (start + off, start - off)]
+        ends = [next(method.on(model)(each, 0.02)) for each in starts]
+        columns.append(flat(ends[0]) - flat(ends[1]))
+    assert (abs(np.linalg.det(np.array(columns) / 2e-6) - 1) < 1e-6) == method.symplectic
+
+
+def energy_error(method, h, time):
+    """The relative energy error at the end, and its largest size on the way."""
+    energy, start = PENDULUM.energy(), (2.0, 0.0)
+    _, _, end, low, high = PlainLoops(method, PENDULUM).advance(start, h, round(time / h), math.inf)
+    first = energy(start)
+    return end / first - 1, max(high / first - 1, 1 - low / first)
+
+
+def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length():
+    phases = halving(velocity_verlet, 0.1)
+    small = next(phases(FORCE, (2.0, 0.0), 0.05))
+    assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
+    divided = next(phases(FORCE, (2.0, -5.0), 0.4))
+    halved = next(phases(FORCE, next(phases(FORCE, (2.0, -5.0), 0.2)), 0.2))
+    assert divided == halved
+
+
+@pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=lambda m: m.key)
+@given(theta=st.floats(-1e9, 1e9), omega=st.floats(-1e9, 1e9), h=st.floats(-100, 100))
+def test_where_nothing_looks_accurate_a_step_still_ends(method, theta, omega, h):
+    count = 0
+
+    def counted(theta):
+        nonlocal count
+        count += 1
+        return FORCE(theta)
+
+    assert all(map(math.isfinite, method.step(counted, (theta, omega), h)))
+    assert count <= 6 * (2 ** (MOST_HALVINGS + 1) - 1)
+
+
+def test_in_ten_minutes_it_changes_the_energy_and_verlet_at_the_same_cost_does_not():
+    assert energy_error(HALVING_VERLET, 0.2, 600)[0] > 0.1  # +0.88
+    assert energy_error(HALVING_RICHARDSON, 0.2, 600)[0] < -0.1  # -0.48
+    assert energy_error(VELOCITY_VERLET, 1 / 40, 600)[1] < 0.003  # 0.0012
+    fixed = VELOCITY_VERLET.evaluations(24_000)
+    assert count_evaluations(HALVING_VERLET, PENDULUM, (2.0, 0.0), 0.2, 3000) > fixed
+
+
+def log_energy_error(method, friction, h, time=60.0):
+    """The largest |ln(E/E_true)| from 2 rad."""
+    model = DampedPendulum(9.81, friction)
+    reference, energy = model.reference(2.0, 0.0), model.energy()
+    phases = method.on(model)((2.0, 0.0), h)
+    return max(
+        abs(reference.error(energy(phase), n * h))
+        for n, phase in enumerate(islice(phases, round(time / h)), 1)
+    )
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.2])
+@pytest.mark.parametrize(("share", "gains"), [(0.95, False), (1.05, True)])
+def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction, share, gains):
+    model, h = DampedPendulum(9.81, friction), share * friction / 9.81
+    end = PlainLoops(EXPLICIT_EULER, model).travel((0.1, 0.0), h, round(200 / h))
+    assert (model.energy()(end) > model.energy()((0.1, 0.0))) == gains
+
+
+@pytest.mark.parametrize(
+    ("method", "off"),
+    [(CONFORMAL_VERLET, 0.0), (RK4, 5e-8), (LAGGED_VERLET, -2.5e-5), (EXPLICIT_EULER, 1.3e-2)],
+    ids=lambda value: getattr(value, "key", ""),
+)
+def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method, off):
+    h, friction = 0.05, 0.2
+    determinant = jacobian(method, DampedPendulum(9.81, friction), 1.0, 1.0, h).determinant
+    assert determinant / math.exp(-friction * h) - 1 == pytest.approx(off, rel=0.1, abs=1e-14)
+
+
+def test_conformal_verlet_is_cheapest_at_one_percent_and_rk4_from_a_thousandth_on():
+    def error(method, evaluations):
+        return log_energy_error(method, 0.05, 60 * method.force_evaluations / evaluations)
+
+    assert error(CONFORMAL_VERLET, 1440) < 1e-2 < error(RK4, 1440)
+    assert error(RK4, 5760) < 1e-4 < 1e-3 / 4 < error(CONFORMAL_VERLET, 5760)
+
+
+ordinary = st.floats(-1e15, 1e15).filter(lambda x: x == 0 or abs(x) > 1e-15)
+
+
+@given(a=ordinary, b=ordinary)
+def test_a_number_of_32_bits_is_numpys_float32(a, b):
+    x, y = np.float32(a), np.float32(b)
+    assert Float32(a) == x
+    assert Float32(a) + Float32(b) == x + y
+    assert Float32(a) * Float32(b) == x * y
+    assert isinstance(a * Float32(b), Float32)
+    with pytest.raises(OverflowError):
+        Float32(1e39)
+
+
+@given(increments=st.lists(st.floats(-1, 1), max_size=50))
+def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments):
+    total, exact = Compensated(1e6), Fraction(10**6)
+    for increment in increments:
+        total, exact = total + increment, exact + Fraction(increment)
+    off = Fraction(float(total)) + Fraction(total.compensation) - exact
+    assert abs(off) <= len(increments) * 2.0**-53  # each half a unit in the last place of 1
+    assert abs(total.compensation) <= math.ulp(1e6) / 2
+
+
+def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold():
+    for phase in islice(VERLET_FLOAT32.phases(FORCE, (2.0, 0.3), 0.05), 100):
+        assert all(type(x) is float and Float32(x) == x for x in phase)
+
+
+def test_in_mid_swing_the_kind_of_numbers_does_not_matter():
+    """Verlet's own error, 2e-2 after 10 s, hides them."""
+    kinds = (VELOCITY_VERLET, VERLET_FLOAT32, VERLET_COMPENSATED)
+    ends = [PlainLoops(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in kinds]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4)
+    assert ends[0] == pytest.approx(ends[2], abs=1e-12)
+    assert len(set(ends)) == 3
+
+
+def spring_error(method, model, h):
+    """The largest energy error within 30 s; inf: it failed."""
+    steps, reference = round(30 / h), model.reference(1.0, 0.0)
+    loops = PlainLoops(method, model)
+    done, _, _, low, high = loops.advance(model.start(1.0, 0.0), h, steps, 1e300)
+    return max(abs(reference.error(low)), abs(reference.error(high))) if done == steps else math.inf
+
+
+@pytest.mark.parametrize("stiffness", [400.0, 1e4])
+@pytest.mark.parametrize(
+    ("method", "holds", "fails"), [(VELOCITY_VERLET, 1.95, 2.05), (RK4, 2.80, 2.85)]
+)
+def test_verlet_and_rk4_fail_at_their_linear_limits(method, holds, fails, stiffness):
+    model, period = Spring(9.81, stiffness), 1 / math.sqrt(stiffness)
+    assert spring_error(method, model, holds * period) < 1
+    assert spring_error(method, model, fails * period) >= 1
+
+
+def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_one():
+    half, golden, whole = (
+        spring_error(RESPA, STIFF, share * math.tau / 50) for share in (0.5, 0.618, 0.99)
+    )
+    assert half < golden < 1 < 10 < whole
+
+
+def test_respa_with_one_inner_step_is_verlet_but_for_rounding():
+    start = STIFF.start(1.0, 0.0)
+    phase = next(islice(respa(velocity_verlet, 1)(STIFF.parts(), start, 0.01), 499, None))
+    expected = PlainLoops(VELOCITY_VERLET, STIFF).travel(start, 0.01, 500)
+    assert phase == pytest.approx(expected, abs=1e-11)
+    assert phase != expected
+
+
+def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well():
+    stiffest = Spring(9.81, 1e14)
+    z, w = PlainLoops(IMEX_EULER, stiffest).travel(stiffest.start(1.0, 0.0), 0.02, 1500)
+    assert z == pytest.approx(-1j, abs=0.02)
+    assert abs(w) < 0.2
+    phases = islice(IMEX_EULER.on(STIFF)(STIFF.start(1.0, 0.0), 0.02), 500)
+    left = [STIFF.energy()(phase) / STIFF.reference(1.0, 0.0).start for phase in phases]
+    assert (left[49], left[499]) == pytest.approx((0.52, 0.065), abs=0.01)  # after 1 and 10 s
