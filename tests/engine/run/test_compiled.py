@@ -2,8 +2,6 @@
 
 import importlib
 import math
-import subprocess
-import sys
 from resource import RUSAGE_SELF, getrusage
 
 import pytest
@@ -17,6 +15,7 @@ from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.engine.run.test_loops import OVERFLOWING
+from tests.test_architecture import loaded_after
 
 needs_numba = pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
 PENDULUM = Pendulum(9.81)
@@ -118,11 +117,15 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     assert used == compiled_steps
 
 
-def test_neither_a_few_steps_nor_asking_for_numba_imports_it():
-    work = "import sys; from engine.run.compiled import *; from engine.scenes import DEFAULT_SCENE as s; available(); "
-    work += "TieredLoops(s.cast[0], s.equations).travel((1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
-    told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
-    assert told.stdout == "False\n"
+def test_neither_a_few_steps_nor_asking_for_numba_nor_the_reference_lines_import_it():
+    work = """
+import engine.accuracy.references
+from engine.run.compiled import TieredLoops, available
+from engine.scenes import DEFAULT_SCENE as scene
+available()
+TieredLoops(scene.cast[0], scene.equations).travel((1.0, 0.0), 0.05, 10_000)
+"""
+    assert loaded_after(work, "numba") == []
 
 
 @needs_numba
