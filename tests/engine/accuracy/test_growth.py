@@ -13,7 +13,6 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
 @pytest.mark.parametrize(
     ("scene", "method", "power"),
     [
-        (Scene(h=0.02), VERLET, 1),
         (Scene(), VERLET, 1),
         (Scene(theta=2.0, h=0.01), VERLET, 1),
         (SCENES["spin"].altered(h=0.01), VERLET, 1),
@@ -22,6 +21,12 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
         (Scene(theta=0.01), RK4, 1),  # where the period does not hang on the energy
         (SCENES["linear"].altered(h=0.05), RK4, 1),
         (SCENES["linear"].altered(h=0.05), VERLET, 1),
+        (Scene(), EXPLICIT, None),  # the error is more than a turn by then
+        (Scene(h=0.3), VERLET, None),  # and too large after few swings
+        (Scene(h=0.02), SYMPLECTIC, None),  # a wobble, and what grows as t
+        (Scene(theta=0.0), VERLET, None),  # at rest
+        (Scene(h=1e-5), VERLET, None),  # too many steps
+        (SCENES["linear"].altered(h=1.9), RK4, None),  # longer than a fourth of the period
     ],
     ids=lambda value: str(getattr(value, "key", "")),
 )
@@ -29,39 +34,22 @@ def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_square
     scene, method, power
 ):
     found = growth(scene, method)
-    assert found.power == pytest.approx(power, abs=0.15)
-    assert found.name == f"{method.label} t^{found.power:.2f}"
-
-
-@pytest.mark.parametrize(
-    ("scene", "method"),
-    [
-        (Scene(), EXPLICIT),  # the error is more than a turn by then
-        (Scene(h=0.3), VERLET),  # and too large after few swings
-        (Scene(h=0.02), SYMPLECTIC),  # a wobble, and what grows as t
-        (Scene(theta=0.0), VERLET),  # at rest
-        (Scene(h=1e-5), VERLET),  # too many steps
-        (SCENES["linear"].altered(h=1.9), RK4),  # longer than a fourth of the period
-    ],
-    ids=lambda value: str(getattr(value, "key", "")),
-)
-def test_errors_without_a_power_of_t_give_none(scene, method):
-    assert growth(scene, method).power is None
+    if power is None:
+        assert found.power is None
+    else:
+        assert found.power == pytest.approx(power, abs=0.15)
+        assert found.name == f"{method.label} t^{found.power:.2f}"
 
 
 def test_the_errors_of_each_period_are_those_of_the_run():
-    scene = Scene(theta=2.0, h=0.02)
-    (found,) = growths(
-        scene.altered(h=1.0, cast=(VERLET,)), (-0.02,)
-    )  # backwards in time errors are the same
-    exact, (theta, _) = scene.exact(), orbit(VERLET, scene.equations, 0.02, (2.0, 0.0), 6000)
-    off = [abs(float(theta[k]) - exact.at(0.02 * k).theta) for k in range(6001)]
+    scene, h = Scene(theta=2.0, h=0.02), 0.02
+    exact = scene.exact()
+    assert duration(scene) == pytest.approx(100 * exact.period)
+    # backwards in time errors are the same
+    (found,) = growths(scene.altered(h=1.0, cast=(VERLET,)), (-h,))
+    theta, _ = orbit(VERLET, scene.equations, h, (2.0, 0.0), 6000)
+    off = [abs(float(theta[k]) - exact.at(h * k).theta) for k in range(6001)]
     for at in (0, 5, 20):
         assert found.times[at] == pytest.approx((at + 0.5) * exact.period)
-        period = slice(int(at * exact.period / 0.02), int((at + 1) * exact.period / 0.02))
-        assert 0.9 * max(off[period]) < found.errors[at] <= max(off[period.start : period.stop + 2])
-
-
-def test_it_takes_a_hundred_periods():
-    scene = Scene()
-    assert duration(scene) == pytest.approx(100 * scene.exact().period)
+        begin, end = (int(n * exact.period / h) for n in (at, at + 1))
+        assert 0.9 * max(off[begin:end]) < found.errors[at] <= max(off[begin : end + 2])
