@@ -3,7 +3,9 @@
 import os
 import signal
 import time
+from functools import partial
 from pathlib import Path
+from signal import SIGHUP, SIGINT, SIGTERM
 
 import pytest
 
@@ -15,48 +17,47 @@ WRITERS = {
     "accuracy": ("accuracy", "--time", 1, "--h-values", "0.2:0.1:2", "-o"),
     "stability": ("stability", "--steps", 5, "--z-values", "0.1,0.2", "--theta-values", "1", "-o"),
 }
-each_writer = pytest.mark.parametrize("command", WRITERS.values(), ids=WRITERS)
+
+
+def write(file: Path, after, force: bool = False) -> None:
+    with whole_file(file, force) as meanwhile:
+        meanwhile.write_text("half")
+        assert not file.exists() or file.read_text() == "older"
+        after()
 
 
 def test_a_file_appears_when_it_is_whole(tmp_path):
     file = tmp_path / "data"
-    with whole_file(file) as meanwhile:
-        meanwhile.write_text("half")
-        assert not file.exists()
+    write(file, lambda: None)
     assert file.read_text() == "half"
     assert list(tmp_path.iterdir()) == [file]
 
 
-@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_after_an_error_the_older_file_is_unchanged(tmp_path, error):
+def fail() -> None:
+    raise OSError("full")
+
+
+def ask_to_end(number: int) -> None:
+    os.kill(os.getpid(), number)
+    time.sleep(1)
+
+
+@pytest.mark.parametrize(
+    ("after", "error"),
+    [
+        (fail, OSError),
+        *((partial(ask_to_end, each), KeyboardInterrupt) for each in (SIGINT, SIGTERM, SIGHUP)),
+    ],
+)
+def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after, error):
+    before = signal.getsignal(SIGTERM)
     file = tmp_path / "data"
     file.write_text("older")
-
-    def fail():
-        with whole_file(file, force=True) as meanwhile:
-            meanwhile.write_text("half")
-            raise error
-
     with pytest.raises(error):
-        fail()
+        write(file, after, force=True)
     assert file.read_text() == "older"
     assert list(tmp_path.iterdir()) == [file]
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
-    before = signal.getsignal(number)
-
-    def end_it():
-        with whole_file(tmp_path / "data") as meanwhile:
-            meanwhile.write_text("half")
-            os.kill(os.getpid(), number)
-            time.sleep(1)
-
-    with pytest.raises(KeyboardInterrupt):
-        end_it()
-    assert list(tmp_path.iterdir()) == []
-    assert signal.getsignal(number) is before
+    assert signal.getsignal(SIGTERM) is before
 
 
 def test_force_does_not_replace_a_folder(tmp_path):
@@ -69,7 +70,7 @@ def test_a_device_is_written_to_and_not_replaced():
         assert str(meanwhile) == "/dev/null"
 
 
-@each_writer
+@pytest.mark.parametrize("command", WRITERS.values(), ids=WRITERS)
 def test_every_command_overwrites_only_with_force(tmp_path, command):
     file = tmp_path / "file.csv"
     file.write_text("older")
@@ -88,14 +89,8 @@ def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monke
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
     file = tmp_path / "data"
-
-    def write():
-        with whole_file(file) as meanwhile:
-            meanwhile.write_text("ours")
-            file.write_text("precious")
-
     with pytest.raises(OSError, match="appeared meanwhile"):
-        write()
+        write(file, lambda: file.write_text("precious"))
     assert file.read_text() == "precious"
     assert list(tmp_path.iterdir()) == [file]
 

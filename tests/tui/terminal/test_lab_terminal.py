@@ -3,9 +3,10 @@
 import os
 import shutil
 import signal
-import subprocess
 import sys
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,7 +26,7 @@ def library(tmp_path: Path) -> Path:
     return tmp_path / "library"
 
 
-def lab(library: Path, *arguments: str, **environment: str) -> PtyLab:
+def lab(library: Path, *arguments: str, **environment: Any) -> PtyLab:
     return PtyLab(*arguments, PENDU_RECORDINGS=str(library), **environment)
 
 
@@ -58,42 +59,32 @@ def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_v
     assert whole(library) == ["start", "set_h", "pause", "start", "stop"]
 
 
-def ask(session: PtyLab, how: signal.Signals | str) -> None:
-    """Ask for the end by a signal, a key or closing the terminal."""
-    if isinstance(how, signal.Signals):
-        session.signal(how)
-    elif how == "closed":
-        session.hang_up()
-    else:
-        session.type(how)
+def program(code: str) -> list[str]:
+    """The lab in which the key m runs some code."""
+    mark = f"import time\nfrom tui.screens.live import LiveScreen\ndef mark(self): {code}\n"
+    return [*PENDU[:2], f"{mark}LiveScreen.action_mark = mark\n{PENDU[2]}"]
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "\x03", "closed"])
-def test_whatever_ends_the_lab_finishes_the_recording(library, how):
-    with lab(library) as session:
+ENDS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "\x03", "closed"]
+
+
+@pytest.mark.parametrize(
+    ("how", "is_stuck"), [*product(ENDS, [False]), *product(ENDS[1:3], [True]), ("closed", True)]
+)
+def test_whatever_ends_the_lab_within_10_s_finishes_the_recording(library, how, is_stuck):
+    with lab(library, program=program("time.sleep(1000)")) as session:
         session.wait_for(RECORDING)
-        ask(session, how)
-        assert session.end() == 130
-        assert how == "closed" or b"\x1b[?1049l" in session.output  # the terminal is as it was
-    assert whole(library)
-
-
-STUCK = """
-import time
-from tui.screens.live import LiveScreen
-LiveScreen.action_mark = lambda self: time.sleep(1000)
-"""
-
-
-@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, "closed"])
-def test_a_lab_that_is_stuck_ends_within_10_s_and_finishes_its_recording(library, how):
-    with PtyLab(program=[*PENDU[:2], STUCK + PENDU[2]], PENDU_RECORDINGS=str(library)) as session:
-        session.wait_for(RECORDING)
-        session.type("m")
-        session.run(0.5)
-        ask(session, how)
+        if is_stuck:
+            session.type("m")
+            session.run(0.5)
+        if isinstance(how, signal.Signals):
+            session.signal(how)
+        elif how == "closed":
+            session.hang_up()
+        else:
+            session.type(how)
         assert session.end(10.0) == 130
-        assert how == "closed" or b"\x1b[?1049l" in session.output
+        assert how == "closed" or b"\x1b[?1049l" in session.output  # the terminal is as it was
     assert whole(library)
 
 
@@ -108,14 +99,10 @@ def mine(force, phase, h):
 """
 
 
-def lab_with_mine(library: Path) -> PtyLab:
-    path = {"PENDU_RECORDINGS": str(library), "PYTHONPATH": str(ROOT)}
-    return PtyLab("live", "--method", "mine.py:mine", folder=library.parent, **path)
-
-
 def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_path, library):
     (tmp_path / "mine.py").write_text(ENDLESS)
-    with lab_with_mine(library) as session:
+    own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
+    with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
         session.wait_for("REC 1 s")
         (tmp_path / "endless").touch()
         session.wait_for("takes more than 3 s for a step", 4.0)
@@ -129,15 +116,8 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
     assert pendu("verify", recorded, "--method", f"{tmp_path / 'mine.py'}:mine").code == 0
 
 
-BROKEN = """
-from tui.screens.live import LiveScreen
-def broken(self): raise ZeroDivisionError("in the lab")
-LiveScreen.action_mark = broken
-"""
-
-
 def test_an_error_ends_the_lab_with_one_sentence_and_its_recording_is_finished(library):
-    with PtyLab(program=[*PENDU[:2], BROKEN + PENDU[2]], PENDU_RECORDINGS=str(library)) as session:
+    with lab(library, program=program("raise ZeroDivisionError('in the lab')")) as session:
         session.wait_for(RECORDING)
         session.type("m")
         assert session.end() == 1
@@ -157,7 +137,7 @@ signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
 
 def test_a_lab_whose_input_is_at_its_end_leaves_without_a_signal(library):
-    with PtyLab(program=[*PENDU[:2], DEAF + PENDU[2]], PENDU_RECORDINGS=str(library)) as session:
+    with lab(library, program=[*PENDU[:2], DEAF + PENDU[2]]) as session:
         session.wait_for(RECORDING)
         began = session.now
         session.hang_up()
@@ -208,30 +188,20 @@ def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(library):
     library.mkdir(exist_ok=True)
     name = os.fsdecode(b"x\xff.mcap")
     shutil.copy(GOLDEN / "drift.mcap", library / name)
-    with PtyLab("replay", str(library / name), size=(160, 40)) as pendu:
-        pendu.wait_for("x\N{REPLACEMENT CHARACTER}.mcap")
-        pendu.type("q")
-        assert pendu.end() == 0
+    with PtyLab("replay", str(library / name), size=(160, 40)) as session:
+        session.wait_for("x\N{REPLACEMENT CHARACTER}.mcap")
+        session.type("q")
+        assert session.end() == 0
 
 
 def test_a_terminal_that_cannot_move_its_cursor_gets_a_sentence_and_exit_4(library):
     with lab(library, TERM="dumb") as session:
         assert session.end() == 4
-        said = session.output.decode()
-    assert said.startswith("pendu-tui: ")
-    assert "TERM=dumb" in said
-    assert said.count("\n") == 1
+        printed = session.output.decode()
+    assert printed.startswith("pendu-tui: ")
+    assert "TERM=dumb" in printed
+    assert printed.count("\n") == 1
     assert not library.exists()
-
-
-@pytest.mark.parametrize("command", [["live"], ["replay", "drift"]])
-def test_without_a_terminal_there_is_a_sentence_and_exit_4(command):
-    done = subprocess.run(
-        [*PENDU, *command], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False
-    )
-    assert (done.returncode, done.stdout) == (4, "")
-    assert "not a terminal" in done.stderr
-    assert done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -239,6 +209,7 @@ def test_without_a_terminal_there_is_a_sentence_and_exit_4(command):
     [
         (("live", "--scene", "drfit"), 2, "did you mean drift"),
         (("replay", "no-such"), 3, "no recording"),
+        (("replay", "drift"), 4, "not a terminal"),
     ],
 )
 def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, words):

@@ -1,10 +1,13 @@
-import argparse
+import io
+from types import SimpleNamespace
 
 import pytest
+from textual.drivers._writer_thread import WriterThread
 
 from tui.cli.errors import UserError
 from tui.cli.options import Parser
 from tui.drawing.palette import PALETTES
+from tui.terminal.check import is_writing
 from tui.terminal.options import (
     CALM_FPS,
     CHARACTER_SETS,
@@ -59,18 +62,12 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 
 
 @pytest.mark.parametrize(
-    ("environment", "number"),
-    [
-        ({"TERM": "xterm-256color"}, 256),
-        ({"TERM": "tmux-256color", "COLORTERM": "truecolor"}, 1 << 24),
-        ({"TERM": "xterm-kitty"}, 256),
-        ({"TERM": "screen"}, 16),
-        ({"TERM": "dumb"}, 0),
-        ({}, 0),
-    ],
+    ("term", "number"),
+    [("xterm-256color", 256), ("xterm-kitty", 256), ("screen", 16), ("dumb", 0), ("", 0)],
 )
-def test_colours_are_counted_by_what_the_terminal_is_called(environment, number):
-    assert colours(environment) == number
+def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
+    assert colours({"TERM": term}) == number
+    assert colours({"TERM": term, "COLORTERM": "truecolor"}) == 1 << 24
 
 
 @pytest.mark.parametrize(
@@ -86,14 +83,16 @@ def test_reduced_motion_is_fewer_frames_unless_they_are_asked_for():
     assert chosen("--fps", "60", TEXTUAL_ANIMATIONS="none").fps == 60
 
 
-@pytest.mark.parametrize("fps", ["0", "61", "1.5", "fast"])
-def test_frames_that_cannot_be_are_refused(fps):
-    with pytest.raises(UserError, match="fps"):
-        chosen("--fps", fps)
+@pytest.mark.parametrize("arguments", ["--fps 0", "--fps 61", "--fps 1.5", "--theme pink"])
+def test_what_cannot_be_is_refused(arguments):
+    with pytest.raises(UserError, match=arguments.split()[0]):
+        chosen(*arguments.split())
 
 
-def test_every_choice_is_in_the_help():
-    parser = argparse.ArgumentParser()
-    add_terminal_options(parser)
-    assert "{auto,dark,light,high-contrast,ansi}" in parser.format_help()
-    assert "{auto,braille,half,ascii}" in parser.format_help()
+def test_the_terminal_is_behind_while_textuals_queue_holds_a_frame():
+    writer = WriterThread(io.StringIO())  # it is not started, so nothing leaves the queue
+    app = SimpleNamespace(_driver=SimpleNamespace(_writer_thread=writer))
+    assert not is_writing(app)
+    writer.write("a frame")
+    assert is_writing(app)
+    assert not is_writing(SimpleNamespace(_driver=None))  # which has no such queue

@@ -23,12 +23,6 @@ async def test_the_text_of_a_picture_is_what_is_on_the_screen():
         assert max(map(len, lines)) == 80
 
 
-def test_special_characters_come_through():
-    svg = '<text class="r" x="24.4" y="2" clip-path="url(#terminal-1-line-1)">&lt;a&#160;b&amp;⣿&gt;</text>'
-    assert text_of(svg) == "\n  <a b&⣿>"
-    assert text_of("<svg/>") == ""
-
-
 async def test_s_saves_a_picture_among_the_recordings(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "new"))
     async with lab(size=(80, 24)) as theatre:

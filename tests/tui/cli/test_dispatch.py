@@ -1,0 +1,155 @@
+"""From the first word of a command line to its exit code."""
+
+import os
+import re
+import shlex
+import subprocess
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from engine.methods import METHODS
+from recordings.library import GOLDEN
+from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU
+from tui.cli.dispatch import COMMANDS, RENAMED, command_of, completion_parser, split
+from tui.cli.errors import Exit
+
+ONE_SECOND = ("--time", "1", "--json")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("swing.toml").write_text("theta = 0.5\n", encoding="utf-8")
+    Path("swing.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
+
+
+@pytest.mark.parametrize("word", ["crossover", "swing.toml", "swing.mcap"])
+def test_a_scene_or_a_file_opens_the_lab_which_needs_a_terminal(word):
+    assert pendu(word).refused(4, "not a terminal")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("spin", *ONE_SECOND), (*ONE_SECOND, "spin"), (*ONE_SECOND, "--scene", "spin")],
+    ids=" ".join,
+)
+def test_a_scene_may_stand_before_or_after_the_options(arguments):
+    assert pendu("run", *arguments).json["scene"]["name"] == "spin"
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "words"),
+    [
+        ("nothing.toml", 3, "nothing.toml"),
+        ("nothing.mcap", 3, "nothing.mcap"),
+        ("crosover", 2, "did you mean crossover?"),
+        ("snapshto", 2, "did you mean snapshot?"),
+        ("run spin --scene drift --time 1", 2, "spin and drift"),
+        ("--print-completion ksh", 2, "bash"),
+        ("scenes extra", 2, "extra"),
+        ("run --tiem 10", 2, "run has no option --tiem: did you mean --time?"),
+        ("run --tiem=10", 2, "--time?"),
+        ("snapshot -x lab.svg", 2, "snapshot has no option -x; pendu-tui snapshot --help"),
+        ("--nonsense", 2, "live has no option --nonsense"),
+        ("judge x.csv", 2, "required: --time, --energy"),
+        ("run --time 1 --theta -abc", 2, "has no option -a"),
+        ("run --time --h 0.1", 2, "--time: expected one argument"),
+        ("run --time 1 drift more", 2, "unrecognized arguments: more"),
+        ("--h 0.1 run", 2, "there is no scene 'run'"),
+        ("--theta=--", 2, "--theta: expected one argument"),
+        ("snapshot -o--", 2, "-o: expected one argument"),
+        *((f"{name} x --json", 2, f"use: pendu-tui {new}") for name, new in RENAMED.items()),
+    ],
+)
+def test_a_mistake_is_one_sentence_that_helps(line, code, words):
+    assert pendu(*line.split()).refused(code, words)
+
+
+def test_an_escape_sequence_is_not_printed_raw():
+    assert "\x1b" not in pendu("\x1b[31mscenes").err
+
+
+def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
+    monkeypatch.setattr("tui.commands.about.scenes.run", lambda _: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        pendu("scenes")
+
+
+@pytest.mark.parametrize("becomes", [KeyboardInterrupt, ImportError])
+def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_it(
+    monkeypatch, becomes
+):
+    def interrupted(_: object) -> int:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            raise becomes("half imported") from None
+
+    monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
+    outcome = pendu("scenes")
+    assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
+
+
+def process(command: str, **options: object) -> subprocess.CompletedProcess[str]:
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options
+    return subprocess.run([*PENDU, command], check=False, **streams)
+
+
+def test_a_closed_pipe_prints_nothing_and_exits_with_141():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = process("scenes", stdout=writing)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="an always full device is Linux's")
+@pytest.mark.parametrize("command", ["methods", "scenes"])  # less than a buffer, and more
+def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5(command):
+    with Path("/dev/full").open("w") as full:
+        done = process(command, stdout=full)
+    assert (done.returncode, done.stderr.count("\n")) == (5, 1)
+    assert "output: No space left on device; free some space" in done.stderr
+
+
+def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
+    done = process("methods", env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0
+    assert "h?w0" in done.stdout
+
+
+def test_help_and_version():
+    codes = pendu("--help").out.partition("exit codes:")[2].partition("\n\n")[0]
+    assert [int(code) for code in re.findall(r"\d+", codes)] == [*Exit][:-1]  # a pipe sees no code
+    assert pendu("help", "run").out == pendu("run", "--help").out
+    assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_is_explained_and_the_parser_takes_the_examples(name):
+    parser, command = command_of(name)
+    assert all(action.help for action in parser._actions)
+    assert command.EXAMPLES.startswith("examples:\n")
+    examples = re.findall(r"^ +(pendu-tui .*)", command.EXAMPLES, re.MULTILINE)
+    assert examples
+    for example in examples:
+        word, words = split(shlex.split(example.split("|")[0])[1:])
+        command_of(word)[0].parse_args(words)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_for_the_tab_key_has_all_commands_and_methods(shell):
+    outcome = pendu("--print-completion", shell)
+    assert (outcome.code, outcome.err) == (0, "")
+    for word in (*COMMANDS, *(method.key for method in METHODS)):
+        assert word in outcome.out
+
+
+def test_every_option_with_a_file_is_completed():
+    for command in completion_parser()._subparsers._group_actions[0].choices.values():
+        for action in command._actions:
+            if action.metavar in ("FILE", "FILE.svg", "FILE.npz", "KEY,KEY", "SCENE"):
+                assert action.choices or action.complete, (command.prog, action.dest)
