@@ -7,22 +7,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+Labels = dict[float, str]
 Ticks = list[tuple[float, str]]
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A range of numbers with labels at the middle of a row or at a moment."""
+    """A range of numbers with labels, by value, at the middle of a row or at a moment."""
 
     low: float
     high: float
-    labels: dict[float, str]  # by value
+    labels: Labels
 
     def share(self, values: ArrayLike) -> Floats:
         """Positions of values along the axis, from 0 to 1, clipped."""
-        return np.clip(
-            (np.asarray(values, np.float64) - self.low) / (self.high - self.low), 0.0, 1.0
-        )
+        shares = (np.asarray(values, np.float64) - self.low) / (self.high - self.low)
+        return np.clip(shares, 0.0, 1.0)
 
     @property
     def label_width(self) -> int:
@@ -43,36 +43,21 @@ def nice(value: float) -> float:
     return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
 
 
-_LADDER = (
-    *((1 / size, 1) for size in (16, 12, 8, 6, 4, 3, 2)),
-    *(
-        (2 / 3, 2),
-        (1, 2),
-        (3 / 2, 3),
-        (2, 4),
-        (3, 6),
-        (4, 8),
-        (6, 12),
-        (12, 24),
-        (50, 100),
-        (200, 400),
-        (500, 1000),
-    ),
+_DECADES = (
+    *(1 / 16, 1 / 12, 1 / 8, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3),
+    *(1, 3 / 2, 2, 3, 4, 6, 12, 50, 200, 500),
 )
-"""Decades a row of characters, and decades from label to label."""
+"""What a row of characters may be."""
 
 
 def log_axis(low: float, high: float, rows: int) -> Axis:
     """A vertical axis of log10 from low to high, at least two decades long, and hardly longer."""
     low = min(low, high - 2)
-    size, step = next(
-        (size, step) for size, step in _LADDER if round(high / size) - round(low / size) < rows
-    )
+    size = next(size for size in _DECADES if round(high / size) - round(low / size) < rows)
     bottom = (round(high / size) + 0.5 - rows) * size
     top = (round(high / size) + 0.5) * size
-    inside: list[float] = [
-        number * step for number in range(math.ceil(bottom / step), math.floor(top / step) + 1)
-    ]
+    step = math.ceil(2 * size)
+    inside: list[float] = [number * step for number in _multiples(bottom, top, step, slack=0)]
     if len(inside) < 2 and size >= 1:  # a few rows: each has its label
         inside = [round(high / size) * size - size * row for row in range(rows)][::-1]
     return Axis(bottom, top, {value: _power(value) for value in inside})
@@ -81,11 +66,10 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
     """A horizontal axis of log10, with at most one label in 8 columns."""
     first = math.floor(low)
-    last = max(math.ceil(high), math.floor(low) + 1)
+    last = max(math.ceil(high), first + 1)
     step = math.ceil((last - first) * 8 / columns)
-    return Axis(
-        first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0}
-    )
+    powers = [step * number for number in _multiples(first, last, step, slack=0)]
+    return Axis(first, last, {power: _power(power) for power in powers})
 
 
 def _power(exponent: float) -> str:
@@ -101,24 +85,20 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
     if high - low < least:
         low = low - least
         high = high + least
-    power = math.floor(math.log10(high - low)) - 1
-    steps = [part * 10.0**power for part in (1, 2, 5, 10, 20, 50, 100)]
+    power = 10.0 ** (math.floor(math.log10(high - low)) - 1)
+    steps = [part * power for part in (1, 2, 5, 10, 20, 50, 100)]
 
     def rows_apart(step: float) -> int:
         top = math.ceil(high / step - 1e-9)
         return math.floor((rows - 1) * step / (top * step - low) + 1e-9)
 
-    step = next((step for step in steps if rows_apart(step) >= 2), None)
-    step = step or next(step for step in steps if rows_apart(step) >= 1)
+    step = next(step for apart in (2, 1) for step in steps if rows_apart(step) >= apart)
     top = math.ceil(high / step - 1e-9)
     row = step / rows_apart(step)
     bottom = top * step - (rows - 0.5) * row
     numbers = range(math.ceil(bottom / step), top + 1)
-    return Axis(
-        bottom,
-        top * step + row / 2,
-        {number * step: _label(number * step, step) for number in numbers},
-    )
+    labels = {number * step: _label(number * step, step) for number in numbers}
+    return Axis(bottom, top * step + row / 2, labels)
 
 
 def _label(value: float, step: float) -> str:
@@ -133,13 +113,11 @@ def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
 
     The last label adds unit and note.
     """
-    size, unit = next(
-        (unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s")
-    )
+    units = ((3600, "h"), (60, "min"))
+    size, unit = next((each for each in units if end - start >= 5 * each[0]), (1, "s"))
     step = nice((end - start) / size / max(columns / 10, 1))
-    labels = {
-        k * step * size: f"{k * step:.6g}" for k in _multiples(start / size, end / size, step, 1e-9)
-    }
+    numbers = _multiples(start / size, end / size, step, slack=1e-9)
+    labels = {number * step * size: f"{number * step:.6g}" for number in numbers}
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
@@ -157,26 +135,24 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     """Return an axis of log10 of seconds, labelled in s, min, h or d every 8 columns or more."""
     low = math.log10(start)
     high = math.log10(end)
-    labels: dict[float, str] = {}
+    labels: Labels = {}
     for seconds, text in _TIMES:
         place = math.log10(seconds)
-        if low <= place <= high and (
-            not labels or (place - max(labels)) / (high - low) * columns >= 8
-        ):
+        apart = 8 * (high - low) / columns
+        if low <= place <= high and (not labels or place - max(labels) >= apart):
             labels[place] = text
     if len(labels) < 2:  # so short that it is almost linear
         linear = time_axis(start, end, columns, note).labels
-        return Axis(
-            low, high, {math.log10(value): text for value, text in linear.items() if value > 0}
-        )
-    labels[max(labels)] += note
+        labels = {math.log10(value): text for value, text in linear.items() if value > 0}
+    else:
+        labels[max(labels)] += note
     return Axis(low, high, labels)
 
 
 def number_ticks(low: float, high: float, most: int) -> Ticks:
     """Positions and labels of about `most` numbers."""
     step = nice((high - low) / most)
-    return [(k * step, compact(k * step)) for k in _multiples(low, high, step)]
+    return [(number * step, compact(number * step)) for number in _multiples(low, high, step)]
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
@@ -184,12 +160,11 @@ def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
     share = (high - low) / math.pi / most
     if high - low <= 0.02 * math.pi:
         return number_ticks(low, high, most)
-    quarters = (each / 4 for each in (1, 2, 4))
-    step = next((each for each in quarters if each >= share > 0.1), nice(share))
-    return [
-        (k * step * math.pi, in_pi(k * step, wrap))
-        for k in _multiples(low / math.pi, high / math.pi, step)
-    ]
+    step = nice(share)
+    if 0.1 < share <= 1:
+        step = next(quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share)
+    numbers = _multiples(low / math.pi, high / math.pi, step)
+    return [(number * step * math.pi, in_pi(number * step, wrap)) for number in numbers]
 
 
 def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> range:
@@ -208,11 +183,10 @@ def in_pi(turns: float, wrap: bool = False) -> str:
         turns = round(math.remainder(turns, 2), 12)
     if turns == 0:
         return "0"
-    for divisor in (1, 2, 4):
-        over = turns * divisor
-        if over == round(over):
-            factor = {1: "", -1: "-"}.get(round(over), str(round(over)))
-            return f"{factor}pi" + (f"/{divisor}" if divisor > 1 else "")
+    for divisor, over in ((1, ""), (2, "/2"), (4, "/4")):
+        if turns * divisor == round(turns * divisor):
+            factor = {1: "", -1: "-"}.get(round(turns * divisor), f"{turns * divisor:.0f}")
+            return f"{factor}pi{over}"
     return f"{compact(turns)}pi"
 
 
@@ -225,14 +199,6 @@ def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, fl
     column = seconds / columns
     end = max(math.ceil(latest / column) * column, seconds)
     return end - seconds, end
-
-
-LONG = 60.0  # s; a whole run that is longer has a logarithmic time axis
-
-
-def log_start(end: float) -> float:
-    """Return where a log time axis to `end` begins: a power of ten, two or three decades before."""
-    return float(10.0 ** math.floor(math.log10(end) - 2.3))
 
 
 def envelope(x: Floats, values: Floats, hold: float) -> Floats:
@@ -253,17 +219,15 @@ def per_column(
     x ascends.  Returns (columns, series); nan where no row falls into a column.
     """
     lows = np.full((columns, low.shape[1]), np.nan)
-    highs = np.full((columns, low.shape[1]), np.nan)
+    highs = lows.copy()
     # A row on an edge belongs to the right-hand column, however the edge is rounded.
-    edges = np.searchsorted(
-        x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns
-    )
+    slack = 1e-9 * (end - start) / columns
+    edges = np.searchsorted(x, np.linspace(start, end, columns + 1) - slack)
     edges[-1] = np.searchsorted(x, end, "right")
     filled = np.flatnonzero(edges[1:] > edges[:-1])
     if len(filled):
-        last = edges[-1]
-        lows[filled] = np.fmin.reduceat(low[:last], edges[filled], axis=0)
-        highs[filled] = np.fmax.reduceat(high[:last], edges[filled], axis=0)
+        lows[filled] = np.fmin.reduceat(low[: edges[-1]], edges[filled], axis=0)
+        highs[filled] = np.fmax.reduceat(high[: edges[-1]], edges[filled], axis=0)
     return lows, highs
 
 
@@ -272,9 +236,7 @@ def held(x: Floats, values: Floats, start: float, end: float, columns: int, hold
     column = (end - start) / columns
     back = min(math.ceil(hold / column), columns)
     _, highs = per_column(x, values, values, start - back * column, end, back + columns)
-    largest: Floats = np.fmax.reduce(
-        [highs[offset : offset + columns] for offset in range(back + 1)]
-    )
+    largest: Floats = np.fmax.reduce([highs[at : at + columns] for at in range(back + 1)])
     begun = math.ceil((x[-1] - start) / column) if len(x) else 0
     largest[max(begun, 1) :] = np.nan
     return largest

@@ -143,9 +143,16 @@ class Canvas:
         inside = 0 <= column < self.columns and 0 <= row < self.rows
         return inside and row * self.columns + column not in self._letters
 
-    def is_blank(self, column: int, row: int) -> bool:
-        """Return whether a cell is on the canvas, and neither a letter nor a dot is in it."""
-        return self.is_free(column, row) and not self._bits[row * self.columns + column]
+    def label_where_blank(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> bool:
+        """Write text at the first of some cells where it covers nothing, if there is one."""
+        for column, row in places:
+            cells = range(column, column + len(text))
+            if all(
+                self.is_free(at, row) and not self._bits[row * self.columns + at] for at in cells
+            ):
+                self.label(column, row, text, ink)
+                return True
+        return False
 
     def ink_at(self, column: int, row: int) -> int:
         """Return the ink of a cell, NOBODY where it is blank."""

@@ -68,16 +68,14 @@ class LogLog:
             inside = (y >= self.y_axis.low) & (y <= self.y_axis.high)
             x = x[inside]
             y = y[inside]
-        return (self.columns * self.x_axis.share(x)).tolist(), (
-            self.rows * self.y_axis.share(y)
-        ).tolist()
+        across = self.columns * self.x_axis.share(x)
+        return across.tolist(), (self.rows * self.y_axis.share(y)).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return column and row of the picture in which a point on the axes lies."""
-        column = self.columns * float(self.x_axis.share(math.log10(x)))
-        return self.left + int(column), 1 + row_at(
-            self.rows * float(self.y_axis.share(math.log10(y))), self.rows
-        )
+        across = self.columns * float(self.x_axis.share(math.log10(x)))
+        up = self.rows * float(self.y_axis.share(math.log10(y)))
+        return self.left + int(across), 1 + row_at(up, self.rows)
 
 
 def loglog_chart(
@@ -96,21 +94,18 @@ def loglog_chart(
     canvas.label(0, height - 1, x_label.rjust(width), TEXT)
     _plot(canvas, axes, curves)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
-        most = width - len(one.mark)
-        points = [
-            (min(axes.left + int(at), most), row_at(up, axes.rows))
-            for at, up in zip(x, y, strict=True)
+        last = width - len(one.mark)
+        cells = [
+            (min(axes.left + int(across), last), 1 + row_at(up, axes.rows))
+            for across, up in zip(x, y, strict=True)
         ]
-        for column, row in points[-1:] if one.dotted else points:
-            place = column, 1 + row
+        for column, row in cells[-1:] if one.dotted else cells:
+            near = []
             if one.dotted:
-                near = [
-                    (column + right, 1 + row + down)
-                    for down in (0, -1, 1)
-                    for right in range(1, -8, -1)
-                ]
-                place = _first_free(canvas, near, len(one.mark), axes.rows) or place
-            canvas.label(*place, one.mark, one.ink)
+                rows = [at for at in (row, row - 1, row + 1) if 1 <= at <= axes.rows]
+                near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
+            if not canvas.label_where_blank(near, one.mark, one.ink):
+                canvas.label(column, row, one.mark, one.ink)
     return canvas.picture()
 
 
@@ -120,12 +115,11 @@ def _plot(
     """Let plotext draw the curves and the axes on a canvas, between its first and its last row."""
     import plotext  # 0.1 s, so only with the first chart
 
-    width = canvas.columns
-    height = canvas.rows - 2
-
     def pixel(ink: int) -> "plotext.pixel":
         return plotext.pixel(foreground=(ink - NOBODY, 0, 0))
 
+    width = canvas.columns
+    height = canvas.rows - 2
     plotext.terminal.limit(False, False)
     figure = plotext.figure
     figure.clear.data()
@@ -133,15 +127,14 @@ def _plot(
     figure.plot_size(width, height)
     figure.axes(False)
     figure.axes(True, pixel=pixel(FRAME), axis=["x", "y"], side=0)
-    y_labels = [label.rjust(axes.y_axis.label_width) for label in axes.y_axis.labels.values()]
-    x_labels = list(axes.x_axis.labels.values())
-    for name, axis, labels, size, used in (
-        ("x", axes.x_axis, x_labels, axes.columns + ROOM, axes.columns),
-        ("y", axes.y_axis, y_labels, axes.rows, axes.rows),
+    for name, axis, size, used, label_width in (
+        ("x", axes.x_axis, axes.columns + ROOM, axes.columns, 0),
+        ("y", axes.y_axis, axes.rows, axes.rows, axes.y_axis.label_width),
     ):
         ruler = figure.ruler(name, 0)
         ruler.alignment(lim="edge")
         ruler.lim(0, size)
+        labels = [label.rjust(label_width) for label in axis.labels.values()]
         ruler.ticks((used * axis.share(list(axis.labels))).tolist(), labels)
         ruler.pixel(pixel(TEXT))
     for one, x, y in curves:
@@ -153,13 +146,3 @@ def _plot(
             if character not in " \u2800":
                 red, _, _ = matrix.get(row, column).foreground()
                 canvas.label(column, 1 + row, character, red + NOBODY)
-
-
-def _first_free(
-    canvas: Canvas, places: Iterable[tuple[int, int]], length: int, rows: int
-) -> tuple[int, int] | None:
-    """Return the first of these places (column, row) with `length` blank cells."""
-    for column, row in places:
-        if 1 <= row <= rows and all(canvas.is_blank(column + at, row) for at in range(length)):
-            return column, row
-    return None

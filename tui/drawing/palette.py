@@ -44,14 +44,8 @@ class Palette(NamedTuple):
         if ink >= 0:
             lap, index = divmod(ink, len(self.methods))
             return mixed(self.methods[index], self.text, 1 - 0.6**lap)
-        others = {
-            EXACT: self.exact,
-            FRAME: self.frame,
-            WARN: self.warn,
-            QUIET: self.exact,
-            GOOD: self.good,
-        }
-        return others.get(ink, self.text)
+        others = {EXACT: self.exact, QUIET: self.exact, FRAME: self.frame}
+        return (others | {WARN: self.warn, GOOD: self.good}).get(ink, self.text)
 
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the
@@ -124,10 +118,8 @@ SIGNS = {
 
 def palette(theme: str) -> Palette:
     """The palette of this name; for other themes, the one that suits the name best."""
-    return (
-        PALETTES.get(theme)
-        or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
-    )
+    like = next((name for name in ("ansi", "light") if name in theme), "dark")
+    return PALETTES.get(theme, PALETTES[like])
 
 
 def inks(cast: Cast) -> tuple[int, ...]:
@@ -138,10 +130,9 @@ def inks(cast: Cast) -> tuple[int, ...]:
 
 def ink_of(method: Method, cast: Cast) -> int:
     """Return a method's ink in a cast; outside of it QUIET, or a classic's own."""
-    keys = [each.key for each in cast]
-    if method.key in keys:
-        return inks(cast)[keys.index(method.key)]
-    return QUIET if method.hue is None else method.hue
+    in_cast = {each.key: ink for each, ink in zip(cast, inks(cast), strict=True)}
+    outside = QUIET if method.hue is None else method.hue
+    return in_cast.get(method.key, outside)
 
 
 def faint(ink: int) -> int:
