@@ -12,7 +12,7 @@ import codecs
 import copy
 import re
 from collections.abc import Iterable
-from itertools import pairwise
+from functools import lru_cache
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
@@ -69,7 +69,7 @@ class Canvas:
                 bits[cell] |= _BITS[(j & 3) << 1 | i & 1]
                 inks[cell] = colour
 
-    def scatter(self, x: "Numbers", y: "Numbers", ink: int) -> None:
+    def scatter(self, x: "Numbers", y: "Numbers", ink: "int | NDArray[np.intp]") -> None:
         """Set the dots of arrays x and y of one shape: faster than `points` for many."""
         import numpy as np
 
@@ -79,7 +79,8 @@ class Canvas:
         cells = (j >> 2) * self.columns + (i >> 1)
         dots = np.frombuffer(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
         np.bitwise_or.at(np.frombuffer(self._bits, np.uint8), cells, dots)
-        np.frombuffer(self._inks, np.uint8)[cells] = ink - NOBODY
+        colours = np.broadcast_to(ink, x.shape)[inside] - NOBODY
+        np.frombuffer(self._inks, np.uint8)[cells] = colours
 
     def line(
         self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False
@@ -91,35 +92,39 @@ class Canvas:
             return
         steep = abs(dy) > abs(dx)
         start, step, size = (y0, dy, self.height) if steep else (x0, dx, self.width)
-        sign = -1 if step < 0 else 1
-        first = min(max(floor(start), -1), size)  # one beyond an edge is enough to draw nothing
-        last = min(max(floor(start + step), -1), size)
-        begin, end = (
-            (max(first, 0), min(last, size - 1))
-            if sign > 0
-            else (min(first, size - 1), max(last, 0))
-        )
-        dots = range(begin, end + sign, 3 * sign if dotted else sign)
-        shares = [(at + 0.5 - start) / step for at in dots] if step else [0.0] * len(dots)
-        if shares:  # the line may begin and end before or beyond the middle of a dot
-            shares[0] = max(shares[0], 0.0)
-            shares[-1] = min(shares[-1], 1.0)
+        low = max(floor(min(start, start + step)), 0)
+        high = min(floor(max(start, start + step)), size - 1)
+        stride = 3 if dotted else 1
+        dots = range(low, high + 1, stride) if step >= 0 else range(high, low - 1, -stride)
+        # it may begin and end before or beyond the middle of a dot
+        shares = [min(max((at + 0.5 - start) / (step or 1.0), 0.0), 1.0) for at in dots]
+        along = zip(dots, shares, strict=True)
         if steep:
-            self.points(
-                [(x0 + share * dx, at) for at, share in zip(dots, shares, strict=True)], ink
-            )
+            self.points([(x0 + share * dx, at) for at, share in along], ink)
         else:
-            self.points(
-                [(at, y0 + share * dy) for at, share in zip(dots, shares, strict=True)], ink
-            )
+            self.points([(at, y0 + share * dy) for at, share in along], ink)
 
-    def path(self, points: Iterable[tuple[float, float]], ink: int) -> None:
+    def path(self, x: "Numbers", y: "Numbers", ink: int) -> None:
         """Join points with lines; there is none to or from a point that is not finite."""
-        points = list(points)
-        if len(points) == 1:
-            self.points(points, ink)
-        for (x0, y0), (x1, y1) in pairwise(points):
-            self.line(x0, y0, x1, y1, ink)
+        import numpy as np
+
+        with np.errstate(all="ignore"):
+            if len(x) == 1:
+                self.scatter(x, y, ink)
+            dx = np.diff(x)
+            dy = np.diff(y)
+            steep = abs(dy) > abs(dx)
+            start = np.where(steep, y[:-1], x[:-1])
+            step = np.where(steep, dy, dx)
+            low = np.floor(np.minimum(start, start + step)).clip(0)
+            high = np.floor(np.maximum(start, start + step))
+            dots = high.clip(max=np.where(steep, self.height, self.width) - 1) - low + 1
+            counts = np.where(np.isfinite(dx + dy), dots, 0).clip(0).astype(np.intp)
+            which = np.repeat(np.arange(len(counts)), counts)
+            at = low[which] + np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+            share = np.nan_to_num((at + 0.5 - start[which]) / step[which]).clip(0, 1)
+            right = np.where(steep[which], x[which] + share * dx[which], at)
+            self.scatter(right, np.where(steep[which], at, y[which] + share * dy[which]), ink)
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of (x, y); hollow: only the rim, one dot wide."""
@@ -163,25 +168,25 @@ class Canvas:
     def picture(self) -> Picture:
         """Return what has been drawn so far."""
         text, _ = codecs.charmap_decode(self._bits, "strict", _BRAILLE)
-        inks = self._inks
+        inks = bytes(self._inks)
         if self._letters:
             characters = list(text)
-            inks = inks[:]
+            lettered = bytearray(inks)
             for cell, (letter, ink) in self._letters.items():
                 characters[cell] = letter
-                inks[cell] = 0 if letter == " " else ink - NOBODY
+                lettered[cell] = 0 if letter == " " else ink - NOBODY
             text = "".join(characters)
-        begins = range(0, len(text), self.columns) if self.columns else ()
-        rows: list[Row] = [
-            tuple(
-                [
-                    (
-                        text[span.start() : span.end()],
-                        NOBODY if span[1] is None else span[1][0] + NOBODY,
-                    )
-                    for span in _SPANS.finditer(inks, begin, begin + self.columns)
-                ]
-            )
-            for begin in begins
+            inks = bytes(lettered)
+        rows = [slice(self.columns * row, self.columns * (row + 1)) for row in range(self.rows)]
+        return Picture(tuple([_row(text[row], inks[row]) for row in rows]))
+
+
+@lru_cache(maxsize=512)  # most rows of a frame are those of the frame before
+def _row(text: str, inks: bytes) -> Row:
+    """Return characters, each with its ink, in pieces of one ink."""
+    return tuple(
+        [
+            (text[slice(*span.span())], NOBODY if span[1] is None else span[1][0] + NOBODY)
+            for span in _SPANS.finditer(inks)
         ]
-        return Picture(tuple(rows) or ((),) * self.rows)
+    )

@@ -2,8 +2,10 @@
 
 from typing import Self
 
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
+from textual.filter import ANSIToTruecolor
 from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
@@ -71,7 +73,8 @@ class CellWidget(Widget):
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
             self._top, right, bottom, left = self.gutter
-            self._filters = self.get_line_filters()
+            filters = self.get_line_filters()  # the palettes' colours are true ones
+            self._filters = [each for each in filters if not isinstance(each, ANSIToTruecolor)]
             self._background = self.background_colors[1]
             self._end = len(self._lines) - bottom  # `room` may be of another size yet
             if self._lines:
@@ -96,7 +99,10 @@ class CellWidget(Widget):
         rows = self._picture.rows
         row = rows[y] if y < len(rows) else ()
         segments = [Segment(text, self._style(ink)) for text, ink in row]
-        return Segment.adjust_line_length(segments, self.room.width, self._style(NOBODY))
+        if cell_len("".join([text for text, _ in row])) != self.room.width:
+            blank = self._style(NOBODY)
+            segments = Segment.adjust_line_length(segments, self.room.width, blank)
+        return segments
 
     def style_of(self, ink: int, base: Style) -> Style:
         """Return how characters in an ink look; `base` is the widget's own style."""

@@ -265,7 +265,7 @@ class _Plot:
         for place, ink in enumerate(run.inks):
             x, y = _outline(bottom[:, place], top[:, place])
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
-            self.canvas.path(np.stack([2 * (self.left + x) + 1.5, down], axis=1).tolist(), ink)
+            self.canvas.path(2 * (self.left + x) + 1.5, down, ink)
             known = np.flatnonzero(~np.isnan(high[:, place]))
             if not run.letters or not len(known):
                 continue
@@ -362,7 +362,9 @@ def _log_y_axis(largest: Floats, levels: list[float], rows: int) -> Axis:
     if not known.size:
         return log_axis(-4, 0, rows)
     top = limit if (largest > limit).any() else float(np.nanmax(known))
-    bottom = float(np.nanquantile(known, 0.05, axis=0).min())
+    ordered = np.sort(known, axis=0)  # what is not known comes last
+    below = (0.05 * (~np.isnan(known)).sum(axis=0, keepdims=True)).astype(np.intp)
+    bottom = float(np.take_along_axis(ordered, below, axis=0).min())
     return log_axis(bottom, max([top, *levels]), rows)
 
 

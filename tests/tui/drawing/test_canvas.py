@@ -72,7 +72,7 @@ def test_a_row_has_as_few_spans_as_possible():
 
 def test_a_line_has_one_dot_in_each_column_of_dots_or_row_where_it_is_steep():
     canvas = Canvas(10, 3)
-    canvas.path([(0, 0), (19.9, 6), (15, 11.9)], 0)
+    canvas.path(np.array([0, 19.9, 15]), np.array([0, 6, 11.9]), 0)
     assert canvas.picture().text == "⠉⠑⠒⠢⠤⣀⡀\n      ⠈⠉⠑⡲\n       ⢀⠎"
     canvas = Canvas(6, 1)
     canvas.line(0, 0, 12, 0, 0, dotted=True)
@@ -123,9 +123,9 @@ def test_a_line_that_leaves_the_canvas_is_the_same_inside_it(ends):
     }
 
 
-@given(st.lists(st.tuples(ANY, ANY), max_size=5))
+@given(st.lists(st.tuples(ANY, ANY), min_size=1, max_size=5).map(np.array))
 def test_any_numbers_make_a_path_with_no_more_dots_than_the_canvas_is_long(points):
-    count = len(dots(drawn(lambda canvas: canvas.path(points, 0))))
+    count = len(dots(drawn(lambda canvas: canvas.path(*points.T, 0))))
     assert count <= len(points) * max(2 * COLUMNS, 4 * ROWS)
 
 
@@ -137,8 +137,8 @@ def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
 
 
 def test_a_path_is_broken_where_a_point_is_not_a_number():
-    points = [(0, 0), (5, 10), (np.nan, 3), (10, 10), (15, 0)]
-    assert drawn(lambda canvas: canvas.path(points, 0), 8, 3).text == "⢣     ⢠⠃\n ⢣   ⢠⠃\n  ⠣  ⠇"
+    points = np.array([(0, 0), (5, 10), (np.nan, 3), (10, 10), (15, 0)])
+    assert drawn(lambda canvas: canvas.path(*points.T, 0), 8, 3).text == "⢣     ⢠⠃\n ⢣   ⢠⠃\n  ⠣  ⠇"
 
 
 def test_a_disc_is_round_because_dots_are_square():

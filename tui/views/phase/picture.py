@@ -75,10 +75,12 @@ def phase_picture(
     """Draw trails, rings and points, later ones in front; perhaps a crosshair, an orbit, a line."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
-    for point in points:
-        if point.trail is not None:
-            thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
-            _scatter(canvas, viewport, point.trail, faint(point.ink), thick)
+    trails = [(point.trail, faint(point.ink)) for point in points if point.trail is not None]
+    if trails:
+        theta, omega = np.hstack([trail for trail, _ in trails])
+        ink = np.repeat([ink for _, ink in trails], [len(trail[0]) for trail, _ in trails])
+        thick = BLOCK if len(theta) <= SPARSE * len(trails) else BLOCK[:1]
+        _scatter(canvas, viewport, (theta, omega), ink, thick)
     if line is not None and line.quantity == "omega":
         for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
             y = float(viewport.y(omega))
@@ -91,7 +93,7 @@ def phase_picture(
     for point in points:
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
-            canvas.path(_on_screen(viewport, *closed), point.ink)
+            canvas.path(*_on_screen(viewport, *closed), point.ink)
     for point in points:
         _draw_point(canvas, viewport, point)
     write_words(canvas, portrait.words)
@@ -99,7 +101,11 @@ def phase_picture(
 
 
 def _scatter(
-    canvas: Canvas, viewport: Viewport, points: Points, ink: int, dots: Sequence[tuple[int, int]]
+    canvas: Canvas,
+    viewport: Viewport,
+    points: Points,
+    ink: int | NDArray[np.intp],
+    dots: Sequence[tuple[int, int]],
 ) -> None:
     x = viewport.x(points[0])
     y = viewport.y(points[1])
@@ -114,7 +120,7 @@ def _draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
     canvas.line(x, 0, x, canvas.height, TEXT, dotted=True)
 
 
-def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[float, float]]:
+def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
     """Return points of a line in dots, with a break where it leaves one edge for the other."""
     x = viewport.x(theta)
     y = viewport.y(omega)
@@ -122,7 +128,7 @@ def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[f
         across = np.flatnonzero(np.abs(np.diff(x)) > np.pi / viewport.theta_per_dot) + 1
         x = np.insert(x, across, np.nan)
         y = np.insert(y, across, np.nan)
-    return list(zip(x.tolist(), y.tolist(), strict=True))
+    return x, y
 
 
 def _draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
@@ -183,7 +189,7 @@ class Section:
         if self._method.symplectic:
             _scatter(canvas, viewport, orbit, self._ink, BLOCK[:3])
         else:  # of 300 steps
-            canvas.path(_on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
+            canvas.path(*_on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
         if crosshair is not None:
             _draw_crosshair(canvas, viewport, crosshair)
         _draw_point(canvas, viewport, PhasePoint(*start, self._ink, self._method.letter))
