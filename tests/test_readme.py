@@ -15,7 +15,7 @@ from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
 from tui.commands.files.export import columns_of
-from tui.screens.help import bindings_of, key_lines
+from tui.screens.dialogs import bindings_of, key_lines
 from tui.screens.live import LiveScreen
 
 ROOT = Path(__file__).parent.parent

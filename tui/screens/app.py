@@ -49,14 +49,10 @@ class PenduApp(App[Exit | BaseException]):
 
     character_set: var[CharacterSet] = var("braille", init=False)
 
-    def __init__(
-        self,
-        screen: SourceScreen,
-        terminal: TerminalOptions = USUAL,
-    ) -> None:
+    def __init__(self, screen: SourceScreen, terminal: TerminalOptions = USUAL) -> None:
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
-        # else Textual greys
+        # without colours Textual would only turn grey
         super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
@@ -75,16 +71,13 @@ class PenduApp(App[Exit | BaseException]):
     def get_default_screen(self) -> Screen[None]:
         return self.source_screen
 
-    def on_source_screen_began(self, message: SourceScreen.Began) -> None:
-        if message.screen is not self.source_screen:
-            self.source_screens.append(message.screen)
-
     def on_mount(self) -> None:
         """Hear signals from now on, and paint everything again after a stop."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         if not self.is_headless:
             job = None if self.is_web else self._job
-            SignalThread(asyncio.get_running_loop(), self.interrupt, self.finish, job).start()
+            loop = asyncio.get_running_loop()
+            SignalThread(loop, self.action_interrupt, self.finish, job).start()
 
     async def on_event(self, event: Event) -> None:
         """Survive a key that breaks Textual's command palette: an error would end the app."""
@@ -120,20 +113,20 @@ class PenduApp(App[Exit | BaseException]):
         timeout: float | None = None,
         markup: bool = True,
     ) -> None:
-        """Replace an equal notice: a key that is held down shall cover one line at most."""
+        """Replace an equal notice: a key that is held down shall cover one line at most.
+
+        No notice has markup: units stand in brackets.
+        """
         if message == self._last_notice:
             self.clear_notifications()
         self._last_notice = message
-        super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
-
-    def action_interrupt(self) -> None:
-        self.interrupt()
+        super().notify(message, title=title, severity=severity, timeout=timeout, markup=False)
 
     def finish(self) -> None:
         """Finish the recording."""
         self.source_screen.source.close()
 
-    def interrupt(self) -> None:
+    def action_interrupt(self) -> None:
         """Finish the recording and exit, even if the terminal is gone."""
         self.finish()
         if is_gone():
@@ -146,8 +139,7 @@ class PenduApp(App[Exit | BaseException]):
             self._job.stop()
 
     def action_command_palette(self) -> None:
-        from tui.screens.dialogs.modal import Commands
-        from tui.screens.palette import LabCommands
+        from tui.screens.dialogs import Commands, LabCommands
 
         if self.screen is self.source_screen:
             self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))
@@ -156,10 +148,8 @@ class PenduApp(App[Exit | BaseException]):
         self.theme = name
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        return [
-            *super().get_line_filters(),
-            *(one for one in (_FILTERS[self.character_set],) if one.enabled),
-        ]
+        ours = _FILTERS[self.character_set]
+        return [*super().get_line_filters(), *([ours] if ours.enabled else [])]
 
 
 def is_of_palette(error: BaseException) -> bool:
@@ -170,11 +160,7 @@ def is_of_palette(error: BaseException) -> bool:
 
 
 _FILTERS = {character_set: CharacterSetFilter(character_set) for character_set in CHARACTER_SETS}
-
-
-_ANSI = BUILTIN_THEMES[
-    "ansi-dark"
-].variables  # of cursors and selections, in the terminal's own colours
+_ANSI = BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections
 
 
 def _theme(name: str, colours: Palette) -> Theme:

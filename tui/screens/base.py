@@ -3,17 +3,15 @@
 import gc
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar, cast
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-from textual.app import ComposeResult, SystemCommand
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.events import Resize
-from textual.message import Message
 from textual.reactive import Initialize, var
-from textual.screen import Screen
+from textual.screen import Screen, ScreenResultType
 from textual.timer import Timer
 from textual.widget import Widget
 
@@ -25,18 +23,16 @@ from tui.cli.errors import explained
 from tui.cli.time_limit import limited
 from tui.playback.shown import Shown
 from tui.playback.source import Source, State, doubled
-from tui.screens.help import help_text
-from tui.screens.host import Host
-from tui.screens.insight_line import InsightLine
-from tui.screens.key_line import KeyLine
-from tui.screens.status_line import StatusLine
-from tui.screens.too_small import TooSmall
+from tui.screens.lines import InsightLine, KeyLine, StatusLine, TooSmall
 from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
 from tui.words.events import event_lines, numbered
+
+if TYPE_CHECKING:
+    from tui.screens.app import PenduApp
 
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
@@ -50,14 +46,19 @@ _METHODS = Binding.Group("show or hide a method")
 _VIEWS = Binding.Group("view: lab, phase, …")
 
 
-class SourceScreen(Screen[None]):
+class SizedScreen(Screen[ScreenResultType]):
+    """A screen that leaves out sizes which the terminal has no longer.
+
+    Two of them could evoke each other for ever.
+    """
+
+    def on_resize(self, event: Resize) -> None:
+        if event.size != self.app.size:
+            event.prevent_default()
+
+
+class SourceScreen(SizedScreen[None]):
     """Shows a source, following a clock that is passed in."""
-
-    @dataclass
-    class Began(Message):
-        """This screen follows the clock now."""
-
-        screen: "SourceScreen"
 
     BLANK = True  # everything on it is covered
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
@@ -111,6 +112,8 @@ class SourceScreen(Screen[None]):
     )
     shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
+    held: float | None = None
+    """The angle [rad] at which the user holds the pendulums; the clock stands meanwhile."""
 
     def __init__(
         self,
@@ -138,8 +141,8 @@ class SourceScreen(Screen[None]):
         self._undo: deque[State] = deque(maxlen=MAX_UNDOS)
 
     @property
-    def host(self) -> Host:
-        return cast(Host, self.app)
+    def host(self) -> "PenduApp":
+        return cast("PenduApp", self.app)
 
     def first_view(self, source: Source) -> str:
         """Return the view that is in front at the start."""
@@ -166,11 +169,6 @@ class SourceScreen(Screen[None]):
         line.sample = self.source.sample
         return line.data_bind(SourceScreen.source, SourceScreen.shown)
 
-    def on_resize(self, event: Resize) -> None:
-        """Leave out a size that the terminal has no longer: two could evoke each other for ever."""
-        if event.size != self.app.size:
-            event.prevent_default()
-
     def _bound(self, view: View) -> View:
         view.follow(self.source.sample, read=False)
         return view.data_bind(SourceScreen.source, SourceScreen.shown)
@@ -184,9 +182,10 @@ class SourceScreen(Screen[None]):
     # Frames, from the clock to the panes
 
     def on_mount(self) -> None:
-        self.call_after_refresh(self._begin)
+        self.call_after_refresh(self.begin)
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
+        """Follow the clock from now on; the first paint is done."""
         try:
             self._prepare()
         except OSError as error:
@@ -195,20 +194,24 @@ class SourceScreen(Screen[None]):
         gc.collect()
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
-        self.post_message(self.Began(self))
+        if self not in self.host.source_screens:
+            self.host.source_screens.append(self)
         self._timer = self.set_interval(1 / self.host.fps, self.frame)
         for notice in self._notices:
-            self.notify(notice, timeout=15, markup=False)
+            self.notify(notice, timeout=15)
 
     def frame(self) -> None:
         """Follow the clock, and show where it has led unless the terminal is behind."""
         now = self.clock() - self._missed
         seen = self.source.playhead.seen
-        if seen is not None and (now - seen > STALL or self.is_held):
+        if seen is not None and (now - seen > STALL or self.held is not None):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
-        self._notify_failure()
+        failure = self.source.failure
+        if failure is not None and failure is not self._failure:
+            self.warn(f"{failure} The run stands still; space tries again.")
+        self._failure = failure
         if is_writing(self.app):
             return
         self._frames += 1
@@ -216,17 +219,8 @@ class SourceScreen(Screen[None]):
         self._follow(sample, read=turn or self._is_late)
         self._is_late = False
 
-    def _notify_failure(self) -> None:
-        failure = self.source.failure
-        if failure is not None and failure is not self._failure:
-            text = f"{failure} The run stands still; space tries again."
-            self.notify(text, severity="warning", markup=False, timeout=15)
-        self._failure = failure
-
-    @property
-    def is_held(self) -> bool:
-        """Whether the clock stands, because the user holds a pendulum."""
-        return False
+    def warn(self, text: str) -> None:
+        self.notify(text, severity="warning", timeout=15)
 
     def show_now(self) -> None:
         """Show everything now, or with the next frame if the terminal is behind."""
@@ -280,9 +274,7 @@ class SourceScreen(Screen[None]):
         if self.source.go_to(run, step):
             self.show_now()
         else:
-            self.notify(
-                f"That event belongs to run {run}; replay the recording to see it.", markup=False
-            )
+            self.notify(f"That event belongs to run {run}; replay the recording to see it.")
 
     def action_mark(self) -> None:
         """Leave a mark at the sample, unless it has one; that of a replay is next to its file."""
@@ -292,7 +284,7 @@ class SourceScreen(Screen[None]):
             self.source.mark()
         except OSError as error:
             text = f"The mark cannot be saved: {error.strerror}."
-        self.notify(text, timeout=4, markup=False)
+        self.notify(text, timeout=4)
         self.show_now()
 
     def action_speed(self, doublings: int) -> None:
@@ -367,9 +359,7 @@ class SourceScreen(Screen[None]):
             self.restore(self._undo.pop())
             self.show_now()
             now = f"{self.source.scene.name}, h {self.source.stepping.h:.4g} s"
-            self.notify(
-                f"Undone: {now}, {self.source.playhead.speed:.4g}×", timeout=3, markup=False
-            )
+            self.notify(f"Undone: {now}, {self.source.playhead.speed:.4g}×", timeout=3)
 
     # Views and dialogs
 
@@ -390,19 +380,16 @@ class SourceScreen(Screen[None]):
         self.refresh_bindings()
         self.show_now()
 
-    def commands(self) -> Iterator[SystemCommand]:
-        """Yield what the command palette offers beside the keys."""
-        if not self.app.is_web:  # it may name a file
-            yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
-
     def show_text(self, title: str, *paragraphs: str) -> None:
         """Lay a text over the screen."""
-        from tui.screens.dialogs.text import TextScreen
+        from tui.screens.dialogs import TextScreen
 
         self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
 
     def action_help(self) -> None:
         """Show the keys of the view in front, the others, and what the words mean."""
+        from tui.screens.dialogs import help_text
+
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
         owners = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
         order = [type(self), *owners] if self.view == "lab" else [*owners, type(self)]
@@ -431,18 +418,17 @@ class SourceScreen(Screen[None]):
             library.folder().mkdir(parents=True, exist_ok=True)
             picture = self.app.save_screenshot(path=str(library.folder()))
         except OSError as error:
-            self.notify(f"Screenshot failed: {explained(error)}", severity="warning", markup=False)
+            self.warn(f"Screenshot failed: {explained(error)}")
         else:
-            self.notify(f"Saved {picture}", markup=False)
+            self.notify(f"Saved {picture}")
 
     def action_copy_command(self) -> None:
         """Copy the command for this moment, and show it: not every terminal has a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
-        rest = ""
-        if not reproduces(self.source):
-            rest = " (start values only; later changes of h are in the recording)"
-        self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
+        is_whole = reproduces(self.source)
+        rest = "" if is_whole else " (start values only; later changes of h are in the recording)"
+        self.notify(f"Copied: {text}{rest}", timeout=15)
 
     def action_quit(self) -> None:
         self.app.exit()

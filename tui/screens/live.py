@@ -1,10 +1,12 @@
 """LiveScreen: the lab, where the run can be changed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import ClassVar
 
 from textual import work
 from textual.binding import Binding, BindingType
+from textual.widget import Widget
 
 from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
@@ -13,9 +15,10 @@ from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
 from tui.playback.source import Source, State
 from tui.screens.base import SourceScreen
-from tui.screens.tour import TourGuide
+from tui.screens.lines import TourPanel
 from tui.views.view import Held, SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
+from tui.words.tour import Tour
 
 _STEP = Binding.Group("larger, smaller step h")
 
@@ -31,10 +34,11 @@ class LiveScreen(SourceScreen):
             "Step",
             True,
             "+",
-            tooltip="larger step h",
+            False,
+            "larger step h",
             group=_STEP,
         ),
-        Binding("minus", "larger_h(-1)", "Step", True, "-", tooltip="smaller step h", group=_STEP),
+        Binding("minus", "larger_h(-1)", "Step", True, "-", False, "smaller step h", group=_STEP),
         Binding("p", "next_scene", "Scene", tooltip="next scene"),
         Binding("P,shift+p", "scenes", "choose a scene", show=False),
         Binding("i", "start_values", "Edit", tooltip="edit start values"),
@@ -50,9 +54,14 @@ class LiveScreen(SourceScreen):
     begins_with_tour = False
     lecture: Mapping[str, Scene] = SCENES
     """The scenes that p leads through, by name."""
-    held: float | None = None
-    """The angle [rad] at which the user holds the pendulums."""
-    tour: TourGuide | None = None
+    is_on_tour = False
+
+    @cached_property
+    def tour(self) -> Tour:
+        return Tour(self.live)
+
+    def more(self) -> Iterator[Widget]:
+        yield TourPanel(self.tour)
 
     @property
     def live(self) -> Live:
@@ -71,8 +80,10 @@ class LiveScreen(SourceScreen):
         returned = self.source.history.returned
         if returned is not None and returned is not before:
             self._stop_at_start(returned)
-        if self.tour is not None:
-            self.tour.follow()
+        if self.is_on_tour:
+            if self.tour.follow():
+                self._show_tour()
+            self.query_one(TourPanel).draw()
 
     def _pause_at_moment(self, before: int) -> None:
         """Pause where the scene's moment has come since the step before, unless h has changed."""
@@ -110,7 +121,7 @@ class LiveScreen(SourceScreen):
         try:
             change()
         except (SceneError, OwnMethodError) as error:
-            self.notify(str(error), severity="warning", markup=False)
+            self.warn(str(error))
             return False
         self.keep(before)
         self.show_now()
@@ -122,10 +133,6 @@ class LiveScreen(SourceScreen):
         if state.stepping != self.live.stepping:
             self.live.set_stepping(state.stepping)
         super().restore(state)
-
-    @property
-    def is_held(self) -> bool:
-        return self.held is not None
 
     def on_held(self, message: Held) -> None:
         """Show the pendulums where the pointer holds them."""
@@ -181,14 +188,14 @@ class LiveScreen(SourceScreen):
 
     @work(group="form")
     async def action_scenes(self) -> None:
-        from tui.screens.dialogs.forms import SceneList
+        from tui.screens.dialogs import SceneList
 
         if name := await self.app.push_screen_wait(SceneList(self.live.scene.name)):
             self.action_start_scene(name)
 
     @work(group="form")
     async def action_start_values(self) -> None:
-        from tui.screens.dialogs.forms import StartForm
+        from tui.screens.dialogs import StartForm
 
         backwards = self.live.stepping.h < 0
         if scene := await self.app.push_screen_wait(StartForm(self._scene_now(), backwards)):
@@ -196,7 +203,7 @@ class LiveScreen(SourceScreen):
 
     @work(group="form")
     async def action_methods(self) -> None:
-        from tui.screens.dialogs.forms import CastForm
+        from tui.screens.dialogs import CastForm
 
         scene = self._scene_now()  # another may run by the answer
         if cast := await self.app.push_screen_wait(CastForm(scene)):
@@ -207,18 +214,15 @@ class LiveScreen(SourceScreen):
 
     # The tour
 
-    def on_source_screen_began(self) -> None:
-        if self.begins_with_tour:
-            self.action_tour()
-
     def first_view(self, source: Source) -> str:
         """Return the view of the scene's shot."""
         self.page = source.scene.name
         return source.scene.shot.view
 
-    @property
-    def is_on_tour(self) -> bool:
-        return self.tour is not None and self.tour.is_on
+    def begin(self) -> None:
+        super().begin()
+        if self.begins_with_tour:
+            self.action_tour()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("tour_forward", "tour_back"):
@@ -227,21 +231,39 @@ class LiveScreen(SourceScreen):
 
     def action_tour(self) -> None:
         """Begin the tour, go on where it was left, or leave it."""
-        if self.tour is None:
-            self.tour = TourGuide(self, self.live)
-        self.tour.toggle()
+        if self.is_on_tour:
+            self._leave_tour("T goes on with the tour; u brings back the run before it.")
+            return
+        self._before_tour = self.state, self.view
+        self.is_on_tour = True
+        self.add_class("-tour")
+        self.tour.begin(self.tour.index)
+        self._show_shot()
 
     def action_tour_forward(self) -> None:
-        assert self.tour is not None
-        self.tour.forward()
+        """Go to the moment, to the truth, or to the next shot."""
+        index = self.tour.index
+        if not self.tour.forward():
+            self._leave_tour(
+                "That was the tour. At equal cost each method has its own h; n gives all the same "
+                "again."
+            )
+        elif self.tour.index != index:
+            self._show_shot()
+        else:
+            self._show_tour()
 
     def action_tour_back(self) -> None:
-        assert self.tour is not None
+        """Go back to the question, or to the shot before."""
         self.tour.back()
+        self._show_shot()
 
     def action_show(self, number: int) -> None:
         """Answer the tour's question, or show or hide a method."""
-        if self.tour is None or not self.tour.answers(number):
+        if self.is_on_tour and self.tour.stage == "asked" and number < 2:
+            self.tour.answer(number)
+            self._show_tour()
+        else:
             super().action_show(number)
 
     def action_back(self) -> None:
@@ -250,3 +272,28 @@ class LiveScreen(SourceScreen):
             self.action_tour()
         else:
             super().action_back()
+
+    def _leave_tour(self, notice: str) -> None:
+        before, view = self._before_tour
+        self.is_on_tour = False
+        self.remove_class("-tour")
+        self.keep(before)
+        self.shown = before.shown
+        self.live.set_speed(before.speed)
+        self.live.pause(False)
+        self.action_view(view)
+        self.notify(notice, timeout=6)
+        self._show_tour()
+
+    def _show_shot(self) -> None:
+        """Show the shot of the step, and its words."""
+        step = self.tour.step
+        self.shown = self.shown.through(step.scene, step.shot)
+        if self.view != step.shot.view:
+            self.action_view(step.shot.view)
+        self._show_tour()
+
+    def _show_tour(self) -> None:
+        self.show_now()
+        self.refresh_bindings()
+        self.query_one(TourPanel).draw()

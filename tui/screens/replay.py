@@ -2,24 +2,107 @@
 
 import asyncio
 import time
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
+from textual import events
 from textual.binding import Binding, BindingType
+from textual.message import Message
 from textual.widget import Widget
 
 from engine.methods.own import OwnMethodError
+from engine.run.lockstep import Sample
 from recordings.errors import RecordingError
 from tui.cli.errors import UserError, explained
+from tui.drawing.palette import FRAME, TEXT, WARN
+from tui.drawing.picture import Picture, Row
 from tui.playback.live import Live, has_own
 from tui.playback.replay import Replay
+from tui.playback.source import Source
 from tui.screens.base import SourceScreen
-from tui.screens.seek_bar import SeekBar
+from tui.views.view import Pane
+from tui.words.numbers import seconds
 
 LONG = 100_000  # steps; a quarter of a second
+MIN_BAR = 24  # columns
 _SECONDS = Binding.Group("back, forward 1 s")
 _ENDS = Binding.Group("to the start, to the end")
 _TENTHS = Binding.Group("back, forward 10 %")
+
+
+class SeekBar(Pane):
+    """The position in the replay, and its events; a click or a drag on it goes there."""
+
+    @dataclass
+    class Sought(Message):
+        """The user wants to see this moment."""
+
+        position: float  # s of the recording
+
+    _columns = 1  # of the bar
+    _length = 0.0  # s of the recording
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        assert isinstance(source, Replay)
+        text = facts(source, self.room.width - MIN_BAR - 3)
+        self._length = source.length
+        self._columns = max(self.room.width - len(text) - 3, 1)
+        row = bar(source.playhead.position, source.length, source.ticks, self._columns)
+        return Picture([[(" ", TEXT), *row, (f"  {text}", TEXT)]])
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        self.capture_mouse()
+        self._seek(event)
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        if self.app.mouse_captured is self:
+            self._seek(event)
+
+    def on_mouse_up(self) -> None:
+        self.release_mouse()
+
+    def _seek(self, event: events.MouseEvent) -> None:
+        column = event.screen_x - self.content_region.x - 1  # clamped: a drag may leave the bar
+        share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
+        self.post_message(self.Sought(share * self._length))
+
+
+def bar(position: float, length: float, ticks: Sequence[float], width: int) -> Row:
+    """Return the bar: heavy up to the position, and a tick for each event."""
+
+    def column(clock: float) -> int:
+        return min(int(clock / length * width), width - 1) if length > 0 else 0
+
+    here = column(position)
+    line = ["━"] * here + ["█"] + ["─"] * (width - here - 1)
+    for at in map(column, ticks):
+        if at != here:
+            line[at] = "┿" if at < here else "┼"
+    text = "".join(line)
+    return [(text[:here], TEXT), (text[here], WARN), (text[here + 1 :], FRAME)]
+
+
+def facts(replay: Replay, room: int) -> str:
+    """Return position and length; loop, run, step and event as far as there is room.
+
+    A number has the room of the largest, so that the bar beside it stays where it is.
+    """
+    position = replay.playhead.position
+    runs = replay.recording.runs
+    length = seconds(replay.length)
+    text = f"{seconds(position):>{max(len(length), len('59.99 s'))}} of {length}"
+    numbers = {
+        "run": (runs.index(replay.run) + 1, len(runs)),
+        "step": (replay.sample.step, replay.run.steps),
+        "event": (bisect_right(replay.ticks, position), len(replay.ticks)),
+    }
+    parts = [f"{name} {at:>{len(str(last))}}/{last}" for name, (at, last) in numbers.items()]
+    for part in ["loop", *parts] if replay.looping else parts:
+        if len(text) + len(part) + 2 <= room:
+            text += f"  {part}"
+    return text
 
 
 class ReplayScreen(SourceScreen):
@@ -61,9 +144,7 @@ class ReplayScreen(SourceScreen):
 
     def action_change(self) -> None:
         """Answer a key of the lab."""
-        self.notify(
-            "A recording cannot be changed: f continues it live, and then it can.", timeout=4
-        )
+        self.notify("A recording cannot be changed: f continues it live, and then it can.")
 
     def seek(self, position: float) -> None:
         self.replay.seek(position)
@@ -82,27 +163,24 @@ class ReplayScreen(SourceScreen):
 
     async def action_live(self) -> None:
         """Continue live from here, once the run so far is known and simulated again up to here."""
-        self.replay.pause(True)
-        if not self.replay.fill():
+        replay = self.replay
+        replay.pause(True)
+        if not replay.fill():
             self.notify("Loading earlier samples ...", timeout=2)
-        while not self.replay.fill():
+        while not replay.fill():
             await asyncio.sleep(0)
-        if self.replay.sample.step > LONG:
-            self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
+        if replay.sample.step > LONG:
+            self.notify(f"Simulating {replay.sample.step} steps ...", timeout=2)
         try:
-            if has_own(self.replay.scene):
-                live = self.replay.live()  # it can be interrupted here, but not in a thread
+            if has_own(replay.scene):
+                live = replay.live()  # it can be interrupted here, but not in a thread
             else:
-                live = await asyncio.to_thread(self.replay.live)
-        except (RecordingError, OwnMethodError) as error:
-            self.notify(str(error), severity="warning", markup=False)
-            return
-        try:
+                live = await asyncio.to_thread(replay.live)
             lab = self._go_live(live)
+        except (RecordingError, OwnMethodError) as error:
+            self.warn(str(error))
         except (OSError, UserError) as error:
-            self.notify(
-                f"Cannot start recording: {explained(error)}", severity="warning", markup=False
-            )
-            return
-        self.end()
-        self.app.push_screen(lab)
+            self.warn(f"Cannot start recording: {explained(error)}")
+        else:
+            self.end()
+            self.app.push_screen(lab)

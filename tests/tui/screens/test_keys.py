@@ -9,11 +9,10 @@ from recordings.verification import verify
 from tests.tui.harness import lab, on_stage, uncomputed
 from tui.playback.live import Live
 from tui.playback.shown import WINDOWS, quantities
-from tui.screens.dialogs.text import TextScreen
-from tui.screens.help import COLUMN_WIDTH, bindings_of, key_lines
+from tui.screens.dialogs import COLUMN_WIDTH, TextScreen, bindings_of, key_lines
+from tui.screens.lines import StatusLine
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
-from tui.screens.status_line import StatusLine
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.time_chart import TimeChart

@@ -8,9 +8,8 @@ from tests.tui.harness import after, eventful
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Pace, Playhead, RecordingStatus
-from tui.screens.insight_line import fitted
-from tui.screens.seek_bar import bar, facts
-from tui.screens.status_line import speed_text, status_row
+from tui.screens.lines import fitted, speed_text, status_row
+from tui.screens.replay import bar, facts
 
 
 def text(row) -> str:
@@ -37,7 +36,7 @@ def taped(**changes) -> Taped:
 def test_the_status_line_says_all_where_there_is_room():
     line = text(status_row(taped(), 120))
     assert line == (
-        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  scene drift  57.3° 0 rad/s  REC 1 min"
+        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  scene drift  57.3° 0 rad/s  REC 72 s"
         "  2026-11-20T10-14-03.mcap"
     )
 
@@ -54,13 +53,13 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
 
 def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
     live = taped()
-    assert "  z 0.157  scene drift  REC 1 min" in text(status_row(live, 80))
+    assert "  z 0.157  scene drift  REC 72 s" in text(status_row(live, 80))
     live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
     live.history.sample = live.sample._replace(t=725.0)
     assert text(status_row(live, 80)) == (
-        " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
+        " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 72 s"
     )
 
 

@@ -12,9 +12,7 @@ from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
 
 from tests.tui.harness import lab
-from tui.screens.dialogs.modal import Commands
-from tui.screens.dialogs.text import TextScreen
-from tui.screens.palette import LabCommands
+from tui.screens.dialogs import Commands, LabCommands, TextScreen
 
 
 async def opened(theatre) -> TextScreen:

@@ -9,7 +9,7 @@ from textual.widgets._toast import Toast
 from engine.scenes import DEFAULT_SCENE
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.insight_line import InsightLine
+from tui.screens.lines import InsightLine
 from tui.screens.live import LiveScreen
 
 

@@ -12,10 +12,9 @@ from tests.tui.harness import eventful, on_stage, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.replay import Replay
+from tui.screens.lines import StatusLine
 from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
-from tui.screens.seek_bar import SeekBar
-from tui.screens.status_line import StatusLine
+from tui.screens.replay import ReplayScreen, SeekBar
 from tui.views.lab.event_list import EventList
 
 

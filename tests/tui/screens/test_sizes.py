@@ -5,9 +5,8 @@ import random
 import pytest
 
 from tests.tui.harness import eventful, lab, player
-from tui.screens.seek_bar import SeekBar
-from tui.screens.status_line import StatusLine
-from tui.screens.too_small import TooSmall
+from tui.screens.lines import StatusLine, TooSmall
+from tui.screens.replay import SeekBar
 from tui.views import VIEWS
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.pendulums import Pendulum

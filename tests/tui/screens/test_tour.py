@@ -6,11 +6,9 @@ from engine.scenes import SCENES
 from tests.tui.harness import FPS, Theatre, lab, on_stage
 from tui.playback.live import Live
 from tui.playback.shown import Shown
-from tui.screens.insight_line import InsightLine
-from tui.screens.key_line import KeyLine
+from tui.screens.lines import InsightLine, KeyLine, TourPanel
 from tui.screens.live import LiveScreen
 from tui.screens.still import normalised
-from tui.screens.tour import TourPanel
 from tui.words.tour import ASTRAY, STEPS
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
@@ -131,7 +129,7 @@ async def test_while_a_shot_runs_the_other_keys_keep_their_meaning():
 async def test_a_click_on_the_panel_goes_on_and_outside_a_tour_its_keys_do_nothing():
     async with lab() as theatre:
         await theatre.press("enter", "backspace", "escape")
-        assert not theatre.stage.query(TourPanel)
+        assert not theatre.stage.query_one(TourPanel).is_on_screen
         await theatre.press("T")
         await theatre.pilot.click(TourPanel)
         await theatre.pilot.pause()

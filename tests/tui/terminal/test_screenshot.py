@@ -5,8 +5,7 @@ import pytest
 from recordings import library
 from tests.tui.conftest import text_of
 from tests.tui.harness import lab
-from tui.screens.key_line import KeyLine
-from tui.screens.status_line import StatusLine
+from tui.screens.lines import KeyLine, StatusLine
 from tui.views.lab.error_table import ErrorTable
 
 

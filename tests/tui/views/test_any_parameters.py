@@ -14,7 +14,7 @@ from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
 from tui.drawing.time_chart import time_chart
 from tui.playback.shown import Shown, quantities
-from tui.screens.status_line import status_row
+from tui.screens.lines import status_row
 from tui.views.lab.error_table import table
 from tui.views.lab.pendulums import Bob, pendulum_picture
 from tui.views.phase.facts import fact_rows

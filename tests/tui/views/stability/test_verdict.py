@@ -8,7 +8,7 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.stability import outcomes as fates
 from engine.stability.grid import Grid
-from tui.screens.status_line import limit_warning
+from tui.screens.lines import limit_warning
 from tui.views.stability.pane import note, verdict
 
 VERLET, RK4 = USUAL_CAST[2:]

@@ -1,0 +1,359 @@
+"""What lies over the lab until it is closed: texts, the help, forms, and the command palette.
+
+The help and the palette are made from the BINDINGS beside the keys' actions.
+"""
+
+import argparse
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+from itertools import groupby, zip_longest
+from typing import ClassVar, NamedTuple, cast
+
+from rich.cells import cell_len
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+from textual import events, on
+from textual.app import ComposeResult
+from textual.await_complete import AwaitComplete
+from textual.binding import Binding, BindingType
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.containers import Container, Horizontal, VerticalScroll
+from textual.dom import DOMNode
+from textual.screen import ModalScreen, ScreenResultType
+from textual.widgets import Input, Label, OptionList, Static
+from textual.widgets.option_list import Option
+
+from engine.methods import METHODS, Cast, Method
+from engine.models import PARAMETERS
+from engine.scenes import GROUPS, MOST_METHODS, SCENES, Scene
+from tui.cli.options import angle, number
+from tui.drawing.palette import PALETTES
+from tui.playback.source import Source
+from tui.screens.base import SizedScreen, SourceScreen
+from tui.screens.lines import key_text
+from tui.screens.live import LiveScreen
+from tui.words.cards import glossary, method_card, scene_card
+from tui.words.describe import step_text
+from tui.words.numbers import counted, z_text
+
+KEY_WIDTH = 9  # columns of a key
+COLUMN_WIDTH = 36  # of a key and what it does
+
+
+class _Once(SizedScreen[ScreenResultType]):
+    """A screen that closes once, however fast the clicks and keys come."""
+
+    _dismissed = False
+
+    def on_mount(self) -> None:
+        """With reduced motion no cursor blinks; Textual lets it."""
+        for field in self.query(Input):
+            field.cursor_blink = self.app.animation_level != "none"
+
+    def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
+        """Close with a result, once; a second call would close the screen below."""
+        if self._dismissed or self.app.screen is not self:
+            return AwaitComplete()
+        self._dismissed = True
+        return super().dismiss(result)
+
+
+class Modal(ModalScreen[ScreenResultType], _Once[ScreenResultType]):
+    """A screen over the lab."""
+
+
+class Form(Modal[ScreenResultType]):
+    """A modal that asks for something; a click beside it cancels."""
+
+    def on_click(self, event: events.Click) -> None:
+        if event.widget is self:
+            self.dismiss(None)
+
+
+# Texts, and the help
+
+
+class TextScreen(Modal[None]):
+    """A text.  Esc closes it, and so do the keys that open one."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")
+    ]
+
+    def __init__(self, title: str, text: str) -> None:
+        super().__init__()
+        self.text = text
+        self.text_title = title
+
+    def compose(self) -> ComposeResult:
+        with VerticalScroll(id="text") as scroll:
+            scroll.border_title = self.text_title
+            scroll.border_subtitle = "arrows scroll, Esc closes"
+            yield Static(self.text, markup=False)
+
+
+def bindings_of(owner: type[DOMNode]) -> list[Binding]:
+    """Return our own bindings of a class that have a description, then those of its bases."""
+    classes = [each for each in owner.__mro__ if each.__module__.startswith("tui.")]
+    found = [binding for each in classes for binding in each.__dict__.get("BINDINGS", ())]
+    return [each for each in found if isinstance(each, Binding) and each.description]
+
+
+def purpose(binding: Binding) -> str:
+    """Return what a key does, in a phrase."""
+    return binding.tooltip or binding.description
+
+
+def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
+    """Yield a line for each key, or for each group of keys."""
+    for group, members in groupby(bindings, key=lambda each: each.group or each):
+        keys = [key_text(each) for each in members]
+        text = " ".join(keys) if len(keys) < 4 else f"{keys[0]} … {keys[-1]}"
+        does = group.description if isinstance(group, Binding.Group) else purpose(group)
+        yield f"{text:<{KEY_WIDTH - 1}} {does}"
+
+
+def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> str:
+    """Return the keys of these classes, the scene, the glossary, and the methods.
+
+    `width`: columns of the screen; from 80 on keys stand in two columns.
+    """
+    parts = []
+    for owner in owners:
+        lines = list(key_lines(bindings_of(owner)))
+        if width >= 80:
+            half = (len(lines) + 1) // 2
+            pairs = zip_longest(lines[:half], lines[half:], fillvalue="")
+            lines = [f"{left:<{COLUMN_WIDTH}}{right}".rstrip() for left, right in pairs]
+        parts.append("\n".join(filter(None, [owner.BINDING_GROUP_TITLE, *lines, owner.HELP])))
+    scene = source.scene
+    now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
+    return "\n\n".join([*parts, scene_card(scene, now), glossary(), *map(method_card, scene.cast)])
+
+
+# Forms
+
+
+class _Paged(OptionList):
+    """Textual 8.2's list knows no pages before its first paint."""
+
+    def action_page_up(self) -> None:
+        with suppress(KeyError):
+            super().action_page_up()  # type: ignore[no-untyped-call]
+
+    def action_page_down(self) -> None:
+        with suppress(KeyError):
+            super().action_page_down()  # type: ignore[no-untyped-call]
+
+
+class SceneList(Form[str | None]):
+    """Returns the name of the scene to start, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)")]
+
+    def __init__(self, current: str) -> None:
+        super().__init__()
+        self._current = current
+
+    def compose(self) -> ComposeResult:
+        listed = _Paged(id="scenes", markup=False)
+        listed.border_title = "Scenes, with what to watch"
+        listed.border_subtitle = "Enter starts, Esc cancels"
+        for group, scenes in GROUPS.items():
+            listed.add_option(Option(Text(group.upper(), "bold"), disabled=True))
+            for scene in scenes:
+                line = Table.grid("name", "watch", padding=(0, 2))
+                line.columns[0].width = max(map(len, SCENES))
+                line.add_row(scene.name, scene.watch)
+                listed.add_option(Option(line, scene.name))
+        if self._current in SCENES:
+            listed.highlighted = listed.get_option_index(self._current)
+        yield listed
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option_id)
+
+
+class CastForm(Form[Cast | None]):
+    """Returns the methods to start with, in the order in which they were taken, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,M,shift+m,q", "dismiss(None)"),
+        Binding("space", "take"),
+        Binding("enter", "start", priority=True),
+    ]
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__()
+        known = dict.fromkeys((*METHODS, *scene.cast))
+        self._methods = [each for each in known if scene.model in each.models]
+        self._title = f"Methods for the model {scene.model}, one to {MOST_METHODS}"
+        self.cast = scene.cast
+
+    def compose(self) -> ComposeResult:
+        listed = _Paged(*map(self._line, self._methods), id="cast")
+        listed.border_title = self._title
+        listed.border_subtitle = "Space takes or leaves a method, Enter starts, Esc cancels"
+        yield listed
+
+    def _line(self, method: Method) -> Text:
+        """As "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit: not taken."""
+        digit = str(self.cast.index(method) + 1) if method in self.cast else " "
+        forces = f"{counted(method.force_evaluations, 'force')} a step"
+        kind = "symplectic" if method.symplectic else "not symplectic"
+        name = f"{digit} {method.letter} {method.label:<22}"
+        return Text(f"{name} order {method.order:<2} {forces:<16} {kind}")
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Take or leave a method that was clicked."""
+        self._toggle(event.option_index)
+
+    def action_take(self) -> None:
+        if (index := self.query_one(OptionList).highlighted) is not None:
+            self._toggle(index)
+
+    def _toggle(self, index: int) -> None:
+        method = self._methods[index]
+        if method in self.cast:
+            self.cast = tuple(each for each in self.cast if each is not method)
+        elif len(self.cast) < MOST_METHODS:
+            self.cast = (*self.cast, method)
+        else:
+            self.notify(f"No more than {MOST_METHODS} methods fit: leave one out first.")
+        listed = self.query_one(OptionList)
+        for at, each in enumerate(self._methods):
+            listed.replace_option_prompt_at_index(at, self._line(each))
+
+    def action_start(self) -> None:
+        if self.cast:
+            self.dismiss(self.cast)
+        else:
+            self.notify("Take at least one method.")
+
+
+FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
+    "theta": ("rad, or 115deg", angle),
+    "omega": ("rad/s, or 90deg", angle),
+    "h": ("s, the step size", number),
+    "length": ("m", number),
+    "gravity": ("m/s²", number),
+    **{
+        each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number)
+        for each in PARAMETERS.values()
+    },
+}
+"""The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
+
+
+class StartForm(Form[Scene | None]):
+    """Returns the scene to start, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "dismiss(None)"),
+        Binding("down", "app.focus_next"),
+        Binding("up", "app.focus_previous"),
+    ]
+
+    def __init__(self, scene: Scene, backwards: bool = False) -> None:
+        """`backwards`: time runs backwards now; a new run begins forwards."""
+        super().__init__()
+        self._before = scene
+        self._scene: Scene | None = scene
+        self._note = "; time will run forwards" if backwards else ""
+
+    def compose(self) -> ComposeResult:
+        with Container(id="form") as form:
+            form.border_title = "Start values"
+            form.border_subtitle = "Enter starts, Esc cancels"
+            numbers = self._before.numbers
+            for name in [each for each in FIELDS if each in numbers]:
+                with Horizontal():
+                    yield Label(name)
+                    yield Input(f"{numbers[name]!r}", id=name, compact=True, select_on_focus=True)
+                    yield Label(FIELDS[name][0], classes="unit")
+            yield Label(id="verdict", markup=False)
+
+    @on(Input.Changed)
+    def check(self) -> None:
+        """Show what is wrong with the values, or w0 and z."""
+        values = {}
+        verdict = self.query_one("#verdict", Label)
+        self._scene = None
+        try:
+            for field in self.query(Input):
+                name = str(field.id)
+                values[name] = FIELDS[name][1](field.value.strip())
+            self._scene = scene = self._before.altered(**values)
+        except argparse.ArgumentTypeError as error:
+            verdict.update(f"{name}: {error}.")
+        except ValueError as error:
+            verdict.update(str(error))
+        else:
+            verdict.update(f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}{self._note}")
+        verdict.set_class(self._scene is None, "-wrong")
+
+    @on(Input.Submitted)
+    def submit(self) -> None:
+        if self._scene is not None:
+            self.dismiss(self._scene)
+
+
+# The command palette
+
+
+class Entry(NamedTuple):
+    """A line of the palette."""
+
+    text: str
+    action: str | Callable[[], object]
+    key: str = ""
+
+
+def entries(screen: SourceScreen) -> Iterator[Entry]:
+    """Yield themes and scenes, then what the keys do, each action once, and what has no key."""
+    for name in PALETTES:
+        yield Entry(f"theme {name}", f"app.use_theme({name!r})")
+    if isinstance(screen, LiveScreen):
+        for scene in {**SCENES, **screen.lecture}.values():
+            yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
+    done: set[str] = set()
+    for node, binding, enabled, _ in screen.active_bindings.values():
+        ours = {each.action for each in bindings_of(type(node))}
+        if enabled and binding.action in ours - done:
+            done.add(binding.action)
+            press = partial(screen.app.simulate_key, binding.key)
+            yield Entry(purpose(binding), press, key_text(binding))
+    if not screen.app.is_web:  # it may name a file
+        yield Entry("copy the command for this moment", "copy_command")
+
+
+class Commands(CommandPalette, _Once[None]):
+    """The command palette; the app ignores its errors, which come of fast keys."""
+
+
+class LabCommands(Provider):
+    """Finds entries by what is typed."""
+
+    def _lines(self) -> Iterator[tuple[str, Callable[[], object]]]:
+        """Yield the text of each entry, with its key in the last column, and what runs it."""
+        screen = cast(SourceScreen, self.screen)
+        room = min(screen.size.width - 8, 100) - KEY_WIDTH
+        for text, run, key in entries(screen):
+            if cell_len(text) > room:
+                text = f"{text[: room - 1]}…"
+            if isinstance(run, str):
+                run = partial(screen.run_action, run)
+            # once the screen is in front again
+            yield f"{text:<{room}}{key:>{KEY_WIDTH}}", partial(screen.call_later, run)
+
+    async def discover(self) -> Hits:
+        for text, run in self._lines():
+            yield DiscoveryHit(escape(text), run, text=text)
+
+    async def search(self, query: str) -> Hits:
+        matcher = self.matcher(query)
+        for text, run in self._lines():
+            if (score := matcher.match(text)) > 0:
+                yield Hit(score, matcher.highlight(text), run, text=text)
