@@ -124,7 +124,7 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, arguments, word
 
 @pytest.mark.parametrize("name", ["lab.png", "lab.txt", "lab"])
 def test_a_still_needs_a_name_that_ends_in_svg(tmp_path, name):
-    assert pendu("snapshot", "-o", tmp_path / name).refused(2, "SVG", "lab.svg")
+    assert pendu("snapshot", "-o", tmp_path / name).refused(2, "lab.svg")
     assert not list(tmp_path.iterdir())
 
 
