@@ -139,7 +139,7 @@ class PenduApp(App[Exit | BaseException]):
             self._job.stop()
 
     def action_command_palette(self) -> None:
-        from tui.screens.dialogs import Commands, LabCommands
+        from tui.screens.palette import Commands, LabCommands
 
         if self.screen is self.source_screen:
             self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))

@@ -4,14 +4,12 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, Protocol, cast
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.content import Content
-from textual.events import Resize
 from textual.reactive import Initialize, var
-from textual.screen import Screen, ScreenResultType
 from textual.timer import Timer
 from textual.widget import Widget
 
@@ -23,16 +21,13 @@ from tui.cli.errors import explained
 from tui.cli.time_limit import limited
 from tui.playback.shown import Shown
 from tui.playback.source import Source, State, doubled
-from tui.screens.lines import InsightLine, KeyLine, StatusLine, TooSmall
+from tui.screens.lines import InsightLine, KeyLine, SizedScreen, StatusLine, TooSmall
 from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
 from tui.words.events import event_lines, numbered
-
-if TYPE_CHECKING:
-    from tui.screens.app import PenduApp
 
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
@@ -46,15 +41,11 @@ _METHODS = Binding.Group("show or hide a method")
 _VIEWS = Binding.Group("view: lab, phase, …")
 
 
-class SizedScreen(Screen[ScreenResultType]):
-    """A screen that leaves out sizes which the terminal has no longer.
+class Host(Protocol):
+    """The app, as a screen sees it."""
 
-    Two of them could evoke each other for ever.
-    """
-
-    def on_resize(self, event: Resize) -> None:
-        if event.size != self.app.size:
-            event.prevent_default()
+    fps: int
+    source_screens: list["SourceScreen"]
 
 
 class SourceScreen(SizedScreen[None]):
@@ -141,8 +132,8 @@ class SourceScreen(SizedScreen[None]):
         self._undo: deque[State] = deque(maxlen=MAX_UNDOS)
 
     @property
-    def host(self) -> "PenduApp":
-        return cast("PenduApp", self.app)
+    def host(self) -> Host:
+        return cast(Host, self.app)
 
     def first_view(self, source: Source) -> str:
         """Return the view that is in front at the start."""

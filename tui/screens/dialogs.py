@@ -1,24 +1,17 @@
-"""What lies over the lab until it is closed: texts, the help, forms, and the command palette.
-
-The help and the palette are made from the BINDINGS beside the keys' actions.
-"""
+"""What lies over the lab until it is closed: texts, the help, which is made from BINDINGS, forms."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import groupby, zip_longest
-from typing import ClassVar, NamedTuple, cast
+from typing import ClassVar
 
-from rich.cells import cell_len
-from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
 from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
-from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.containers import Container, Horizontal, VerticalScroll
 from textual.dom import DOMNode
 from textual.screen import ModalScreen, ScreenResultType
@@ -29,11 +22,8 @@ from engine.methods import METHODS, Cast, Method
 from engine.models import PARAMETERS
 from engine.scenes import GROUPS, MOST_METHODS, SCENES, Scene
 from tui.cli.options import angle, number
-from tui.drawing.palette import PALETTES
 from tui.playback.source import Source
-from tui.screens.base import SizedScreen, SourceScreen
-from tui.screens.lines import key_text
-from tui.screens.live import LiveScreen
+from tui.screens.lines import SizedScreen, key_text
 from tui.words.cards import glossary, method_card, scene_card
 from tui.words.describe import step_text
 from tui.words.numbers import counted, z_text
@@ -42,7 +32,7 @@ KEY_WIDTH = 9  # columns of a key
 COLUMN_WIDTH = 36  # of a key and what it does
 
 
-class _Once(SizedScreen[ScreenResultType]):
+class Once(SizedScreen[ScreenResultType]):
     """A screen that closes once, however fast the clicks and keys come."""
 
     _dismissed = False
@@ -60,7 +50,7 @@ class _Once(SizedScreen[ScreenResultType]):
         return super().dismiss(result)
 
 
-class Modal(ModalScreen[ScreenResultType], _Once[ScreenResultType]):
+class Modal(ModalScreen[ScreenResultType], Once[ScreenResultType]):
     """A screen over the lab."""
 
 
@@ -298,62 +288,3 @@ class StartForm(Form[Scene | None]):
     def submit(self) -> None:
         if self._scene is not None:
             self.dismiss(self._scene)
-
-
-# The command palette
-
-
-class Entry(NamedTuple):
-    """A line of the palette."""
-
-    text: str
-    action: str | Callable[[], object]
-    key: str = ""
-
-
-def entries(screen: SourceScreen) -> Iterator[Entry]:
-    """Yield themes and scenes, then what the keys do, each action once, and what has no key."""
-    for name in PALETTES:
-        yield Entry(f"theme {name}", f"app.use_theme({name!r})")
-    if isinstance(screen, LiveScreen):
-        for scene in {**SCENES, **screen.lecture}.values():
-            yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
-    done: set[str] = set()
-    for node, binding, enabled, _ in screen.active_bindings.values():
-        ours = {each.action for each in bindings_of(type(node))}
-        if enabled and binding.action in ours - done:
-            done.add(binding.action)
-            press = partial(screen.app.simulate_key, binding.key)
-            yield Entry(purpose(binding), press, key_text(binding))
-    if not screen.app.is_web:  # it may name a file
-        yield Entry("copy the command for this moment", "copy_command")
-
-
-class Commands(CommandPalette, _Once[None]):
-    """The command palette; the app ignores its errors, which come of fast keys."""
-
-
-class LabCommands(Provider):
-    """Finds entries by what is typed."""
-
-    def _lines(self) -> Iterator[tuple[str, Callable[[], object]]]:
-        """Yield the text of each entry, with its key in the last column, and what runs it."""
-        screen = cast(SourceScreen, self.screen)
-        room = min(screen.size.width - 8, 100) - KEY_WIDTH
-        for text, run, key in entries(screen):
-            if cell_len(text) > room:
-                text = f"{text[: room - 1]}…"
-            if isinstance(run, str):
-                run = partial(screen.run_action, run)
-            # once the screen is in front again
-            yield f"{text:<{room}}{key:>{KEY_WIDTH}}", partial(screen.call_later, run)
-
-    async def discover(self) -> Hits:
-        for text, run in self._lines():
-            yield DiscoveryHit(escape(text), run, text=text)
-
-    async def search(self, query: str) -> Hits:
-        matcher = self.matcher(query)
-        for text, run in self._lines():
-            if (score := matcher.match(text)) > 0:
-                yield Hit(score, matcher.highlight(text), run, text=text)

@@ -11,7 +11,7 @@ from rich.style import Style
 from textual import events
 from textual.app import App
 from textual.binding import ActiveBinding, Binding
-from textual.screen import Screen
+from textual.screen import Screen, ScreenResultType
 
 from engine.methods import Cast
 from engine.run.lockstep import Sample
@@ -29,6 +29,17 @@ from tui.words.tour import Tour
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
 """The ink of LIVE and REPLAY, and of the tour's titles."""
+
+
+class SizedScreen(Screen[ScreenResultType]):
+    """A screen that leaves out sizes which the terminal has no longer.
+
+    Two of them could evoke each other for ever.
+    """
+
+    def on_resize(self, event: events.Resize) -> None:
+        if event.size != self.app.size:
+            event.prevent_default()
 
 
 class Badged(CellWidget):

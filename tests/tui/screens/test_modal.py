@@ -12,7 +12,8 @@ from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
 
 from tests.tui.harness import lab
-from tui.screens.dialogs import Commands, LabCommands, TextScreen
+from tui.screens.dialogs import TextScreen
+from tui.screens.palette import Commands, LabCommands
 
 
 async def opened(theatre) -> TextScreen:

@@ -9,7 +9,7 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from tests.tui.harness import Theatre, lab
 from tui.drawing.palette import PALETTES
-from tui.screens.dialogs import LabCommands, entries
+from tui.screens.palette import LabCommands, entries
 from tui.words.command_line import command
 
 DRIFT = GOLDEN / "drift.mcap"

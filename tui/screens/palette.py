@@ -1,0 +1,72 @@
+"""The command palette: themes and scenes first, then what the keys do, and what has no key."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple, cast
+
+from rich.cells import cell_len
+from rich.markup import escape
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
+
+from engine.scenes import SCENES
+from tui.drawing.palette import PALETTES
+from tui.screens.base import SourceScreen
+from tui.screens.dialogs import KEY_WIDTH, Once, bindings_of, purpose
+from tui.screens.lines import key_text
+from tui.screens.live import LiveScreen
+
+
+class Entry(NamedTuple):
+    """A line of the palette."""
+
+    text: str
+    action: str | Callable[[], object]
+    key: str = ""
+
+
+def entries(screen: SourceScreen) -> Iterator[Entry]:
+    """Yield what can be done on this screen, the action of a key once."""
+    for name in PALETTES:
+        yield Entry(f"theme {name}", f"app.use_theme({name!r})")
+    if isinstance(screen, LiveScreen):
+        for scene in {**SCENES, **screen.lecture}.values():
+            yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
+    done: set[str] = set()
+    for node, binding, enabled, _ in screen.active_bindings.values():
+        ours = {each.action for each in bindings_of(type(node))}
+        if enabled and binding.action in ours - done:
+            done.add(binding.action)
+            press = partial(screen.app.simulate_key, binding.key)
+            yield Entry(purpose(binding), press, key_text(binding))
+    if not screen.app.is_web:  # it may name a file
+        yield Entry("copy the command for this moment", "copy_command")
+
+
+class Commands(CommandPalette, Once[None]):
+    """The command palette; the app ignores its errors, which come of fast keys."""
+
+
+class LabCommands(Provider):
+    """Finds entries by what is typed."""
+
+    def _lines(self) -> Iterator[tuple[str, Callable[[], object]]]:
+        """Yield the text of each entry, with its key in the last column, and what runs it."""
+        screen = cast(SourceScreen, self.screen)
+        room = min(screen.size.width - 8, 100) - KEY_WIDTH
+        for text, run, key in entries(screen):
+            if cell_len(text) > room:
+                text = f"{text[: room - 1]}…"
+            if isinstance(run, str):
+                run = partial(screen.run_action, run)
+            # once the screen is in front again
+            yield f"{text:<{room}}{key:>{KEY_WIDTH}}", partial(screen.call_later, run)
+
+    async def discover(self) -> Hits:
+        for text, run in self._lines():
+            yield DiscoveryHit(escape(text), run, text=text)
+
+    async def search(self, query: str) -> Hits:
+        matcher = self.matcher(query)
+        for text, run in self._lines():
+            if (score := matcher.match(text)) > 0:
+                yield Hit(score, matcher.highlight(text), run, text=text)
