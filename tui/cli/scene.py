@@ -61,7 +61,8 @@ NUMBERS: dict[str, tuple[Callable[[str], float], str, str]] = {
 
 _READERS = {name: read for name, (read, _, _) in NUMBERS.items()}
 _READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
-_PARAMETERS = ChainMap(*(dict(scene.parameters) for scene in SCENES.values()))
+_DEFAULTS = {name: each.default for name, each in PARAMETERS.items()}
+_PARAMETERS = ChainMap(*(dict(scene.parameters) for scene in SCENES.values()), _DEFAULTS)
 _EXAMPLE = """
 name = "swing"
 theta = "57deg"
