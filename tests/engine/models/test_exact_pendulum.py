@@ -87,85 +87,54 @@ def test_the_swing_is_exact_from_any_start(theta, omega, phase, gravity):
         assert_exact(scene, phase / scene.w0)
 
 
-def test_the_closed_form_solves_the_equation_of_motion_itself():
-    """Against a Taylor integration of theta'' = -w0² sin theta: no elliptic function on this side."""
-    for theta, omega in ((2.0, 1.0), (0.0, 7.0)):
-        solution = mp.odefun(
-            lambda _, y: [y[1], -mp.mpf(9.81) * mp.sin(y[0])],
-            0,
-            [theta, omega],
-            tol=mp.mpf("1e-15"),
-        )
-        state = Scene(theta=theta, omega=omega).exact().at(2.0)
-        assert state == pytest.approx(
-            [float(value) for value in solution(2)], abs=1e-13
-        )  # tol of the integration
+@pytest.mark.parametrize("start", [(2.0, 1.0), (0.0, 7.0)])
+def test_the_closed_form_solves_the_equation_of_motion_itself(start):
+    """Against a Taylor integration of theta'' = -w0² sin theta, without any elliptic function."""
+
+    def rates(_, phase):
+        return [phase[1], -mp.mpf(9.81) * mp.sin(phase[0])]
+
+    solution = mp.odefun(rates, 0, start, tol=mp.mpf("1e-15"))
+    found = Scene(theta=start[0], omega=start[1]).exact().at(2.0)
+    assert found == pytest.approx([float(value) for value in solution(2)], abs=1e-13)
 
 
-@pytest.mark.parametrize(
-    ("theta", "omega", "regime"),
-    [
-        (1.0, 0.0, "libration"),
-        (math.pi, 0.0, "libration"),
-        (0.0, 8.0, "rotation"),
-        (0.0, 0.0, "equilibrium"),
-    ],
-)
-def test_each_start_has_its_regime(theta, omega, regime):
-    assert Scene(theta=theta, omega=omega).exact().regime == regime
+def test_each_start_has_its_regime():
+    starts = [(1.0, 0.0), (math.pi, 0.0), (0.0, 8.0), (0.0, 0.0)]
+    motions = [Scene(theta=theta, omega=omega).exact() for theta, omega in starts]
+    regimes = ["libration", "libration", "rotation", "equilibrium"]
+    assert [exact.regime for exact in motions] == regimes
+    assert motions[-1].period is None
+    assert motions[-1].at(1e5) == State(0.0, 0.0)
 
 
 def test_the_separatrix_climbs_forever():
     exact = Scene(theta=0.0, omega=-2.0, gravity=1.0).exact()  # w0 = 1: the one start exactly on it
     assert (exact.regime, exact.period) == ("separatrix", None)
     for t in (-3.0, 0.5, 3.0):
-        # Gudermann: theta = 2 atan sinh u, omega = 2/cosh u; a few roundings.
-        assert exact.at(t) == pytest.approx(
-            (-2 * math.atan(math.sinh(t)), -2 / math.cosh(t)), abs=1e-15
-        )
+        gudermann = -2 * math.atan(math.sinh(t)), -2 / math.cosh(t)
+        assert exact.at(t) == pytest.approx(gudermann, abs=1e-15)  # a few roundings
     assert exact.at(1e5) == State(-math.pi, 0.0)
-
-
-def test_at_rest_at_the_bottom_it_stays():
-    exact = Scene(theta=0.0).exact()
-    assert exact.period is None
-    assert exact.at(1e5) == State(0.0, 0.0)
 
 
 def test_math_pi_is_not_upright_and_falls():
     exact = Scene(theta=math.pi).exact()
     assert exact.period == pytest.approx(49.4470164, abs=1e-6)  # s, 4 K(k)/w0 from mpmath
-    assert (
-        abs(exact.at(exact.period / 4).theta) < 1e-14
-    )  # a quarter of it later it is at the bottom
+    assert abs(exact.at(exact.period / 4).theta) < 1e-14  # by then it is at the bottom
 
 
 @pytest.mark.parametrize(
-    "name", [name for name, scene in SCENES.items() if scene.model == "pendulum"]
+    "scene", [s for s in SCENES.values() if s.model == "pendulum"], ids=lambda s: s.name
 )
-def test_after_its_period_it_is_back(name):
-    scene = SCENES[name]
+def test_after_its_period_it_is_back(scene):
     exact = scene.exact()
-    assert exact.period is not None
+    theta, omega = exact.at(exact.period)
     turn = math.tau if exact.regime == "rotation" else 0.0
-    later = exact.at(exact.period)
     # 1e-12: the roundings of one period, as for any other time.
-    assert later.theta - turn == pytest.approx(scene.theta, abs=1e-12)
-    assert later.omega == pytest.approx(scene.omega, abs=1e-12)
+    assert (theta - turn, omega) == pytest.approx((scene.theta, scene.omega), abs=1e-12)
 
 
-anything = {name: st.floats(*LIMITS[name]) for name in ("theta", "omega", "length", "gravity")}
-
-
-@given(**anything, t=st.floats(-1e5, 1e5))
-def test_no_legal_start_gives_anything_but_finite_numbers(theta, omega, length, gravity, t):
-    scene = Scene(
-        theta=theta,
-        omega=omega,
-        length=length,
-        gravity=gravity,
-        h=0.1 * math.sqrt(length / gravity),
-    )
-    state = scene.exact().at(t)
-    assert math.isfinite(state.theta)
-    assert math.isfinite(state.omega)
+@given(**{name: st.floats(*limits) for name, limits in LIMITS.items()}, t=st.floats(-1e5, 1e5))
+def test_no_legal_start_gives_anything_but_finite_numbers(t, **start):
+    scene = Scene(**start, h=0.1 * math.sqrt(start["length"] / start["gravity"]))
+    assert all(map(math.isfinite, scene.exact().at(t)))
