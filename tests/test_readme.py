@@ -14,7 +14,7 @@ import pytest
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
-from tui.commands.files.export import columns_of
+from tui.commands.export import columns_of
 from tui.screens.dialogs import bindings_of, key_lines
 from tui.screens.live import LiveScreen
 

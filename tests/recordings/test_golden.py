@@ -9,7 +9,7 @@ from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from tests.recordings.make_golden import RECORDINGS, make
 from tests.tui.command_line import pendu
-from tui.commands.files.export import columns_of
+from tui.commands.export import columns_of
 
 ROOM = 64_000  # bytes; they are in every installation
 

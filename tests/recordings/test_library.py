@@ -12,7 +12,7 @@ from recordings.library import GOLDEN, free_path, leftovers, listing, new_path
 from recordings.recorder import Recorder
 from tests.recordings.examples import start, tiny
 from tui.cli.options import resolve
-from tui.commands.files.recordings import delete
+from tui.commands.recordings import delete
 from tui.playback.marks import Mark, Marks
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))

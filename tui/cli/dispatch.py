@@ -18,35 +18,25 @@ from tui.cli.install import hidden_package
 if TYPE_CHECKING:
     from tui.cli.options import Parser
 
-GROUPS = {
-    "lab": {
-        "live": "the lab: methods side by side, their errors, a recording",
-        "tour": "a tour of the lab: eight short steps, each with a question",
-        "replay": "play a recording on the same screen",
-        "snapshot": "save the lab as an SVG image",
-        "serve": "the lab in a browser",
-    },
-    "studies": {
-        "accuracy": "speed against accuracy: which method, which h, at what cost",
-        "stability": "where each method becomes unstable; phase portrait of its own map",
-        "run": "run a scene without the screen and judge each method; for CI",
-        "judge": "judge the energies of another program, from a file or stdin; for CI",
-    },
-    "files": {
-        "verify": "re-simulate recordings and compare every bit",
-        "diff": "compare two recordings: scene, changes, every number",
-        "export": "convert a recording to CSV or Parquet",
-        "recordings": "list the recordings, show, recover or delete them",
-    },
-    "about": {
-        "scenes": "list the scenes, with what to watch",
-        "methods": "list the methods with claimed and measured properties",
-        "doctor": "check the environment and suggest fixes",
-    },
+COMMANDS = {
+    "live": "the lab: methods side by side, their errors, a recording",
+    "tour": "a tour of the lab: eight short steps, each with a question",
+    "replay": "play a recording on the same screen",
+    "snapshot": "save the lab as an SVG image",
+    "serve": "the lab in a browser",
+    "accuracy": "speed against accuracy: which method, which h, at what cost",
+    "stability": "where each method becomes unstable; phase portrait of its own map",
+    "run": "run a scene without the screen and judge each method; for CI",
+    "judge": "judge the energies of another program, from a file or stdin; for CI",
+    "verify": "re-simulate recordings and compare every bit",
+    "diff": "compare two recordings: scene, changes, every number",
+    "export": "convert a recording to CSV or Parquet",
+    "recordings": "list the recordings, show, recover or delete them",
+    "scenes": "list the scenes, with what to watch",
+    "methods": "list the methods with claimed and measured properties",
+    "doctor": "check the environment and suggest fixes",
 }
-"""Folder of tui.commands -> name of a command in it -> what it does."""
-
-COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
+"""Command -> what it does."""
 
 RENAMED = {
     "keys": "live, and there the key ?",
@@ -168,7 +158,7 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
 
         hint = did_you_mean(name, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
         raise UserError(f"there is no command, scene or file {name!r}{hint}")
-    command = module_of(name)
+    command = import_module(f"tui.commands.{name}")
     parser = Parser(
         prog=f"pendu-tui {name}",
         description=command.__doc__,
@@ -178,12 +168,6 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
     )
     command.add_options(parser)
     return parser, command
-
-
-def module_of(name: str) -> ModuleType:
-    """Return a command's module."""
-    group = next(group for group, names in GROUPS.items() if name in names)
-    return import_module(f"tui.commands.{group}.{name}")
 
 
 def completion_parser() -> "Parser":
@@ -197,5 +181,6 @@ def completion_parser() -> "Parser":
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(parser_class=ArgumentParser)
     for name, about in COMMANDS.items():
-        module_of(name).add_options(commands.add_parser(name, help=about, description=about))
+        subparser = commands.add_parser(name, help=about, description=about)
+        import_module(f"tui.commands.{name}").add_options(subparser)
     return parser

@@ -73,7 +73,7 @@ def test_an_escape_sequence_is_not_printed_raw():
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
-    monkeypatch.setattr("tui.commands.about.scenes.run", lambda _: 1 / 0)
+    monkeypatch.setattr("tui.commands.scenes.run", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         pendu("scenes")
 
@@ -88,7 +88,7 @@ def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_i
         except KeyboardInterrupt:
             raise becomes("half imported") from None
 
-    monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
+    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
     outcome = pendu("scenes")
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 

@@ -1,7 +1,7 @@
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.commands.about.doctor import colour, folder, size
+from tui.commands.doctor import colour, folder, size
 
 
 def test_doctor_reports_and_never_fails(monkeypatch, tmp_path):

@@ -8,7 +8,7 @@ from engine.methods import METHODS
 from engine.run.compiled import available
 from engine.scenes import GROUPS, SCENES
 from tests.tui.command_line import pendu
-from tui.commands.about.methods import MEASURED
+from tui.commands.methods import MEASURED
 
 
 def test_scenes_are_listed_in_groups_with_what_to_watch():

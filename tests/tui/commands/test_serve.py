@@ -304,5 +304,5 @@ def test_what_cannot_be_served_is_one_sentence(server, tmp_path, monkeypatch):
     assert pendu("serve", "--record", tmp_path / "file").refused(5, "exists")
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "create the folder")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
-    monkeypatch.delitem(sys.modules, "tui.commands.lab.web.server", raising=False)
+    monkeypatch.delitem(sys.modules, "tui.commands.web.server", raising=False)
     assert pendu("serve").refused(2, "install", "serve needs")

@@ -17,7 +17,7 @@ from recordings.recording import Recording
 from tests.tui.command_line import own_method
 from tui.cli.dispatch import command_of
 from tui.cli.scene import scene_of
-from tui.commands.lab.live import lab_of
+from tui.commands.live import lab_of
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.words.command_line import command, reproduces

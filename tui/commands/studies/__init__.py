@@ -1,5 +1,1 @@
-"""Commands without a screen.
-
-`run` judges methods, in `lists` of runs too, and `judge` another program's energies; `accuracy` and
-`stability` study methods.  `reports` prints what they found.
-"""
+"""What the studies among the commands compute, report and draw."""

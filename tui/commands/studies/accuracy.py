@@ -1,100 +1,311 @@
-"""Chart speed against accuracy over a ladder of h; find the cheapest method and h."""
+"""What the accuracy command measures and recommends, and its report."""
 
 import argparse
+import time
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import pairwise
+from operator import methodcaller
+from typing import Any
 
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import count, positive
-from tui.cli.output import warn
-from tui.cli.report import add_report_options, publish
-from tui.cli.scene import add_scene_options, general_scene_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies.reports import figures
+from engine.accuracy.front import Cheapest, front
+from engine.accuracy.growth import Growth, growth
+from engine.accuracy.recommend import Advice, Attempt, least_cost, least_error
+from engine.accuracy.references import References, references
+from engine.accuracy.study import (
+    ALL_LADDER,
+    REASONS,
+    Z_LADDER,
+    Order,
+    Point,
+    Study,
+    compilable,
+    ladder,
+    measured_point,
+    orders,
+    timed,
+    usual,
+    with_all_methods,
+)
+from engine.methods import Method
+from engine.methods.own import OwnMethod
+from engine.run import compiled, loops
+from engine.scenes import Scene, check_h
+from tui.cli.errors import UserError
+from tui.cli.output import console, fields_of, progress, scene_line
+from tui.cli.report import Column, Report, Table, method_column
+from tui.cli.workers import workers_of
+from tui.commands.studies.figures import lines_of
+from tui.drawing.palette import PALETTES
+from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
+from tui.words.accuracy import factor_words, few, front_words, growth_words, length
 
-EXAMPLES = """\
-examples:
-  pendu-tui accuracy --target 1e-6 --time 100
-  pendu-tui accuracy --all --cost seconds --target 1e-9
-  pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
-  pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
-  pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
-"""
-
-MAX_RUNGS = 1000
-MAX_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compiled
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_scene_options(parser)
-    add = parser.add_argument
-    every = "chart all methods for any force, with --cost seconds also series and closed form"
-    add("--all", action="store_true", help=every)
-    some = "simulated time in s; if several, the last is charted (ten small swings)"
-    add("--time", metavar="S[,S...]", type=times, help=some)
-    ladder = "N step sizes from A to B in s, log spaced (12, z = h·w0 from 0.6 to 0.0015)"
-    add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
-    kinds = "largest angle error [rad], largest energy error, last angle error (%(default)s)"
-    add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
-    costs = "force evaluations, or seconds, without Numba if a method is your own (%(default)s)"
-    add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
-    wish = "find each method's cheapest h for this error; without --methods, try all of them"
-    add("--target", metavar="ERROR", type=positive, help=wish)
-    limit = "limit of force evaluations; alone: find the least error within it"
-    add("--budget", metavar="N", type=budget, help=limit)
-    add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
-    add_worker_options(parser)
-    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
+MAX_STEPS = 10**10  # of the finest rung: half an hour, compiled
+CHART_SIZE = (100, 24)  # columns at most, rows
+NUMBERS = (
+    *("h", "steps", "force_evaluations", "seconds", "spread"),
+    *("theta_error", "energy_error", "final_error"),
+)
+TRUTH = "the exact motion, against which errors are taken"
 
 
-def times(text: str) -> list[float]:
-    return sorted({positive(part) for part in text.split(",")})
+class Findings:
+    """What was asked for, and what has been found so far."""
+
+    def __init__(self, scene: Scene, options: argparse.Namespace) -> None:
+        self.searched = scene if options.methods else with_all_methods(scene)
+        self.scene = self.searched if options.all else scene
+        self.options = options
+        self.durations: list[float] = options.time or [usual(scene)[0]]
+        self.time = self.durations[-1]  # s
+        self.points: list[Point] = []
+        self.orders: list[Order] = []
+        self.growth: list[Growth] = []  # of the theta error, at the scene's h
+        self.advice: list[Advice] = []  # one for each time asked for
+        self.references: References | None = None
+
+    @property
+    def series(self) -> Sequence[Point]:
+        """Return the points of Taylor's series."""
+        return self.references.taylor if self.references else ()
+
+    @property
+    def front(self) -> list[Cheapest]:
+        """Return the cheapest method at each accuracy."""
+        points = [*self.points, *self.series]
+        return front(points, self.options.error, self.options.cost)
 
 
-def h_values(text: str) -> tuple[float, float, int]:
-    """Return the ends of a ladder [s], the larger first, and its rungs, from A:B:N."""
-    match text.split(":"):
-        case [first, last, many] if count(many) <= MAX_RUNGS:
-            low, high = sorted((positive(first), positive(last)))
-            return high, low, count(many)
-    raise argparse.ArgumentTypeError(
-        f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10"
+def measure(found: Findings) -> None:
+    """Add what was asked for to the findings, so that an interrupt keeps what was found."""
+    scene = found.scene
+    options = found.options
+    rungs = _ladder(found)
+    in_seconds = options.cost == "seconds"
+    # seconds are those of compiled methods, or of none
+    fast = not options.no_compiled and (not in_seconds or compilable(scene.cast))
+    study_loops = compiled.TieredLoops if fast and compiled.available() else loops.PlainLoops
+    timed_loops = compiled.compiled if fast else loops.PlainLoops
+    tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
+    done = 0
+    with workers_of(options) as workers, progress("measuring") as show:
+        for point in workers.map(partial(measured_point, scene, found.time, study_loops), tasks):
+            if in_seconds:
+                point = timed(point, scene, time.perf_counter, timed_loops)
+            found.points.append(point)
+            done += point.steps
+            show(done, len(scene.cast) * sum(rungs))
+    if options.all and in_seconds:
+        found.references = references(scene, found.time, time.perf_counter, fast)
+    study = Study(scene, found.time, study_loops)
+    found.orders += orders(scene, found.time, study.loops)
+    found.growth += (growth(scene, method) for method in scene.cast)
+    if options.target is None and options.budget is None:
+        return
+    clock = time.perf_counter if in_seconds else None
+    with progress("searching") as show:
+        for number, duration in enumerate(found.durations):
+            wider = Study(found.searched, duration, study.loops)
+
+            def show_share(share: float, number: int = number) -> None:
+                show(number + share, len(found.durations))
+
+            if options.target is None:
+                advice = least_error(wider, options.error, options.budget, show_share)
+            else:
+                wish = (options.error, options.target, options.budget)
+                advice = least_cost(wider, *wish, show_share, clock, timed_loops)
+            found.advice.append(advice)
+
+
+def _ladder(found: Findings) -> list[int]:
+    w0 = found.scene.w0
+    z_max, z_min, rungs = ALL_LADDER if found.options.all else Z_LADDER
+    largest = min(z_max / w0, found.time)
+    smallest = z_min / w0
+    if found.options.h_values:
+        largest, smallest, rungs = found.options.h_values
+    for h in (largest, smallest):
+        check_h(h, w0)
+    if largest > found.time:
+        raise UserError(
+            f"h = {largest:g} s is longer than the time of {found.time:g} s; use a longer --time."
+        )
+    if found.time / smallest > MAX_STEPS:
+        raise UserError(
+            f"{found.time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for "
+            "example 0.2:0.01:8."
+        )
+    return ladder(found.time, largest, smallest, rungs)
+
+
+def report(found: Findings, interrupted: bool) -> Report:
+    kind = found.options.error
+    points = list(_records(found))
+    durations = [_advice_fields(found, advice) for advice in found.advice]
+    return Report(
+        name="accuracy",
+        title=f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[kind]}\n",
+        columns=_columns(found),
+        rows=_rungs(found),
+        notes=list(_notes(found)),
+        records=points,
+        fields={
+            "scene": found.scene.fields(),
+            "time": found.time,
+            "error": kind,
+            "points": points,
+            "front": [
+                {"error": one.target, "method": one.method.key, "cost": one.cost}
+                | {"saves_over_rk4": one.saves}
+                for one in found.front
+            ],
+            "absent": found.references and found.references.absent,
+            "orders": [
+                {"method": one.method.key, "claimed": _claimed(one.method)}
+                | {"measured": one.measured}
+                for one in found.orders
+            ],
+            "recommendation": durations[-1] if durations else None,
+            "durations": durations,
+            "interrupted": interrupted,
+        },
     )
 
 
-def budget(text: str) -> int:
-    if not 1 <= (evaluations := positive(text)) <= MAX_BUDGET:
-        raise argparse.ArgumentTypeError(f"{text} is out of range; use 1 to {MAX_BUDGET:g}")
-    return int(evaluations)
+def _records(found: Findings) -> Iterator[dict[str, Any]]:
+    """Yield the points of all lines, in the fields of JSON and CSV."""
+    for point in (*found.points, *found.series):
+        flaw = point.flaw(found.options.error)
+        record = {"method": point.method.key, **fields_of(point, *NUMBERS), "valid": flaw is None}
+        if point.tolerance is not None:
+            record |= {"h": None, "force_evaluations": None}
+        yield record | {"reason": flaw and REASONS[flaw], "tolerance": point.tolerance}
+    if found.references:
+        record = {"method": "closed_form", **dict.fromkeys(NUMBERS)}
+        record |= {"seconds": found.references.closed_form, "valid": False}
+        yield record | {"reason": TRUTH, "tolerance": None}
 
 
-def run(options: argparse.Namespace) -> int:
-    """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    if options.all and options.methods is not None:
-        raise UserError("--all and --methods exclude each other; choose one of them.")
-    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
-        raise UserError(
-            "seconds are measured in this process, where others would disturb them; use workers "
-            "with --cost evaluations."
-        )
-    is_figure = figures.check_output(options)
-    scene = general_scene_of(options)
-    if scene.theta == scene.omega == 0:
-        raise UserError(
-            "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
-            "--omega."
-        )
-    from tui.commands.studies.reports.accuracy import Findings, measure, report
+def _rungs(found: Findings) -> list[dict[str, str]]:
+    """Return the rows of the table: the errors of all methods with one h, and the orders."""
+    rows: dict[int, dict[str, str]] = {}
+    for point in found.points:
+        place = {"h": f"{point.h:.4g}", "z": f"{point.z:.3g}", "steps": str(point.steps)}
+        flaw = point.flaw(found.options.error)
+        mark = f"{MARKS[flaw]} " if flaw else ""
+        row = rows.setdefault(point.steps, place)
+        row[point.method.key] = f"{mark}{point.error(found.options.error):.1e}{_seconds(point)}"
+    measured = {"h": "order", "steps": "measured"}
+    claims = {"steps": "claimed"}
+    for order in found.orders:
+        measured[order.method.key] = "-" if order.measured is None else f"{order.measured:.2f}"
+        claims[order.method.key] = str(_claimed(order.method) or "-")
+    return [*rows.values(), *([measured, claims] if found.orders else [])]
 
-    found = Findings(scene, options)
-    interrupted = False
-    try:
-        measure(found)
-    except KeyboardInterrupt:
-        interrupted = True
-    if is_figure:
-        figures.draw_accuracy(options, found.scene.cast, found.points)
+
+def _seconds(point: Point) -> str:
+    return "" if point.seconds is None else f" in {length(point.seconds)}"
+
+
+def _columns(found: Findings) -> list[Column]:
+    heads = {"h": "h [s]", "z": "z = h·w0", "steps": "steps"}
+    for method in found.scene.cast:
+        heads[method.key] = f"{method.label} ({method.force_evaluations}/step)"
+    return [Column(head, methodcaller("get", key, ""), right=True) for key, head in heads.items()]
+
+
+def _notes(found: Findings) -> Iterator[Any]:
+    kind = found.options.error
+    cost = found.options.cost
+    flaws = {flaw for point in found.points if (flaw := point.flaw(kind))}
+    yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws)
+    yield "order measured on the theta error over at most one period; n/step: force evaluations"
+    if words := growth_words(found.growth):
+        yield f"at h = {found.scene.h:g} s, {words}"
+    if found.references:
+        yield from filter(None, [found.references.absent])
+        yield f"Closed form, the floor: {length(found.references.closed_form)}"
+    yield ""
+    series = accuracy_series(
+        found.points, kind, cost, found.scene.cast, references=found.references
+    )
+    columns, rows = CHART_SIZE
+    chart = accuracy_chart(series, kind, cost, min(console(columns).width, columns), rows)
+    yield from lines_of(chart, PALETTES["dark"])
+    if found.options.all and found.points:
+        alone = front(found.points, kind, "evaluations")
+        yield f"\n{front_words(found.front, cost, alone)}"
+        yield from filter(None, [factor_words(alone)])
+    for advice in found.advice:
+        yield from _advice_notes(found, advice)
+    if len(found.advice) > 1:
+        yield f"\n{_winners(found.advice)}"
+
+
+def _claimed(method: Method) -> int | None:
+    """Return the claimed order; nothing is claimed of a user's own method."""
+    return None if isinstance(method, OwnMethod) else method.order
+
+
+def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
+    options = found.options
+    kind = options.error
+    wish = f"smallest {kind} error"
+    if options.target is not None:
+        wish = f"{kind} error up to {options.target:g}"
+    if options.budget is not None:
+        wish += f" within {options.budget} force evaluations"
+    point = advice.point
+    if point is None:
+        yield f"\nNo method reaches the target over {advice.time:g} s: {wish}"
     else:
-        publish(report(found, interrupted), options)
-    if interrupted:
-        warn("interrupted; partial results are kept.")
-        return Exit.INTERRUPTED
-    return Exit.FINE
+        z = f"z = {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
+        yield f"\nOver {advice.time:g} s, {wish}: {point.method.label} at h = {point.h:.5g} s ({z})"
+        cost = f"{point.force_evaluations} force evaluations{_seconds(point)}"
+        yield f"{cost}, {kind} error {point.error(kind):.2e}, confirmed"
+    rows = [_attempt_fields(found, attempt) for attempt in advice.attempts]
+    timed = [Column("seconds", "seconds", length)]
+    columns = [
+        method_column([attempt.method for attempt in advice.attempts]),
+        Column("h [s]", "h", ".5g"),
+        Column("z", "z", ".3g"),
+        Column("steps a swing", "steps_per_swing", few),
+        Column("evaluations", "force_evaluations", "d"),
+        *(timed if any(row["seconds"] is not None for row in rows) else ()),
+        Column(f"{kind} error", "error", ".1e"),
+        Column("times the cheapest", _times),
+    ]
+    yield Table(columns, rows)
+
+
+def _times(row: dict[str, Any]) -> str:
+    times = row["times_the_cheapest"]
+    return row["why_not"] or "" if times is None else f"{times:.3g}"
+
+
+def _winners(advice: Sequence[Advice]) -> str:
+    names = [each.point.method.label if each.point else "no method" for each in advice]
+    changes = [
+        f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)"
+        for (before, after), (earlier, later) in zip(pairwise(names), pairwise(advice), strict=True)
+        if before != after
+    ]
+    return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
+
+
+def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
+    numbers = ("h", "z", "steps_per_swing", "force_evaluations", "error", "seconds")
+    fields = {"method": attempt.method.key, **dict.fromkeys(numbers)}
+    if point := attempt.point:
+        fields |= {name: getattr(point, name) for name in numbers if name != "error"}
+        fields["error"] = point.error(found.options.error)
+    return fields | {"times_the_cheapest": attempt.times, "why_not": attempt.why_not}
+
+
+def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
+    attempts = [_attempt_fields(found, attempt) for attempt in advice.attempts]
+    options = fields_of(found.options, "target", "budget")
+    best = attempts[0] if advice.point else dict.fromkeys(attempts[0])
+    reason = None if advice.point else "no method gets there"
+    return {"time": advice.time, **options, **best, "why_not": reason, "attempts": attempts}

@@ -31,7 +31,7 @@ from tui.cli.report import Column, Report, publish
 from tui.cli.scene import SceneList
 from tui.cli.time_limit import limited_steps
 from tui.cli.workers import workers_of
-from tui.commands.studies.reports.run import (
+from tui.commands.studies.run import (
     MAX_BATCH,
     Row,
     columns_of,

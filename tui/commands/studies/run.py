@@ -1,92 +1,186 @@
-"""Run a scene without the TUI, as fast as possible, and judge each method."""
+"""One run, its numbers, its table and its sentences."""
 
-import argparse
-from pathlib import Path
+import math
+import time
+from argparse import Namespace
+from collections.abc import Sequence
+from contextlib import nullcontext
+from functools import partial
+from typing import Any
 
-from engine.methods import METHODS
-from engine.run.judgement import DEFINITIONS
+from engine.run import compiled, loops
+from engine.run.judgement import Judgement, Progress
+from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import Scene
-from tui.cli.errors import UserError
-from tui.cli.fail_if import FIELDS, parse
-from tui.cli.files import check_free
-from tui.cli.junit import add_check_options
-from tui.cli.options import add_file, count, duration
-from tui.cli.report import add_report_options
-from tui.cli.scene import add_scene_options, scenes_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies.reports import figures
+from recordings.errors import printable
+from recordings.fields import NUMBERS, OPTIONAL
+from recordings.headless import SAMPLE_EVERY, simulate, steps_for
+from recordings.recorder import Recorder
+from tui.cli.errors import Exit
+from tui.cli.fail_if import Gate
+from tui.cli.files import stop_requests
+from tui.cli.junit import Check, conclude
+from tui.cli.output import fields_of, progress, scene_line, warn
+from tui.cli.report import Column, Report, method_column, publish
+from tui.commands.studies import figures
+from tui.words.insight import irregular, milestone_insight, sentence
+from tui.words.numbers import file_size, z_text
 
-EXAMPLES = """\
-examples:
-  pendu-tui run --time 100
-  pendu-tui run --scene crossover --time 100 --record crossover.mcap
-  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step
-  pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
-  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
-  pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
+MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
+MAX_POINTS = 20_000  # of a figure, from which it takes the largest
 
-verdicts:
-""" + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
-
-MAX_TIME = 1e9  # s, 30 years; a recording's clock ends there, too
+Row = dict[str, Any]
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_scene_options(parser, lists=True)
-    add = parser.add_argument
-    add("--time", metavar="S", type=duration, help="simulated time: 60 (s) or 1min; required")
-    record = "record to FILE (the same bytes each time)"
-    add_file(parser, "--record", metavar="FILE", type=Path, help=record)
-    every = "record every N steps (default: every 1/30 s)"
-    add("--sample-every", metavar="N", type=count, help=every)
-    names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
-    meaning = (
-        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows (fields: "
-        "see --json)"
-    )
-    add_check_options(parser, names, meaning)
-    add("--no-compiled", action="store_true", help="do not use Numba (same results)")
-    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
-    add("--resume", action="store_true", help="go on with the list of runs in FILE.csv.partial")
-    add_worker_options(parser)
-
-
-def run(options: argparse.Namespace) -> int:
-    scenes = scenes_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if, cast=scenes.base.cast)
-    for scene in scenes.corners():
-        _check_time(scene, options.time)
-    is_figure = figures.check_output(options)
-    if len(scenes) > 1:
-        _check_list(options, is_figure)
-        from tui.commands.studies.lists import run_list
-
-        return run_list(scenes, options, gate)
+def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+    curve: list[Sample] = []
+    steps = steps_for(scene, options.time)
+    lockstep = lockstep_of(scene, steps, not options.no_compiled)
+    began = time.perf_counter()
+    sample = _simulate(lockstep, options, steps, curve if is_figure else None)
+    wall_seconds = time.perf_counter() - began
+    is_whole = sample.step == steps
+    rows = rows_of(scene, sample, lockstep, is_whole)
     if options.record:
-        check_free(options.record, options.force)
-    from tui.commands.studies.reports.run import run_one
+        size = file_size(options.record.stat().st_size)
+        warn(f"recorded {sample.t:g} s, {size}: {printable(str(options.record))}")
+    if is_figure:
+        figures.draw_run(options, scene, curve)
+    else:
+        publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
+    if not is_whole:
+        warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
+        return Exit.INTERRUPTED
+    failure = gate({row["method"]: row for row in rows}) if gate else ""
+    found = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
+    check = Check(f"{scene.name}: {options.fail_if or 'no check'}", found, failure or None)
+    return conclude(options, f"pendu-tui run {scene.name}", [check])
 
-    (scene,) = scenes
-    return run_one(scene, options, gate, is_figure)
+
+def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
+    """Return the lockstep of a run, in machine code where that pays."""
+    tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
+    return Lockstep(scene, loops=tiered if is_compiled else loops.PlainLoops, judged=True)
 
 
-def _check_time(scene: Scene, seconds: float | None) -> None:
-    if seconds is None:  # last: argparse would say it before what else is wrong
-        raise UserError("--time is missing: how many seconds to simulate, for example --time 60.")
-    if seconds > MAX_TIME:
-        raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
-    if round(seconds / scene.h) == 0:
-        raise UserError(
-            f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
+def _simulate(
+    lockstep: Lockstep, options: Namespace, steps: int, curve: list[Sample] | None
+) -> Sample:
+    """Run to the end, or until a signal; return the last sample, and append all to the curve."""
+    scene = lockstep.scene
+    batch = 16 if options.method else MAX_BATCH  # a user's method may be slow, and Ctrl+C waits
+    every = options.sample_every or batch
+    recorder: Any = nullcontext()
+    if options.record:
+        every = options.sample_every or min(batch, max(1, round(SAMPLE_EVERY / scene.h)))
+        recorder = Recorder(options.record, wall=None, overwrite=options.force)
+    if curve is not None:
+        every = min(every, math.ceil(steps / MAX_POINTS))
+    with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
+        for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
+            show(sample.step, steps)
+            if curve is not None and sample.step:
+                curve.append(sample)
+            if stopped():
+                break
+    return sample
+
+
+def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
+    """Return the results by method, as in --json.  A method that diverged has no theta to compare.
+
+    Where evaluations vary they are counted, by running again, unless the run was interrupted.
+    """
+    model = scene.equations
+    exact = scene.exact().at(sample.t).theta
+    rows = []
+    for method, reading, judgement in zip(
+        scene.cast, sample.readings, lockstep.judgements, strict=True
+    ):
+        end = reading.diverged_at
+        error = model.theta_error(reading.theta, exact)
+        steps = sample.step if end is None else round(end / scene.h)
+        evaluations = method.evaluations(steps)
+        if method.varies and end is None and steps and is_whole:
+            start = model.start(scene.theta, scene.omega)
+            evaluations = loops.count_evaluations(method, model, start, scene.h, steps)
+        row = {"method": method.key, **fields_of(reading, *NUMBERS)}
+        if not model.energy_error.conserved:
+            row["log_energy_error"] = reading.energy_error
+        optional = fields_of(reading, *OPTIONAL)
+        row |= {name: value for name, value in optional.items() if value is not None}
+        row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
+        rows.append(
+            row
+            | {
+                "theta_error": None if math.isnan(error) or end is not None else abs(error),
+                "drift_per_second": judgement.slope,
+                "verdict": judgement.verdict,
+                "progress": judgement.progress and judgement.progress._asdict(),
+                "lyapunov_per_second": judgement.lyapunov,
+                "force_evaluations": evaluations,
+                "diverged_at": end,
+            }
         )
+    return rows
 
 
-def _check_list(options: argparse.Namespace, is_figure: bool) -> None:
-    if options.record or is_figure:
-        what = "--record" if options.record else f"{options.output}, a figure,"
-        raise UserError(f"{what} is for one run; leave it out, or give each number one value.")
-    is_csv = options.output and options.output.suffix.lower() == ".csv"
-    if options.resume and not is_csv:
-        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
-    if options.resume and options.fail_if:
-        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")
+def _report(
+    scene: Scene, sample: Sample, lockstep: Lockstep, rows: Sequence[Row], wall_seconds: float
+) -> Report:
+    notes = [
+        sentence(milestone_insight(each, scene.equations.energy_error.conserved))
+        for each in lockstep.milestones
+        if each.kind in ("over the top", "errors cross")
+    ]
+    for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
+        if judgement.lyapunov and (found := irregular(method, judgement, 0.0)):
+            notes.append(sentence(found))
+    return Report(
+        name="run",
+        title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
+        f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
+        columns=columns_of(scene, Column("per second", "drift_per_second", "+.1e")),
+        rows=rows,
+        notes=notes,
+        fields={
+            "scene": scene.fields(),
+            "time": sample.t,
+            "steps": sample.step,
+            "wall_seconds": wall_seconds,
+            "methods": for_json(rows),
+        },
+        records=for_csv(rows),
+    )
+
+
+def for_json(rows: Sequence[Row]) -> list[Row]:
+    """Return rows for JSON, where only an irregular orbit has a Lyapunov number."""
+    lyapunov = "lyapunov_per_second"
+    return [{name: row[name] for name in row if name != lyapunov or row[name]} for row in rows]
+
+
+def for_csv(rows: Sequence[Row]) -> list[Row]:
+    return [{name: row[name] for name in row if name != "progress"} for row in rows]
+
+
+def columns_of(scene: Scene, *trend: Column) -> list[Column]:
+    return [
+        method_column(scene.cast),
+        Column("verdict", verdict_of),
+        *(Column(each.label, each.name, ".4g") for each in scene.equations.quantities()),
+        Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
+        Column("largest", "max_energy_error", ".2e"),
+        *trend,
+        Column("theta error [rad]", "theta_error", ".2e"),
+        Column("force evaluations", "force_evaluations", "d"),
+    ]
+
+
+def verdict_of(row: Row) -> str:
+    """Return the verdict, how much of the evidence there is, or when the method diverged."""
+    if row["diverged_at"] is not None:
+        return f"diverged at {row['diverged_at']:g} s"
+    if row["progress"] is None:
+        return str(row["verdict"])
+    return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))

@@ -1,71 +1,228 @@
-"""Find where each method becomes unstable: theory next to measurement.
+"""What the stability command computes, and its report: theory next to measurement, and the map."""
 
---section draws the phase portrait of a method's own map, with the orbit of the scene's start.
-"""
+import math
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from typing import Any
 
-import argparse
+import numpy as np
 
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import LIST, angle, count, number, values
-from tui.cli.output import warn
-from tui.cli.report import add_report_options, publish
-from tui.cli.scene import add_scene_options, general_scene_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies.reports import figures
+from engine.methods import Method
+from engine.methods.measure import linear_limit
+from engine.methods.own import OwnMethod
+from engine.scenes import Z_LIMITS, Scene
+from engine.stability.grid import Grid
+from engine.stability.linear import amplification
+from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
+from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
+from tui.cli.errors import UserError, explained
+from tui.cli.files import whole_file
+from tui.cli.output import console, progress
+from tui.cli.report import Column, Report, Table, finite, method_column
+from tui.cli.workers import workers_of
+from tui.commands.studies.figures import lines_of
+from tui.drawing.palette import PALETTES
+from tui.views.stability.picture import picture
 
-EXAMPLES = """\
-examples:
-  pendu-tui stability --theta 120deg --h 0.3
-  pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
-  pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
-  pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
-"""
+MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
+CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
+LINEAR = """\
+This scene is the linear oscillator itself: these limits hold at every amplitude.
+Swings are lost at other steps by a pendulum only: pendu-tui stability drift"""
 
-STEPS = 10_000
-SECTION_STEPS = 4000
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_scene_options(parser)
-    add = parser.add_argument
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
-    portrait = "draw the phase portrait of the first of the methods"
-    what.add_argument("--section", action="store_true", help=portrait)
-    thetas = f"amplitudes: 0.5,1,120deg or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
-    add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
-    zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
-    add("--z-values", metavar="LIST", type=values(number), help=zs)
-    steps = f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})"
-    add("--steps", metavar="N", type=count, help=steps)
-    add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
-    add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", *figures.SUFFIXES))
-    add_worker_options(parser)
+Computed = tuple[Grid, Cells]
 
 
-def run(options: argparse.Namespace) -> int:
-    scene = general_scene_of(options)
-    options.steps = options.steps or (SECTION_STEPS if options.section else STEPS)
-    suffix = options.output and options.output.suffix.lower()
-    is_figure = figures.check_output(options)
-    if options.section:
-        if options.csv or suffix in (".npz", ".csv"):
-            raise UserError("--section is a picture: write an .svg, .pdf or .png, or use --json.")
-        from tui.commands.studies.reports import section
+def grids_of(scene: Scene, options: Namespace, is_map: bool) -> list[Grid]:
+    """Return the grids of the table and the map, each if it is wanted.
 
-        section.run(scene, options, is_figure)
-        return Exit.FINE
-    from tui.commands.studies.reports.stability import compute, grids_of, report, write_map
+    Raises UserError for what is not about this scene, or out of range.
+    """
+    asked = {"--map": options.map, "--csv": options.csv, "-o": options.output}
+    asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
+    given = next((name for name, value in asked.items() if value), None)
+    if given and not scene.equations.turns:
+        raise UserError(
+            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; "
+            "leave it out."
+        )
+    _check("amplitude", options.theta_values or (), (0, math.pi))
+    _check("z", options.z_values or (), Z_LIMITS)
+    _check("number of steps", [options.steps], (0, 2**31))
+    grids = []
+    if scene.equations.turns and not is_map:
+        grids.append(ladder_of(scene, options.theta_values, options.z_values, options.steps))
+    if options.map or is_map:
+        grids.append(map_of(scene, options.theta_values, options.z_values, options.steps))
+    swings = max((math.prod(grid.shape) for grid in grids), default=0)
+    if swings > MAX_SWINGS:
+        raise UserError(f"{swings} swings are too many; use at most {MAX_SWINGS}.")
+    return grids
 
-    is_map = is_figure or suffix == ".npz"
-    computed, ended = compute(grids_of(scene, options, is_map), options)
-    if is_figure:
-        figures.draw_map(options, *computed[0])
-    elif is_map:
-        write_map(options, *computed[0])
-    else:
-        publish(report(scene, options.steps, computed, is_whole=ended is None), options)
-    if ended is None:
-        return Exit.FINE
-    warn(str(ended))
-    return ended.code
+
+def _check(what: str, numbers: Sequence[float], limits: tuple[float, float]) -> None:
+    low, high = limits
+    for value in numbers:
+        if not low < value < high:  # also refuses nan
+            raise UserError(
+                f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}."
+            )
+
+
+def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], UserError | None]:
+    """Return the grids with their cells, and why the last of them has unknown ones.
+
+    Raises UserError if all its cells are unknown.
+    """
+    computed = []
+    with workers_of(options) as workers:
+        for grid in grids:
+            cells = grid.unknown()
+            computed.append((grid, cells))
+            done = 0
+            try:
+                with progress("stability") as show:
+                    for strip in workers.map(Grid.cells, grid.strips()):
+                        cells[done : done + len(strip)] = strip
+                        done += len(strip)
+                        show(done, len(grid.z))
+            except (KeyboardInterrupt, UserError) as error:
+                if not done:
+                    raise
+                ended = explained(error)
+                kept = f"{done} of {len(grid.z)} z are computed and kept"
+                return computed, UserError(f"{str(ended).rstrip('.')}; {kept}.", ended.code)
+    return computed, None
+
+
+def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
+    """Return the report of a table's grid and a map's: neither for the linear oscillator."""
+    maps = computed[1:]
+    rows = table(scene, *computed[0]) if computed else []
+    if not (is_whole or maps):
+        rows = [row for row in rows if row.failure]
+    pendulum = [_row_fields(row) for row in rows]
+    here = [None if row.here["fate"] == UNKNOWN else _cell_fields(row.here) for row in rows]
+    notes: list[Any] = [LINEAR]
+    if computed:
+        notes = [*_words(scene), Table(_columns(scene, steps), pendulum)]
+    for grid, cells in maps:
+        on = console()
+        is_coloured = on.color_system is not None and not on.no_color and "utf" in on.encoding
+        palette = PALETTES["dark"] if is_coloured else None
+        notes += ["", *lines_of(picture(grid, cells, max(40, on.width), palette), None)]
+    linear = [_linear(scene, method) for method in scene.cast]
+    return Report(
+        name="stability",
+        title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
+        columns=(
+            method_column(scene.cast),
+            Column("measured", "limit_z", _limit),
+            Column("theory", "theory_z", _limit),
+            Column(f"radius at z = {scene.z:.4g}", "amplification", ".9f"),
+        ),
+        rows=linear,
+        notes=notes,
+        fields={
+            "scene": scene.fields(),
+            "z": scene.z,
+            "steps": steps,
+            "band": BAND,
+            "linear": [finite(row) for row in linear],
+            "pendulum": [row | {"at_scene": at} for row, at in zip(pendulum, here, strict=True)],
+            "map": _map_fields(*maps[0]) if maps else None,
+            "interrupted": not is_whole,
+        },
+        records=_swings(*maps[0]) if maps else pendulum,
+    )
+
+
+def _linear(scene: Scene, method: Method) -> dict[str, Any]:
+    theory = None if isinstance(method, OwnMethod) else method.linear_limit
+    fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
+    return fields | {"amplification": amplification(method, scene.z)}
+
+
+def _limit(z: float) -> str:
+    if z == math.inf:
+        return "any"
+    return f"{z:.9f}" if z else "none"
+
+
+def _row_fields(row: Row) -> dict[str, Any]:
+    failure = row.failure
+    return {
+        "method": row.method.key,
+        "theta": row.theta,
+        "first_failure_z": failure and failure.z,
+        "reason": failure and failure.reason,
+        "steps_survived": failure and failure.steps,
+        "first_failure_z_early": row.early and row.early.z,
+    }
+
+
+def _cell_fields(cells: Any) -> dict[str, Any]:
+    """Return CELL_FIELDS of cells, each in their shape, and None where they are unknown."""
+    known = cells["fate"] != UNKNOWN
+    fates = np.array(FATES, object)[np.where(known, cells["fate"], 0)]
+    columns = zip(CELL_FIELDS, (fates, cells["steps"], cells["error"]), strict=True)
+    return {name: np.where(known, column, np.array(None)).tolist() for name, column in columns}
+
+
+def _map_fields(grid: Grid, cells: Cells) -> dict[str, Any]:
+    methods = [
+        {"method": method.key, **_cell_fields(cells[:, m])} for m, method in enumerate(grid.methods)
+    ]
+    return {"z": grid.z.tolist(), "theta": grid.theta.tolist(), "methods": methods}
+
+
+def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
+    for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
+        cell = cells[z, m, t]
+        if cell["fate"] != UNKNOWN:
+            place = {"z": float(grid.z[z]), "theta": float(grid.theta[t])}
+            yield {"method": grid.methods[m].key, **place, **_cell_fields(cell)}
+
+
+def _words(scene: Scene) -> Iterator[str]:
+    yield "\nPendulum: the z from which a swing is lost in so many steps; with more steps, it is lower."
+    yield (
+        "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
+        "without a symplectic method also if its energy leaves the linear oscillator's band by "
+        f"{100 * BAND:.0f} %."
+    )
+    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
+    swing = amplitude(scene)
+    if swing is not None and not math.isclose(swing, scene.theta):
+        speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
+        start = f"{math.degrees(scene.theta):.4g} deg{speed}"
+        degrees = f"{math.degrees(swing):.4g} deg"
+        yield f"The start at {start} swings as far as one from rest at {degrees}."
+
+
+def _columns(scene: Scene, steps: int) -> list[Column]:
+    return [
+        method_column(scene.cast),
+        Column("from", "theta", lambda theta: f"{math.degrees(theta):.4g}°"),
+        Column(f"in {early_steps(steps):,}", "first_failure_z_early", ".4g"),
+        Column(f"in {steps:,}", "first_failure_z", ".4g"),
+        Column("h [s]", "first_failure_z", lambda z: f"{z / scene.w0:.3g}"),
+        Column("failure", "reason"),
+        Column("margin", "first_failure_z", lambda z: f"{z / scene.z:.3g}"),
+    ]
+
+
+def write_map(options: Namespace, grid: Grid, cells: Cells) -> None:
+    """Write a map to a file for numpy.load.
+
+    Arrays `z`, `theta` [rad], `methods`, `steps`, `fates`, and `cells`, of axes (z, methods, theta)
+    and fields steps (survived), error (the largest relative energy error) and fate (an index into
+    `fates`, or 255: unknown).
+    """
+    keys = [method.key for method in grid.methods]
+    arrays: Any = {"z": grid.z, "theta": grid.theta, "methods": keys}
+    arrays |= {"steps": grid.steps, "fates": FATES, "cells": cells}
+    with whole_file(options.output, options.force) as part, part.open("wb") as file:
+        np.savez_compressed(file, **arrays)
+    shape = f"{len(grid.z)} z, {len(grid.methods)} methods, {len(grid.theta)} amplitudes"
+    print(f"{options.output}: {shape}.")

@@ -26,7 +26,7 @@ from tui.cli.errors import UserError
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
 from tui.cli.workers import workers_of
-from tui.commands.studies.reports import figures
+from tui.commands.studies import figures
 from tui.drawing.palette import PALETTES, ink_of
 from tui.terminal.options import fitting_theme
 from tui.views.phase.picture import Section, starts

@@ -91,7 +91,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from tui.commands.studies.reports.energies import judge, lines_of, orders, title_of
+    from tui.commands.studies.energies import judge, lines_of, orders, title_of
 
     gate = None if options.fail_if is None else parse(options.fail_if, fields=FIELDS)
     _check(options)

@@ -26,7 +26,7 @@ class LabServer(Server):  # type: ignore[misc]
     """Serves at most so many labs, to its own pages."""
 
     def __init__(self, settings_file: str, max_labs: int, host: str) -> None:
-        served = [sys.executable, "-P", "-m", "tui.commands.lab.web.served", settings_file]
+        served = [sys.executable, "-P", "-m", "tui.commands.web.served", settings_file]
         super().__init__(f"exec {shlex.join(served)}", host, title="pendu-tui")
         self._max_labs = max_labs
         self._labs = 0

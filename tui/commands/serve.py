@@ -36,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     try:
-        from tui.commands.lab.web.server import is_local, serve
+        from tui.commands.web.server import is_local, serve
     except ImportError as error:
         advice = install_advice("textual-serve", "web")
         raise UserError(f"serve needs {error.name}: {advice}.") from None

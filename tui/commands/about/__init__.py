@@ -1,1 +1,0 @@
-"""Lists and help: `scenes`, `methods`, `doctor`."""

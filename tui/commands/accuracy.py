@@ -1,0 +1,100 @@
+"""Chart speed against accuracy over a ladder of h; find the cheapest method and h."""
+
+import argparse
+
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import count, positive
+from tui.cli.output import warn
+from tui.cli.report import add_report_options, publish
+from tui.cli.scene import add_scene_options, general_scene_of
+from tui.cli.workers import add_worker_options
+from tui.commands.studies import figures
+
+EXAMPLES = """\
+examples:
+  pendu-tui accuracy --target 1e-6 --time 100
+  pendu-tui accuracy --all --cost seconds --target 1e-9
+  pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
+  pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
+  pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
+"""
+
+MAX_RUNGS = 1000
+MAX_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compiled
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    add_scene_options(parser)
+    add = parser.add_argument
+    every = "chart all methods for any force, with --cost seconds also series and closed form"
+    add("--all", action="store_true", help=every)
+    some = "simulated time in s; if several, the last is charted (ten small swings)"
+    add("--time", metavar="S[,S...]", type=times, help=some)
+    ladder = "N step sizes from A to B in s, log spaced (12, z = h·w0 from 0.6 to 0.0015)"
+    add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
+    kinds = "largest angle error [rad], largest energy error, last angle error (%(default)s)"
+    add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
+    costs = "force evaluations, or seconds, without Numba if a method is your own (%(default)s)"
+    add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
+    wish = "find each method's cheapest h for this error; without --methods, try all of them"
+    add("--target", metavar="ERROR", type=positive, help=wish)
+    limit = "limit of force evaluations; alone: find the least error within it"
+    add("--budget", metavar="N", type=budget, help=limit)
+    add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
+    add_worker_options(parser)
+    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
+
+
+def times(text: str) -> list[float]:
+    return sorted({positive(part) for part in text.split(",")})
+
+
+def h_values(text: str) -> tuple[float, float, int]:
+    """Return the ends of a ladder [s], the larger first, and its rungs, from A:B:N."""
+    match text.split(":"):
+        case [first, last, many] if count(many) <= MAX_RUNGS:
+            low, high = sorted((positive(first), positive(last)))
+            return high, low, count(many)
+    raise argparse.ArgumentTypeError(
+        f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10"
+    )
+
+
+def budget(text: str) -> int:
+    if not 1 <= (evaluations := positive(text)) <= MAX_BUDGET:
+        raise argparse.ArgumentTypeError(f"{text} is out of range; use 1 to {MAX_BUDGET:g}")
+    return int(evaluations)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure, recommend, print.  Ctrl+C keeps what is done."""
+    if options.all and options.methods is not None:
+        raise UserError("--all and --methods exclude each other; choose one of them.")
+    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
+        raise UserError(
+            "seconds are measured in this process, where others would disturb them; use workers "
+            "with --cost evaluations."
+        )
+    is_figure = figures.check_output(options)
+    scene = general_scene_of(options)
+    if scene.theta == scene.omega == 0:
+        raise UserError(
+            "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
+            "--omega."
+        )
+    from tui.commands.studies.accuracy import Findings, measure, report
+
+    found = Findings(scene, options)
+    interrupted = False
+    try:
+        measure(found)
+    except KeyboardInterrupt:
+        interrupted = True
+    if is_figure:
+        figures.draw_accuracy(options, found.scene.cast, found.points)
+    else:
+        publish(report(found, interrupted), options)
+    if interrupted:
+        warn("interrupted; partial results are kept.")
+        return Exit.INTERRUPTED
+    return Exit.FINE

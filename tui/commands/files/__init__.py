@@ -1,1 +1,0 @@
-"""Commands about recordings: `verify`, `diff`, `export`, and `recordings`, the list of them."""

@@ -1,0 +1,92 @@
+"""Run a scene without the TUI, as fast as possible, and judge each method."""
+
+import argparse
+from pathlib import Path
+
+from engine.methods import METHODS
+from engine.run.judgement import DEFINITIONS
+from engine.scenes import Scene
+from tui.cli.errors import UserError
+from tui.cli.fail_if import FIELDS, parse
+from tui.cli.files import check_free
+from tui.cli.junit import add_check_options
+from tui.cli.options import add_file, count, duration
+from tui.cli.report import add_report_options
+from tui.cli.scene import add_scene_options, scenes_of
+from tui.cli.workers import add_worker_options
+from tui.commands.studies import figures
+
+EXAMPLES = """\
+examples:
+  pendu-tui run --time 100
+  pendu-tui run --scene crossover --time 100 --record crossover.mcap
+  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step
+  pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
+  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
+  pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
+
+verdicts:
+""" + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
+
+MAX_TIME = 1e9  # s, 30 years; a recording's clock ends there, too
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    add_scene_options(parser, lists=True)
+    add = parser.add_argument
+    add("--time", metavar="S", type=duration, help="simulated time: 60 (s) or 1min; required")
+    record = "record to FILE (the same bytes each time)"
+    add_file(parser, "--record", metavar="FILE", type=Path, help=record)
+    every = "record every N steps (default: every 1/30 s)"
+    add("--sample-every", metavar="N", type=count, help=every)
+    names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
+    meaning = (
+        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows (fields: "
+        "see --json)"
+    )
+    add_check_options(parser, names, meaning)
+    add("--no-compiled", action="store_true", help="do not use Numba (same results)")
+    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
+    add("--resume", action="store_true", help="go on with the list of runs in FILE.csv.partial")
+    add_worker_options(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    scenes = scenes_of(options)
+    gate = None if options.fail_if is None else parse(options.fail_if, cast=scenes.base.cast)
+    for scene in scenes.corners():
+        _check_time(scene, options.time)
+    is_figure = figures.check_output(options)
+    if len(scenes) > 1:
+        _check_list(options, is_figure)
+        from tui.commands.studies.lists import run_list
+
+        return run_list(scenes, options, gate)
+    if options.record:
+        check_free(options.record, options.force)
+    from tui.commands.studies.run import run_one
+
+    (scene,) = scenes
+    return run_one(scene, options, gate, is_figure)
+
+
+def _check_time(scene: Scene, seconds: float | None) -> None:
+    if seconds is None:  # last: argparse would say it before what else is wrong
+        raise UserError("--time is missing: how many seconds to simulate, for example --time 60.")
+    if seconds > MAX_TIME:
+        raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
+    if round(seconds / scene.h) == 0:
+        raise UserError(
+            f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
+        )
+
+
+def _check_list(options: argparse.Namespace, is_figure: bool) -> None:
+    if options.record or is_figure:
+        what = "--record" if options.record else f"{options.output}, a figure,"
+        raise UserError(f"{what} is for one run; leave it out, or give each number one value.")
+    is_csv = options.output and options.output.suffix.lower() == ".csv"
+    if options.resume and not is_csv:
+        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
+    if options.resume and options.fail_if:
+        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")

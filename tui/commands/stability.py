@@ -1,0 +1,71 @@
+"""Find where each method becomes unstable: theory next to measurement.
+
+--section draws the phase portrait of a method's own map, with the orbit of the scene's start.
+"""
+
+import argparse
+
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import LIST, angle, count, number, values
+from tui.cli.output import warn
+from tui.cli.report import add_report_options, publish
+from tui.cli.scene import add_scene_options, general_scene_of
+from tui.cli.workers import add_worker_options
+from tui.commands.studies import figures
+
+EXAMPLES = """\
+examples:
+  pendu-tui stability --theta 120deg --h 0.3
+  pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
+  pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
+  pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
+"""
+
+STEPS = 10_000
+SECTION_STEPS = 4000
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    add_scene_options(parser)
+    add = parser.add_argument
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
+    portrait = "draw the phase portrait of the first of the methods"
+    what.add_argument("--section", action="store_true", help=portrait)
+    thetas = f"amplitudes: 0.5,1,120deg or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
+    add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
+    zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
+    add("--z-values", metavar="LIST", type=values(number), help=zs)
+    steps = f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})"
+    add("--steps", metavar="N", type=count, help=steps)
+    add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
+    add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", *figures.SUFFIXES))
+    add_worker_options(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    scene = general_scene_of(options)
+    options.steps = options.steps or (SECTION_STEPS if options.section else STEPS)
+    suffix = options.output and options.output.suffix.lower()
+    is_figure = figures.check_output(options)
+    if options.section:
+        if options.csv or suffix in (".npz", ".csv"):
+            raise UserError("--section is a picture: write an .svg, .pdf or .png, or use --json.")
+        from tui.commands.studies import section
+
+        section.run(scene, options, is_figure)
+        return Exit.FINE
+    from tui.commands.studies.stability import compute, grids_of, report, write_map
+
+    is_map = is_figure or suffix == ".npz"
+    computed, ended = compute(grids_of(scene, options, is_map), options)
+    if is_figure:
+        figures.draw_map(options, *computed[0])
+    elif is_map:
+        write_map(options, *computed[0])
+    else:
+        publish(report(scene, options.steps, computed, is_whole=ended is None), options)
+    if ended is None:
+        return Exit.FINE
+    warn(str(ended))
+    return ended.code
