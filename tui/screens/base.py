@@ -26,8 +26,8 @@ from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
-from tui.words.describe import description
 from tui.words.events import event_lines, numbered
+from tui.words.plain_text import description
 
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line

@@ -25,8 +25,8 @@ from tui.cli.options import angle, number
 from tui.playback.source import Source
 from tui.screens.lines import SizedScreen, key_text
 from tui.words.cards import glossary, method_card, scene_card
-from tui.words.describe import step_text
 from tui.words.numbers import counted, z_text
+from tui.words.plain_text import step_text
 
 KEY_WIDTH = 9  # columns of a key
 COLUMN_WIDTH = 36  # of a key and what it does

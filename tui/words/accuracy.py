@@ -10,7 +10,6 @@ from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods.runge_kutta import RK4
 
 COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
-WORTH_SAYING = 1.2  # times fewer force evaluations
 
 
 def length(seconds: float) -> str:
@@ -31,10 +30,11 @@ def point_words(point: Point, kind: ErrorKind, note: str) -> str:
     flaw = point.flaw(kind)
     reason = f" ({REASONS[flaw]})" if flaw else ""
     error = f"{kind} error {point.error(kind):.1e}{reason}"
-    cost = f"{point.force_evaluations} force evaluations"
     swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
-    text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error} for {cost}"
-    return f"{text}; {note}" if note else text
+    text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
+    return "; ".join(
+        filter(None, [f"{text} for {point.force_evaluations} force evaluations", note])
+    )
 
 
 def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest] = ()) -> str:
@@ -44,7 +44,7 @@ def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapes
     words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
     if any(one.method is TAYLOR_20 for one in found) and without:
         words += f"; without Numba, in force evaluations: {_spans(without)}"
-    return words + "."
+    return f"{words}."
 
 
 def factor_words(found: Sequence[Cheapest]) -> str:
@@ -52,19 +52,15 @@ def factor_words(found: Sequence[Cheapest]) -> str:
     savings = [
         f"{one.method.label} {one.saves:.2g} at {_power(one.target)}"
         for one in found
-        if one.saves and one.method is not RK4 and one.saves >= WORTH_SAYING
+        if one.saves and one.method is not RK4 and one.saves >= 1.2
     ]
     return f"Times fewer force evaluations than RK4: {', '.join(savings)}." if savings else ""
 
 
 def growth_words(found: Sequence[Growth]) -> str:
     """The measured powers of t with which theta errors grow; empty where none follows one."""
-    named = [growth.name for growth in found if growth.power is not None]
-    return (
-        f"over up to {PERIODS} periods, the theta error grows as: {', '.join(named)}"
-        if named
-        else ""
-    )
+    named = ", ".join(growth.name for growth in found if growth.power is not None)
+    return f"over up to {PERIODS} periods, the theta error grows as: {named}" if named else ""
 
 
 def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
@@ -76,13 +72,12 @@ def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
 
 
 def _spans(found: Sequence[Cheapest]) -> str:
-    return ", ".join(
-        f"{method.label} {_span(some[0].target, some[-1].target)}" for method, some in ranges(found)
-    )
-
-
-def _span(first: float, last: float) -> str:
-    return f"at {_power(first)}" if first == last else f"from {_power(first)} to {_power(last)}"
+    spans = []
+    for method, some in ranges(found):
+        first, last = _power(some[0].target), _power(some[-1].target)
+        span = f"at {first}" if first == last else f"from {first} to {last}"
+        spans.append(f"{method.label} {span}")
+    return ", ".join(spans)
 
 
 def _power(target: float) -> str:

@@ -1,4 +1,4 @@
-"""Cards: the properties of a method, and of a scene, as text."""
+"""Cards: the properties of a method, and of a scene, as text; and what is on the screen."""
 
 import math
 import textwrap
@@ -10,12 +10,9 @@ from engine.models.model import EnergyError
 from engine.run.judgement import DEFINITIONS
 from engine.scenes import SCENES, UNITS, Scene
 from tui.drawing.palette import SIGNS
-from tui.words.motion import motion_text
-from tui.words.numbers import counted, z_text
+from tui.words.numbers import counted, motion_text, z_text
 
 WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
-HEAD = 14
-
 
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
@@ -39,25 +36,23 @@ GLOSSARY = {
     "dim": "the run before r, or a recording laid under the lab (--ghost FILE)",
 }
 HEADS = {
-    **dict.fromkeys(("theta", "omega"), GLOSSARY["theta, omega"]),
+    **GLOSSARY,
+    "theta": GLOSSARY["theta, omega"],
+    "omega": GLOSSARY["theta, omega"],
     "per s": GLOSSARY["trend per s"],
     "verdict": "what the energy error does in the long run; ? explains each word",
     "th.err": GLOSSARY["theta error"],
-    **{
-        head: each.about
-        for model in MODELS.values()
-        for each in model.extra_columns
-        for head in each[:2]
-    },
-    **{model.energy_error.symbol: model.energy_error.about for model in MODELS.values()},
 }
-"""What those heads of the table's columns mean that are not in the glossary."""
+"""What the heads of the table's columns mean."""
+for model in MODELS.values():
+    HEADS[model.energy_error.symbol] = model.energy_error.about
+    for column in model.extra_columns:
+        HEADS |= dict.fromkeys(column[:2], column.about)
 
 
 def head_text(head: str) -> str | None:
     """Return what the head of a column means, in a line."""
-    name = head.partition(" [")[0]
-    return HEADS.get(name) or GLOSSARY.get(name)
+    return HEADS.get(head.partition(" [")[0])
 
 
 def glossary() -> str:
@@ -67,26 +62,23 @@ def glossary() -> str:
 
 def method_card(method: Method) -> str:
     """Return a method's properties; every line is a tested claim."""
-    if method.linear_limit is None:
-        stable = ""  # there is no one number
-    elif method.linear_limit == math.inf:
+    limit = method.linear_limit
+    stable = "at no h"
+    if limit == math.inf:
         stable = "at any h (small swings)"
-    elif method.linear_limit:
-        stable = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)"
-    else:
-        stable = "at no h"
-    about = "about " if method.varies else ""
+    elif limit:
+        stable = f"up to z = h w0 = {limit:.4g} (small swings)"
+    costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
+    symplectic = "yes: conserves phase-space area"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
         "order": f"{method.order}: as a rule, over one swing half of h divides the error by "
         f"{2**method.order}",
-        "costs": f"{about}{counted(method.force_evaluations, 'force evaluation')} per step",
-        "symplectic": "yes: conserves phase-space area"
-        if method.symplectic
-        else "no: phase-space area changes",
+        "costs": f"about {costs}" if method.varies else costs,
+        "symplectic": symplectic if method.symplectic else "no: phase-space area changes",
         "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
-        "stable": stable,
+        "stable": None if limit is None else stable,  # there is no one number
         "note": method.note,
         "used in": method.used,
         "reference": method.reference,
@@ -97,38 +89,26 @@ def method_card(method: Method) -> str:
 def scene_card(scene: Scene, now: str = "") -> str:
     """Return a scene and what to watch in it; `now` is the step if it differs."""
     exact = scene.exact()
-    accuracy = f"theta right to {exact.accuracy:g} rad for a minute"
-    reference = f"no closed form: Kahan & Li's method of order 8, {accuracy}"
-    return _card(
-        f"Scene {scene.name}",
-        {
-            "watch": scene.watch,
-            "often said": scene.often_said,
-            "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
-            "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = "
-            f"{scene.w0:.4g} 1/s",
-            **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
-            "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
-            "now": now,
-            "motion": motion_text(scene, exact),
-            "compared with": reference
-            if exact.accuracy and scene == SCENES.get(scene.name)
-            else None,
-        },
-    )
+    reference = None
+    if exact.accuracy and scene == SCENES.get(scene.name):
+        accuracy = f"theta right to {exact.accuracy:g} rad for a minute"
+        reference = f"no closed form: Kahan & Li's method of order 8, {accuracy}"
+    lines = {
+        "watch": scene.watch,
+        "often said": scene.often_said,
+        "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
+        "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = "
+        f"{scene.w0:.4g} 1/s",
+        **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
+        "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
+        "now": now,
+        "motion": motion_text(scene, exact),
+        "compared with": reference,
+    }
+    return _card(f"Scene {scene.name}", lines)
 
 
 def _card(title: str, lines: Mapping[str, str | None]) -> str:
-    after = " " * (HEAD + 2)
-    paragraphs = [
-        textwrap.fill(
-            text,
-            WIDTH,
-            initial_indent=f"  {head:<{HEAD}}",
-            subsequent_indent=after,
-            break_on_hyphens=False,
-        )
-        for head, text in lines.items()
-        if text
-    ]
-    return "\n".join([title, *paragraphs])
+    wrapper = textwrap.TextWrapper(WIDTH, subsequent_indent=" " * 16, break_on_hyphens=False)
+    texts = [wrapper.fill(f"  {head:<14}{text}") for head, text in lines.items() if text]
+    return "\n".join([title, *texts])

@@ -15,35 +15,28 @@ def command(source: Source) -> str:
 
     A lab that changed its step size on the way and does not record can only be started again.
     """
+    scene = source.scene
     if isinstance(source, Replay):
         return _moment(str(source.recording.path), source.playhead.position)
-    scene = source.scene
-    start = _start_h(source)
-    if (
-        start is None
-        and isinstance(source, Live)
-        and source.recorder is not None
-        and not source.recorder.failed
-    ):
+    h = _start_h(source)
+    if h is None and isinstance(source, Live) and source.recorder and reproduces(source):
         return _moment(str(source.recorder.path), source.recorder.seconds)
-    if start is not None and start != scene.h:
-        scene = scene.altered(h=start)
+    if h is not None and h != scene.h:
+        scene = scene.altered(h=h)
     first = [change.stepping for change in source.changes if change.step == 0][-1]
-    equal_cost = ["--equal-cost"] if first.equal_cost else []
-    speed = []
+    arguments = scene_arguments(scene)
+    if first.equal_cost:
+        arguments.append("--equal-cost")
     if source.playhead.speed != _listed(scene).speed:
-        speed = ["--speed", f"{source.playhead.speed:g}"]
-    return shlex.join(["pendu-tui", "live", *scene_arguments(scene), *equal_cost, *speed])
+        arguments += ["--speed", f"{source.playhead.speed:g}"]
+    return shlex.join(["pendu-tui", "live", *arguments])
 
 
 def reproduces(source: Source) -> bool:
     """Return whether the command brings back all: not a change of h that no file holds."""
     status = source.recording_status
-    return (
-        isinstance(source, Replay)
-        or _start_h(source) is not None
-        or (status is not None and not status.failed)
-    )
+    is_recorded = status is not None and not status.failed
+    return is_recorded or _start_h(source) is not None
 
 
 def _start_h(source: Source) -> float | None:
@@ -52,10 +45,10 @@ def _start_h(source: Source) -> float | None:
         return None
     stepping = source.stepping
     # a scene's h is positive: time does not run back from its start
-    candidates = source.scene.h, stepping.smallest
-    return next(
-        (h for h in candidates if stepping._replace(h=1.0).with_smallest(h) == stepping), None
-    )
+    for h in (source.scene.h, stepping.smallest):
+        if stepping._replace(h=1.0).with_smallest(h) == stepping:
+            return h
+    return None
 
 
 def _moment(file: str, position: float) -> str:
@@ -64,10 +57,8 @@ def _moment(file: str, position: float) -> str:
 
 def _listed(scene: Scene) -> Scene:
     """The listed scene of its name, or else the first of its model."""
-    base = SCENES.get(scene.name)
-    if base is not None and base.model == scene.model:
-        return base
-    return next((each for each in SCENES.values() if each.model == scene.model), DEFAULT_SCENE)
+    candidates = [SCENES.get(scene.name), *SCENES.values()]
+    return next((each for each in candidates if each and each.model == scene.model), DEFAULT_SCENE)
 
 
 def scene_arguments(scene: Scene) -> list[str]:

@@ -6,7 +6,6 @@ from typing import Literal, NamedTuple
 
 from engine.methods import Method
 from engine.run.judgement import Milestone, Verdict
-from recordings.events import Event
 from tui.playback.source import Source
 from tui.words.insight import short_name
 from tui.words.numbers import start, two_digits
@@ -45,8 +44,8 @@ def event_lines(source: Source) -> list[EventLine]:
     run = source.sample.run
     conserved = source.scene.equations.energy_error.conserved
     milestones = [
-        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method)
-        for m in source.milestones
+        EventLine(run, each.step, each.t, _milestone(each, conserved), "milestone", each.method)
+        for each in source.milestones
     ]
     # stable: inputs first
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])
@@ -60,45 +59,31 @@ def numbered(lines: Sequence[EventLine]) -> list[str]:
 
 def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
-    backwards = False
     for event in [*source.events, *source.later_marks]:
-        where = event.run, event.step, event.t
+        text = ""
         if event.kind == "mark":
             marks += 1
-            yield EventLine(
-                *where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark"
-            )
-        elif event.kind in ("start", "set_h"):
-            yield EventLine(*where, change_text(event, backwards), "change")
-            backwards = event.h is not None and event.h < 0
+            text = f"mark {marks}: {event.text}" if event.text else f"mark {marks}"
+        elif event.scene is not None:
+            scene = event.scene
+            name = start(scene.theta, scene.omega) if scene.name == "custom" else scene.name
+            text = f"start {name}, h {scene.h:.4g} s"
+        elif event.h is not None:
+            way = "time reversed, " if event.h < 0 else ""
+            cost = ", equal cost" if event.equal_cost else ""
+            text = f"{way}h {abs(event.h):.4g} s{cost}"
+        if text:
+            kind: Literal["mark", "change"] = "mark" if event.kind == "mark" else "change"
+            yield EventLine(event.run, event.step, event.t, text, kind)
 
 
-def change_text(event: Event, was_backwards: bool = False) -> str:
-    """A start, or a change of the step size, after which time may run forwards again."""
-    if event.scene is not None:
-        scene = event.scene
-        name = start(scene.theta, scene.omega) if scene.name == "custom" else scene.name
-        return f"start {name}, h {scene.h:.4g} s"
-    assert event.h is not None
-    way = "time reversed, " if event.h < 0 else "time forwards again, " if was_backwards else ""
-    return f"{way}h {abs(event.h):.4g} s{', equal cost' if event.equal_cost else ''}"
-
-
-def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
-    """What a method does."""
+def _milestone(milestone: Milestone, conserved: bool) -> str:
     name = short_name(milestone.method)
-    if milestone.kind == "over the top":
-        unit = "E0" if conserved else "E(t)"
-        error = (
-            milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
-        )
-        energy = (
-            f"{two_digits(1 + error)} {unit}"
-            if not 1e-4 < abs(error) < 0.1
-            else f"{100 * error:+.2g} %"
-        )
-        return f"{name} over the top, {energy}"
+    error = milestone.energy_error
     if milestone.other:
-        other = short_name(milestone.other)
-        return f"{name}'s error {'passes' if len(name + other) < 22 else '>'} {other}'s"
-    return f"{name} {VERDICTS['failed' if milestone.kind == 'failed' else milestone.verdict]}"
+        return f"{name}'s error > {short_name(milestone.other)}'s"
+    if milestone.kind != "over the top":
+        return f"{name} {VERDICTS['failed' if milestone.kind == 'failed' else milestone.verdict]}"
+    if conserved:
+        return f"{name} over the top, {two_digits(1 + error)} E0"
+    return f"{name} over the top, {two_digits(math.exp(min(error, 700.0)))} E(t)"

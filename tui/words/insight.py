@@ -5,7 +5,7 @@ Each states only what was measured; a forecast extrapolates a measured slope.
 
 import math
 import string
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -16,34 +16,16 @@ from engine.scenes import Scene
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
 
-WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
-FRESH = 6.0  # s of the clock for which a milestone is news
-TURN = 8.0  # s of the clock until the next of the lasting sentences
-MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
-MAX_FORECAST = 1000 * 86400.0  # s
-MAX_RATE_LOSS = 0.5  # of the energy; beyond it the share that is lost says more than the rate
-MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
-UNCHANGED = 0.05  # relative change of the energy that is not worth a number
-
 SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0; angle and speed off by {misses} rad.",
     "watch": "{text}",
-    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
-    "over the top": "{0} went over the top at {t:.3g} s.",
-    "over the top with": (
-        "{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy."
-    ),
-    "over the top with true": (
-        "{0} went over the top at {t:.3g} s with {ratio:two} times the true energy."
-    ),
+    "over the top": "{0} went over the top at {t:.3g} s with {ratio:two} times {unit}.",
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
     "bounded": "{names} bounded; no trend over {seconds:about}.",
-    "chaotic": "{0} is chaotic: nearby starts separate exponentially.",
-    "chaotic at": "{0} is chaotic: nearby starts separate tenfold every {seconds:about}.",
+    "chaotic": "{0} is chaotic: nearby starts separate {seconds:tenfold}.",
     "wanders": "{0} wanders: its energy goes up and down, without a trend and in no band.",
-    "wanders at": "{0} wanders in chaos: nearby starts separate tenfold every {seconds:about}.",
     "caught": "{0} has settled at an energy error of about {error:+.3g}.",
     "lost": "{0} has lost {share:percent} of its energy.",
     "gains": "{0} gains {rate:share} of {unit} per s.",
@@ -59,9 +41,28 @@ SENTENCES = {
     "so far": "Energy errors so far: {least:share} ({0}) to {most:share} ({1}).",
 }
 
-
-IRREGULAR = ("chaotic", "chaotic at", "wanders", "wanders at", "caught")
+WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
+FRESH = 6.0  # s of the clock for which a milestone is news
+TURN = 8.0  # s of the clock until the next of the lasting sentences
+MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
+MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
+PRIORITY = ("failed", "over the top", "errors cross", "verdict")
+IRREGULAR = ("chaotic", "wanders", "caught")
 """Kinds that matter of a method that went over the top, too."""
+
+
+def _share(value: float) -> str:
+    return f"{two_digits(100 * value)} %" if 1e-6 <= value < 10 else two_digits(value)
+
+
+FORMATS: dict[str, Callable[[Any], str]] = {
+    "about": about,
+    "two": two_digits,
+    "share": _share,
+    "percent": lambda value: "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %",
+    "tenfold": lambda value: f"tenfold every {about(value)}" if value else "exponentially",
+}
+"""What SENTENCES may name after a colon, beside Python's own formats."""
 
 
 class Insight(NamedTuple):
@@ -73,19 +74,9 @@ class Insight(NamedTuple):
 
 
 class _Words(string.Formatter):
-    """Knows the formats `about`, `two`, `share` and `percent` besides Python's own."""
-
     def format_field(self, value: Any, format_spec: str) -> str:
-        match format_spec:
-            case "about":
-                return about(value)
-            case "two":
-                return two_digits(value)
-            case "share":
-                return f"{two_digits(100 * value)} %" if 1e-6 <= value < 10 else two_digits(value)
-            case "percent":
-                return "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %"
-        return str(super().format_field(value, format_spec))
+        known = FORMATS.get(format_spec)
+        return known(value) if known else format(value, format_spec)
 
 
 def sentence(found: Insight) -> str:
@@ -113,59 +104,38 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
 
     Methods whose keys are `hidden` are not mentioned.
     """
-    sample = source.sample
-    returned = source.history.returned
+    step = source.sample.step
+    t = abs(source.sample.t)
+    h = abs(source.stepping.h)
     pace = abs(source.playhead.speed)
+    shot = source.scene.shot
     if source.exact.regime == "equilibrium":
         return Insight("at rest")
-    if text := _moment(source):
-        return Insight("watch", values={"text": text})
-    if returned is not None and abs(sample.t) < WATCH:
-        return _returned(source.scene, returned, hidden)
-    if found := _new_step(source, FRESH * pace) or _news(source, FRESH * pace, hidden):
+    is_moment = shot.moment is not None and step == round(shot.moment / h)
+    if is_moment and shot.sentence and source.stepping.h == source.scene.h:
+        return Insight("watch", values={"text": shot.sentence})
+    if source.history.returned is not None and t < WATCH:
+        return _returned(source.scene, source.history.returned, hidden)
+    if found := _news(source, step - FRESH * pace / h, hidden):
         return found
-    if abs(sample.t) < WATCH * pace and (watch := _watch(source, hidden)):
+    if t < WATCH * pace and (watch := _watch(source, hidden)):
         return watch
     known = lasting(source, hidden)
-    turn = int(sample.step * abs(source.stepping.h) / (TURN * pace))
-    return known[turn % len(known)]
+    return known[int(step * h / (TURN * pace)) % len(known)]
 
 
-def _moment(source: Source) -> str:
-    """Return what the scene's shot says at its moment."""
-    scene = source.scene
-    shot = scene.shot
-    if shot.moment is None or source.stepping.h != scene.h:
-        return ""
-    return shot.sentence if source.sample.step == round(shot.moment / scene.h) else ""
-
-
-def _new_step(source: Source, seconds: float) -> Insight | None:
-    """Return what r does after a change of h in the lab."""
-    if source.kind != "LIVE" or len(source.changes) < 2:
-        return None
-    before, last = source.changes[-2:]
-    h = last.stepping.h
-    if source.sample.step - last.step >= seconds / abs(h) or abs(before.stepping.h) == abs(h):
-        return None
-    return Insight("new step", values={"h": h})
-
-
-def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | None:
-    """Return the latest milestone: failures first, then over the top, crossings, verdicts."""
-    kinds = ("verdict", "errors cross", "over the top", "failed")
-    since = source.sample.step - seconds / abs(source.stepping.h)
+def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:
+    """Return the latest milestone since a step: failures first, then the others by PRIORITY."""
     recent = [
         each for each in source.milestones if each.step > since and each.method.key not in hidden
     ]
-    for milestone in sorted(
-        recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True
-    ):
+    for milestone in sorted(recent, key=lambda each: (PRIORITY.index(each.kind), -each.step)):
         if milestone.kind != "verdict":
-            return milestone_insight(milestone, source.scene.equations.energy_error.conserved)
-        index = source.scene.cast.index(milestone.method)
-        is_bounded = milestone.verdict == "bounded"
-        if found := bounded(source, hidden) if is_bounded else drift(source, index):
+            return milestone_insight(milestone, _is_conserved(source))
+        found = drift(source, source.scene.cast.index(milestone.method))
+        if milestone.verdict == "bounded":
+            found = bounded(source, hidden)
+        if found:
             return found
     return None
 
@@ -181,29 +151,24 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     """Return all insights on the methods that are shown, the most important first; at least one."""
-    ended = {
-        index: each for index, each in endings(source).items() if each.method.key not in hidden
-    }
+    ended = {at: each for at, each in endings(source).items() if each.method.key not in hidden}
     found = list(_on_methods(source, ended, hidden))
+    if not found:
+        return [_so_far(source, hidden)]
     watch = _watch(source, hidden)
-    outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
-    if found:
-        return [*found, watch] if watch and not outdated else found
-    return [_so_far(source, hidden)]
+    is_outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
+    return [*found, watch] if watch and not is_outdated else found
 
 
 def _on_methods(
     source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]
 ) -> Iterator[Insight]:
-    conserved = source.scene.equations.energy_error.conserved
     for milestone in sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step)):
-        yield milestone_insight(milestone, conserved)
+        yield milestone_insight(milestone, _is_conserved(source))
     if staying := bounded(source, hidden):
         yield staying
     for index, method in enumerate(source.scene.cast):
-        if method.key in hidden:
-            continue
-        found = drift(source, index)
+        found = drift(source, index) if method.key not in hidden else None
         if found and (index not in ended or found.kind in IRREGULAR):
             yield found
 
@@ -211,50 +176,43 @@ def _on_methods(
 def endings(source: Source) -> dict[int, Milestone]:
     """Return by index the methods that failed or went over the top."""
     ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
-    index = source.scene.cast.index
-    return {
-        index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")
-    }
+    ended.sort(key=lambda each: each.kind == "failed")
+    return {source.scene.cast.index(each.method): each for each in ended}
+
+
+def _is_conserved(source: Source) -> bool:
+    return source.scene.equations.energy_error.conserved
 
 
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
-    methods = (milestone.method,)
-    values = {"t": milestone.t}
+    values: dict[str, Any] = {"t": milestone.t}
     if milestone.other:
         return Insight("errors cross", (milestone.method, milestone.other), values)
-    if milestone.kind == "failed":
-        return Insight("failed", methods, values)
-    if not conserved:
-        ratio = math.exp(min(milestone.energy_error, 700.0))
-        return Insight("over the top with true", methods, values | {"ratio": ratio})
-    if abs(milestone.energy_error) < UNCHANGED:
-        return Insight("over the top", methods, values)
-    return Insight("over the top with", methods, values | {"ratio": 1 + milestone.energy_error})
+    if milestone.kind == "over the top":
+        values |= {"ratio": 1 + milestone.energy_error, "unit": "its initial energy"}
+        if not conserved:
+            ratio = math.exp(min(milestone.energy_error, 700.0))
+            values |= {"ratio": ratio, "unit": "the true energy"}
+    return Insight(milestone.kind, (milestone.method,), values)
 
 
 def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     """Return the insight on the bounded methods, if there are any."""
     judged = zip(source.scene.cast, source.judgements, strict=True)
-    found = [(m, j) for m, j in judged if j.verdict == "bounded" and m.key not in hidden]
+    found = {m: j.periods for m, j in judged if j.verdict == "bounded" and m.key not in hidden}
     if not found:
         return None
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
-    seconds = min(judgement.periods for _, judgement in found) * period
-    return Insight("bounded", tuple(method for method, _ in found), {"seconds": seconds})
+    return Insight("bounded", tuple(found), {"seconds": min(found.values()) * period})
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
     """Return the insight on a chaotic, wandering or caught method; None for other verdicts."""
-    if judgement.verdict == "caught":
-        return Insight("caught", (method,), {"error": error})
-    if judgement.verdict not in ("chaotic", "wanders"):
+    if judgement.verdict not in IRREGULAR:
         return None
-    if not judgement.lyapunov:
-        return Insight(judgement.verdict, (method,))
-    return Insight(
-        f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov}
-    )
+    seconds = math.log(10) / judgement.lyapunov if judgement.lyapunov else None
+    return Insight(judgement.verdict, (method,), {"error": error, "seconds": seconds})
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -264,25 +222,26 @@ def drift(source: Source, index: int) -> Insight | None:
     error = source.sample.readings[index].energy_error
     if found := irregular(method, judgement, error):
         return found
-    conserved = source.scene.equations.energy_error.conserved
+    conserved = _is_conserved(source)
     loses = judgement.verdict == "loses"
-    if conserved and loses and -error > MAX_RATE_LOSS:
+    if conserved and loses and -error > 0.5:  # the share that is lost says more than the rate
         return Insight("lost", (method,), {"share": -error})
-    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
-    if slope <= 0:
+    slope = judgement.slope or 0.0
+    rate = -slope if loses else slope
+    if judgement.verdict not in ("grows", "loses") or rate <= 0:
         return None
-    if judgement.growth and judgement.verdict == "grows":
+    if judgement.growth and not loses:
         return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
+    kind = "loses" if loses else "gains"
     unit = "E0" if conserved else "the true energy"
-    values = {"rate": slope, "unit": unit, "gains": "loses" if loses else "gains"}
+    values = {"rate": rate, "unit": unit, "gains": kind}
     if ahead := forecast(source, index):
         seconds, other = ahead
         return Insight("will pass", (method, other), values | {"seconds": seconds})
-    bands = _bands(source)
-    if bands and abs(error) > bands[0][0] > 0:
-        other = source.scene.cast[bands[0][1]]
-        return Insight("exceeds", (method, other), values | {"ratio": abs(error) / bands[0][0]})
-    return Insight("loses" if loses else "gains", (method,), values)
+    smallest, other = next(iter(_bands(source)), (0.0, method))
+    if abs(error) > smallest > 0:
+        return Insight("exceeds", (method, other), values | {"ratio": abs(error) / smallest})
+    return Insight(kind, (method,), values)
 
 
 def forecast(source: Source, index: int) -> tuple[float, Method] | None:
@@ -294,59 +253,54 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     """
     judgement = source.judgements[index]
     error = source.sample.readings[index].energy_error
-    slope = judgement.slope
-    uncertainty = judgement.uncertainty
-    if (
-        judgement.verdict != "loses"
-        or not slope
-        or uncertainty is None
-        or 10 * uncertainty > abs(slope)
-    ):
+    rate = -(judgement.slope or 0.0)
+    if judgement.verdict != "loses" or judgement.uncertainty is None:
         return None
-    if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
+    if rate <= 10 * judgement.uncertainty:
         return None
-    band, other = next((each for each in _bands(source) if each[0] > abs(error)), (math.inf, 0))
+    if any(0 < change.step <= source.sample.step for change in source.changes):
+        return None
+    bands = _bands(source)
+    band, other = next((each for each in bands if each[0] > abs(error)), (math.inf, None))
     slow = (source.exact.period or 0.0) > MAX_PERIOD * math.tau / source.scene.w0
-    if band > MAX_BAND or slow:
+    if other is None or band > MAX_BAND or slow:
         return None
-    seconds = (band - math.copysign(error, error * slope)) / abs(slope)
-    return (seconds, source.scene.cast[other]) if seconds < MAX_FORECAST else None
+    seconds = (band + error) / rate
+    return (seconds, other) if seconds < 1000 * 86400 else None
 
 
-def _bands(source: Source) -> list[tuple[float, int]]:
-    """Return the largest energy error of each bounded method, with its index, smallest first."""
-    pairs = enumerate(zip(source.sample.readings, source.judgements, strict=True))
-    return sorted(
-        (reading.max_energy_error, i)
-        for i, (reading, judged) in pairs
-        if judged.verdict == "bounded"
-    )
+def _bands(source: Source) -> list[tuple[float, Method]]:
+    """Return the largest energy error of each bounded method, smallest first."""
+    each = zip(source.scene.cast, source.sample.readings, source.judgements, strict=True)
+    bands = [
+        (now.max_energy_error, one) for one, now, judged in each if judged.verdict == "bounded"
+    ]
+    return sorted(bands, key=lambda band: band[0])
 
 
 def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
     """Return the largest energy errors of the best and of the worst method."""
-    cast = source.scene.cast
-    errors = [(reading.max_energy_error, at) for at, reading in enumerate(source.sample.readings)]
-    shown = sorted(each for each in errors if cast[each[1]].key not in hidden)
-    if not shown:
+    each = zip(source.scene.cast, source.sample.readings, strict=True)
+    errors = {one: now.max_energy_error for one, now in each if one.key not in hidden}
+    if not errors:
         return Insight("watch", values={"text": ""})
-    least, nearest = shown[0]
-    most, furthest = shown[-1]
-    if nearest == furthest:
-        return Insight("so far alone", (cast[furthest],), {"most": most})
-    return Insight("so far", (cast[nearest], cast[furthest]), {"least": least, "most": most})
+    best = min(errors, key=errors.__getitem__)
+    worst = max(errors, key=errors.__getitem__)
+    values = {"least": errors[best], "most": errors[worst]}
+    if len(errors) == 1:
+        return Insight("so far alone", (worst,), values)
+    return Insight("so far", (best, worst), values)
 
 
 def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Insight:
     """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
     misses = []
     for method, reading in zip(scene.cast, sample.readings, strict=True):
-        if method.key in hidden:
-            continue
-        speed = (reading.omega - scene.omega) / scene.w0
-        miss = math.hypot(reading.theta - scene.theta, speed)
-        text = "failed" if reading.diverged_at is not None else f"{miss:.1g}"
-        misses.append(f"{method.letter} {text}")
+        if method.key not in hidden:
+            speed = (reading.omega - scene.omega) / scene.w0
+            miss = math.hypot(reading.theta - scene.theta, speed)
+            text = "failed" if reading.diverged_at is not None else f"{miss:.1g}"
+            misses.append(f"{method.letter} {text}")
     return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
 
 

@@ -1,48 +1,47 @@
-"""Numbers -> text: of a fixed width for tables, short for sentences.
+"""Numbers -> text: of a fixed width for tables, short for sentences; and the exact motion.
 
 Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
 """
 
 import math
+from collections.abc import Sequence
 
+from engine.models.model import ExactMotion, Model
 from engine.scenes import Scene
 
 
 def counted(number: int, noun: str) -> str:
     """As "1 sample" or "3 samples"."""
-    return f"{number} {noun}{'s' * (number != 1)}"
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
     """With a sign and as many decimals as fit, or in scientific notation: " +1.000", "+1.2e+09"."""
-    if value is None or not math.isfinite(value):
-        return "-".rjust(width)
-    for places in range(decimals, -1, -1):
-        text = f"{value:+.{places}f}"
-        if len(text) <= width:
-            return text.rjust(width)
-    return scientific(value, width)
+    fixed = [f"+.{places}f" for places in range(decimals, -1, -1)]
+    return _fitting(value, width, [*fixed, "+.1e", "+.0e"])
 
 
 def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
     """As "+3.3e+00", with fewer digits if needed; `sign` "-": a sign only if negative."""
+    return _fitting(value, width, [f"{sign}.{places}e" for places in range(digits, -1, -1)])
+
+
+def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
+    """Return a number in the first format that fits, or as spreadsheets do."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)
-    for places in range(digits, -1, -1):
-        text = f"{value:{sign}.{places}e}"
-        if len(text) <= width:
-            return text.rjust(width)
-    return "#" * width  # as spreadsheets do
+    texts = (format(value, each) for each in formats)
+    return next((text.rjust(width) for text in texts if len(text) <= width), "#" * width)
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
     """An angle [rad]; beyond a turn as turns and, if there is room, the rest: "-5 turns +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
-    text = f"{turns:+d} turn{'s' * (abs(turns) != 1)}"
-    rest = f" {theta - turns * math.tau:+.2f}"
+    text = f"{turns:+d} turn" if abs(turns) == 1 else f"{turns:+d} turns"
     if abs(theta) <= math.tau or len(text) > width:
         return decimal(theta, width, max(decimals, 1))
-    return (text + rest if len(text + rest) <= width else text).rjust(width)
+    whole = f"{text} {theta - turns * math.tau:+.2f}"
+    return (whole if len(whole) <= width else text).rjust(width)
 
 
 def start(theta: float, omega: float) -> str:
@@ -54,43 +53,32 @@ def seconds(value: float) -> str:
     """Return a time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
     if not math.isfinite(value):
         return "-"
-    sign = "-" if round(value, 2) < 0 else ""
-    size = abs(value)
-    if round(size, 2) < 60:
-        return f"{sign}{size:.2f} s"
-    if round(size) < 3600:
-        minutes, rest = divmod(round(size), 60)
-        return f"{sign}{minutes} min {rest:02d} s"
-    if round(size / 60) < 24 * 60:
-        hours, rest = divmod(round(size / 60), 60)
-        return f"{sign}{hours} h {rest:02d} min"
-    days, rest = divmod(round(size / 3600), 24)
-    return f"{sign}{days} d {rest:02d} h" if days < 10_000 else f"{sign}{size:.1e} s"
+    if round(value, 2) < 0:
+        return f"-{seconds(-value)}"
+    if round(value, 2) < 60:
+        return f"{abs(value):.2f} s"
+    if round(value) < 3600:
+        return "{} min {:02d} s".format(*divmod(round(value), 60))
+    if round(value / 60) < 24 * 60:
+        return "{} h {:02d} min".format(*divmod(round(value / 60), 60))
+    if value < 1e9:
+        return "{} d {:02d} h".format(*divmod(round(value / 3600), 24))
+    return f"{value:.1e} s"
 
 
 def about(seconds: float) -> str:
     """A duration with about two digits: "40 s", "32 min", "8.4 h", "12 days"."""
-    units = (("days", 86400), ("h", 3600), ("min", 60), ("s", 1))
-    unit, size = next((unit for unit in units if seconds >= 2 * unit[1]), units[-1])
-    value = seconds / size
+    units = {"days": 86400, "h": 3600, "min": 60, "s": 1}
+    unit = next((unit for unit, size in units.items() if seconds >= 2 * size), "s")
+    value = seconds / units[unit]
     return f"{value:.0f} {unit}" if value >= 9.95 else f"{value:.2g} {unit}"
 
 
 def two_digits(value: float) -> str:
     """A positive number with about two digits: "0.00029", "0.66", "4.3", "440", "1.3e+06"."""
-    return (
-        f"{value:#.2g}" if value < 9.95 else f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
-    )
-
-
-def file_size(count: int) -> str:
-    """Bytes as "640 B", "96 kB", "1.2 MB"."""
-    if count < 1000:
-        return f"{count} B"
-    power = next((power for power in (1, 2, 3) if round(count / 1000**power) < 1000), 4)
-    value = count / 1000**power
-    unit = ("kB", "MB", "GB", "TB")[power - 1]
-    return f"{value:.1f} {unit}" if round(value, 1) < 10 else f"{value:.0f} {unit}"
+    if value < 9.95:
+        return f"{value:#.2g}"
+    return f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
 
 
 def factor(value: float) -> str:
@@ -101,3 +89,29 @@ def factor(value: float) -> str:
 def z_text(scene: Scene, digits: int = 4) -> str:
     """Return a scene's z and what it is: "z = h·w0 = 0.1566"."""
     return f"z = h·{scene.equations.frequency_symbol} = {scene.z:.{digits}g}"
+
+
+def regime(model: Model, theta: float, omega: float) -> str:
+    """Return the kind of exact motion through a state: "libration", "rotation" or "separatrix"."""
+    level = model.level(theta, omega)
+    if level == 0:
+        return "separatrix"
+    return "libration" if level > 0 else "rotation"
+
+
+def energy_share(model: Model, theta: float, omega: float) -> str:
+    """Return energy over that of the separatrix; near 1, as the difference: "1 - 2.5e-13"."""
+    level = model.level(theta, omega)
+    if level != 0 and abs(level) < 1e-3:
+        return f"1 {'-' if level > 0 else '+'} {abs(level):.1e}"
+    return f"{1 - level:.4g}"
+
+
+def motion_text(scene: Scene, exact: ExactMotion) -> str:
+    """Return the motion from a scene's start: "exact period 2.139 s  E/Es 0.2298  libration"."""
+    parts = []
+    if exact.period is not None:
+        parts.append(f"exact period {exact.period:.6g} s")
+    if scene.equations.has_separatrix:
+        parts.append(f"E/Es {energy_share(scene.equations, scene.theta, scene.omega)}")
+    return "  ".join([*parts, exact.regime])

@@ -30,30 +30,22 @@ def name(method: Method, kind: OrbitKind) -> str:
 
 def fraction(kind: OrbitKind) -> str:
     """Return the small fraction nearest to the rotation number: "1:6" is one turn in six steps."""
-    return (
-        "-" if kind.fraction is None else f"{kind.fraction.numerator}:{kind.fraction.denominator}"
-    )
-
-
-def lyapunov(kind: OrbitKind) -> str:
-    """Return a Lyapunov number a step; a regular orbit's is 0 as far as its steps can tell."""
-    if not math.isfinite(kind.lyapunov):
+    if kind.fraction is None:
         return "-"
-    if kind.chaotic or kind.lyapunov < 0:
-        return f"{kind.lyapunov:+.4f}"
-    return f"0 within {least_lyapunov(kind.steps):.1g}"
+    return f"{kind.fraction.numerator}:{kind.fraction.denominator}"
 
 
 def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
-    """Return what stands below HEADS."""
+    """Return what stands below HEADS; a regular orbit's Lyapunov number is 0 as far as known."""
     rotation = kind.rotation
-    return (
-        name(method, kind),
-        "-" if rotation is None else f"{rotation:.7f}",
-        "-" if not rotation else f"{1 / abs(rotation):.5g}",
-        fraction(kind),
-        lyapunov(kind),
-    )
+    turns = "-" if rotation is None else f"{rotation:.7f}"
+    steps = f"{1 / abs(rotation):.5g}" if rotation else "-"
+    lyapunov = f"0 within {least_lyapunov(kind.steps):.1g}"
+    if not math.isfinite(kind.lyapunov):
+        lyapunov = "-"
+    elif kind.chaotic or kind.lyapunov < 0:
+        lyapunov = f"{kind.lyapunov:+.4f}"
+    return name(method, kind), turns, steps, fraction(kind), lyapunov
 
 
 def sentence(method: Method, kind: OrbitKind) -> str:
@@ -69,13 +61,12 @@ def sentence(method: Method, kind: OrbitKind) -> str:
             return f"It {words}: no rotation number, for it changes on the way."
         return f"Undecided in {kind.steps} steps: regular so far, but without one rotation number."
     over = " over the top" if kind.spins else ""
+    ratio = fraction(kind)
     if kind.island:
         turns, steps = kind.fraction.as_integer_ratio()
-        ratio = f"{turns}:{steps}"
-        return (
-            f"A chain of islands: {counted(turns, 'turn')}{over} in every {steps} steps, {ratio}."
-        )
-    near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {fraction(kind)}."
+        count = f"{counted(turns, 'turn')}{over} in every {steps} steps"
+        return f"A chain of islands: {count}, {ratio}."
+    near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {ratio}."
     if spirals:
         return f"It {words}, {near}"
     return f"Regular: {near}" if method.symplectic else f"A slow spiral: {near}"

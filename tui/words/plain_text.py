@@ -1,4 +1,4 @@
-"""The lab and its tour without a screen, for screen readers and logs."""
+"""The lab and its tour as sentences, for readers who cannot see the screen, and for logs."""
 
 import time
 from collections.abc import Callable
@@ -7,15 +7,79 @@ from engine.methods import Cast
 from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.source import Source
-from tui.words.describe import description
+from tui.words import insight
 from tui.words.events import event_lines
-from tui.words.insight import TURN, insight_text, short_name
-from tui.words.numbers import seconds
+from tui.words.numbers import about, seconds, start
 from tui.words.tour import STEPS, Tour
 
-TICK = 1 / 30  # s, as often as the screen would be painted
 THINKING = 6.0  # s, to find an answer
 READING = 5.0  # s, to read it
+
+
+def description(source: Source, only: Cast | None = None) -> list[str]:
+    """Return sentences on the run, each method, or `only` these, and the recording."""
+    scene = source.scene
+    playhead = source.playhead
+    kind = "The lab" if source.kind == "LIVE" else "The replay"
+    speed = "in real time" if playhead.speed == 1 else f"at {playhead.speed:.4g} times real time"
+    state = "is paused" if playhead.paused else f"runs {speed} and is"
+    at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
+    motion = ""
+    if source.exact.period is not None:
+        cycle = "turn" if source.exact.regime == "rotation" else "swing"
+        motion = f"; one {cycle} takes {about(source.exact.period)}"
+    began = f"{start(scene.theta, scene.omega)}{motion}"
+    lines = [
+        f"{kind} {state} at {at}.",
+        f"The pendulum is {scene.length:.4g} m long and started at {began}.",
+        f"The step size is {step_text(source)}.",
+    ]
+    if source.failure:
+        lines.append(f"It stands still: {source.failure}")
+    if source.ghost:
+        lines.append(f"Under it, {source.ghost.label(60)}.")
+    for index, method in enumerate(scene.cast):
+        if only is None or method in only:
+            lines.append(method_sentence(source, index))
+    return [*lines, _recording(source)]
+
+
+def step_text(source: Source) -> str:
+    """Return the current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it"."""
+    h = source.stepping.h
+    text = f"{abs(h):.4g} s, z = {abs(h) * source.scene.equations.fastest:.3g}"
+    if source.stepping.equal_cost:
+        text += "; at equal cost, the cheaper methods split it"
+    return f"{text}; time runs backwards" if h < 0 else text
+
+
+def method_sentence(source: Source, index: int) -> str:
+    """Return how a method failed or went over the top, else its verdict or error so far."""
+    method = source.scene.cast[index]
+    reading = source.sample.readings[index]
+    judgement = source.judgements[index]
+    found = [insight.drift(source, index)]
+    if milestone := insight.endings(source).get(index):
+        conserved = source.scene.equations.energy_error.conserved
+        irregular = insight.irregular(method, judgement, reading.energy_error)
+        found = [insight.milestone_insight(milestone, conserved), irregular]
+    elif judgement.verdict == "bounded":
+        error = reading.max_energy_error
+        return f"{method.label} stays bounded: its largest energy error is {error:.2g}."
+    if sentences := " ".join(insight.sentence(each) for each in found if each):
+        return sentences
+    return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {judgement}."
+
+
+def _recording(source: Source) -> str:
+    status = source.recording_status
+    if status is None:
+        return "Not recording."
+    if status.failed:
+        return f"Not recording: {status.failed}"
+    if source.kind == "LIVE":
+        return f"Recorded so far: {seconds(status.seconds)} in {status.name}."
+    return f"The recording {status.name} is {seconds(status.seconds)} long."
 
 
 def print_run(
@@ -38,7 +102,7 @@ def print_run(
     source.tick(began)
     emitted = set(event_lines(source))
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
-        sleep(TICK)
+        sleep(1 / 30)
         source.tick(clock())
         if source.failure:
             raise UserError(source.failure)
@@ -49,17 +113,19 @@ def print_run(
                 emit(f"{seconds(line.t)}: {line.text}.")
         if clock() - began >= second + 1:
             second = int(clock() - began)
-            explain = only is None and (has_news or second % TURN == 0)  # about all methods
-            emit(insight_text(source) if explain else numbers(source, only))
+            explain = only is None and (has_news or second % insight.TURN == 0)
+            emit(insight.insight_text(source) if explain else _numbers(source, only))
             has_news = False
 
 
-def numbers(source: Source, only: Cast | None = None) -> str:
-    """Return as "3.00 s: energy errors Explicit Euler +0.4, …"."""
+def _numbers(source: Source, only: Cast | None) -> str:
     each = zip(source.scene.cast, source.sample.readings, strict=True)
-    shown = [(method, reading) for method, reading in each if only is None or method in only]
-    errors = [f"{short_name(method)} {reading.energy_error:+.2g}" for method, reading in shown]
-    return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."
+    errors = ", ".join(
+        f"{insight.short_name(method)} {reading.energy_error:+.2g}"
+        for method, reading in each
+        if only is None or method in only
+    )
+    return f"{seconds(source.sample.t)}: energy errors {errors}."
 
 
 def print_tour(
@@ -69,31 +135,31 @@ def print_tour(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
 ) -> None:
-    """Emit the shots: question and, after a pause, truth, until the last or until `stopped`."""
+    """Emit the steps: question and, after a pause, truth, until the last or until `stopped`."""
     tour = Tour(live)
     live.tick(clock())
 
-    def wait_until(come: Callable[[], bool]) -> None:
+    def wait_until(come: Callable[[], bool]) -> bool:
+        """Return whether it has come before it was stopped."""
         while not stopped() and not come():
-            sleep(TICK)
+            sleep(1 / 30)
             live.tick(clock())
+        return not stopped()
 
-    def pause(time: float) -> None:
+    def pause(time: float) -> bool:
         end = clock() + time
-        wait_until(lambda: clock() >= end)
+        return wait_until(lambda: clock() >= end)
 
     for index, step in enumerate(STEPS):
         tour.begin(index)
         emit(f"{tour.title}. {step.watch}")
-        wait_until(tour.follow)
-        if stopped():
+        if not wait_until(tour.follow):
             return
         emit(f"{seconds(live.sample.t)}: {step.happened}")
-        emit(f"Question: {step.question}  1: {step.answers[0]}  2: {step.answers[1]}")
-        pause(THINKING)
-        if stopped():
+        emit(f"Question: {step.asked}")
+        if not pause(THINKING):
             return
         emit(f"Answer: {step.right + 1}. {step.truth}")
-        pause(READING)
-    if not stopped():
-        emit("That was the tour.")
+        if not pause(READING):
+            return
+    emit("That was the tour.")

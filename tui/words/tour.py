@@ -4,7 +4,7 @@ Tests measure the truths.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from engine.models import DEFAULT_MODEL
@@ -29,7 +29,7 @@ class TourStep:
     answers: tuple[str, str]
     right: int  # index of the right answer
     truth: str
-    shot: Shot = field(default=Shot())
+    shot: Shot
     returns: bool = False  # at the moment time turns round; the question comes at t = 0
     equal_cost: bool = False
 
@@ -38,6 +38,11 @@ class TourStep:
         """The stepping at the start of its run."""
         scene = self.scene
         return Stepping(scene.h, self.equal_cost, scene.cast).with_smallest(scene.h)
+
+    @property
+    def asked(self) -> str:
+        """The question with its answers."""
+        return f"{self.question}  1: {self.answers[0]}  2: {self.answers[1]}"
 
     @property
     def turn(self) -> int:
@@ -218,14 +223,14 @@ STEPS = (
 
 
 class Tour:
-    """Takes a lab through the shots: to the moment, the question, the truth, and on."""
+    """Takes a lab through the steps: to the moment, the question, the truth, and on."""
 
     def __init__(self, live: Live) -> None:
         self.live = live
         self.index = 0
         self.stage: Literal["watching", "asked", "answered"] = "watching"
         self.choice: int | None = None  # the answer that was chosen
-        self._home: tuple[int, Stepping] | None = None  # the run of the shot, and its stepping
+        self._home: tuple[int, Stepping] | None = None  # the run of the step, and its stepping
 
     @property
     def step(self) -> TourStep:
@@ -244,10 +249,12 @@ class Tour:
     def text(self) -> tuple[str, ...]:
         """Return the sentences of this stage."""
         step = self.step
+        if self.is_astray:
+            return (ASTRAY,)
         if self.stage == "watching":
-            return (ASTRAY,) if self.is_astray else (step.watch,)
+            return (step.watch,)
         if self.stage == "asked":
-            return step.happened, f"{step.question}  1: {step.answers[0]}  2: {step.answers[1]}"
+            return step.happened, step.asked
         result = {None: "", step.right: "Right. "}.get(self.choice, "Not quite. ")
         return f"{result}{step.right + 1}: {step.answers[step.right]}", step.truth
 
@@ -255,34 +262,31 @@ class Tour:
         """Set the run of a step in the lab."""
         self.index = index
         self.stage = "watching"
-        self.choice = None
-        step = self.step
-        if (self.live.scene, self.live.sample.step) != (step.scene, 0):
-            self.live.start(step.scene)
-        self._step(step.stepping)
-        self.live.set_speed(step.speed)
-        self.live.pause(False)
+        if (self.live.scene, self.live.sample.step) != (self.step.scene, 0):
+            self.live.start(self.step.scene)
+        self._go_on(self.step.stepping)
+        self.live.set_speed(self.step.speed)
 
-    def _step(self, stepping: Stepping) -> None:
+    def _go_on(self, stepping: Stepping) -> None:
         if stepping != self.live.stepping:
             self.live.set_stepping(stepping)
         self._home = self.live.sample.run, stepping
+        self.live.pause(False)
 
     def follow(self, at_once: bool = False) -> bool:
         """Return whether the moment has come, or is to come `at_once`; the lab is paused there."""
         if self.stage != "watching" or self.is_astray:
             return False
-        turn = self.step.turn
-        forwards = self.live.stepping.h > 0
-        if self.step.returns and forwards and self._reach(turn, at_once):
-            self._step(self.live.stepping.reversed())
-            self.live.pause(False)
-            forwards = False
-        end = 2 * turn if self.step.returns else turn
-        if (forwards and self.step.returns) or not self._reach(end, at_once):
-            return False
-        self.stage = "asked"
-        return True
+        end = self.step.turn
+        if self.step.returns:
+            if self.live.stepping.h > 0 and self._reach(end, at_once):
+                self._go_on(self.live.stepping.reversed())
+            if self.live.stepping.h > 0:
+                return False
+            end *= 2
+        if self._reach(end, at_once):
+            self.stage = "asked"
+        return self.stage == "asked"
 
     def _reach(self, step: int, at_once: bool) -> bool:
         """Pause at a step, once it has come."""
@@ -297,22 +301,22 @@ class Tour:
         self.stage = "answered"
 
     def forward(self) -> bool:
-        """Go to the moment, to the truth, or to the next shot; return False after the last."""
+        """Go to the moment, to the truth, or to the next step; return False after the last."""
         if self.is_astray:
             self.begin(self.index)
         elif self.stage == "watching":
             self.follow(at_once=True)
         elif self.stage == "asked":
             self.answer(None)
-        else:
-            if self.index + 1 == len(STEPS):
-                self.index = 0
-                return False
+        elif self.index + 1 < len(STEPS):
             self.begin(self.index + 1)
+        else:
+            self.index = 0
+            return False
         return True
 
     def back(self) -> None:
-        """Return from the truth to the question, or else to the shot before."""
+        """Return from the truth to the question, or else to the step before."""
         if self.stage == "answered":
             self.stage = "asked"
         else:

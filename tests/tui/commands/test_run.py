@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from rich.filesize import decimal as file_size
 
 from engine.methods import USUAL_CAST
 from engine.methods.adaptive import HALVING_VERLET
@@ -24,7 +25,7 @@ from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.cli.fail_if import FIELDS
 from tui.commands.studies.lists import partial_of
-from tui.words.numbers import about, file_size
+from tui.words.numbers import about
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:

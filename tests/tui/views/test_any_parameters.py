@@ -19,8 +19,8 @@ from tui.views.lab.error_table import table
 from tui.views.lab.pendulums import Bob, pendulum_picture
 from tui.views.phase.facts import fact_rows
 from tui.words.command_line import scene_arguments
-from tui.words.describe import description
 from tui.words.insight import insight_text, lasting, sentence
+from tui.words.plain_text import description
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:

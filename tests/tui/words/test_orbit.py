@@ -14,63 +14,32 @@ from tui.words.orbit import cells, period_sentence, sentence
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
 LOST = replace(REGULAR, rotation=None, fraction=None)
+HALF = replace(ISLAND, rotation=-0.5, fraction=Fraction(1, 2), spins=True)
 
 
 @pytest.mark.parametrize(
-    ("method", "kind", "said"),
+    ("method", "kind", "parts"),
     [
-        (VELOCITY_VERLET, REGULAR, "Regular: 6.3267 steps a turn, nearest 1:6."),
-        (
-            VELOCITY_VERLET,
-            replace(REGULAR, spins=True),
-            "Regular: 6.3267 steps a turn over the top, nearest 1:6.",
-        ),
-        (VELOCITY_VERLET, ISLAND, "A chain of islands: 3 turns in every 8 steps, 3:8."),
-        (
-            VELOCITY_VERLET,
-            replace(ISLAND, rotation=-0.5, fraction=Fraction(1, 2), spins=True),
-            "A chain of islands: 1 turn over the top in every 2 steps, 1:2.",
-        ),
-        (
-            VELOCITY_VERLET,
-            replace(LOST, chaotic=True, lyapunov=0.2108),
-            "Chaotic: neighbouring starts separate by a factor of e^0.211 a step.",
-        ),
-        (
-            VELOCITY_VERLET,
-            LOST,
-            "Undecided in 4000 steps: regular so far, but without one rotation number.",
-        ),
-        (VELOCITY_VERLET, replace(LOST, moves=False), "An equilibrium: it stays where it is."),
-        (
-            RK4,
-            replace(LOST, energy_error=-0.3),
-            "It spirals inwards: no rotation number, for it changes on the way.",
-        ),
-        (
-            RK4,
-            replace(REGULAR, energy_error=0.3),
-            "It spirals outwards, 6.3267 steps a turn, nearest 1:6.",
-        ),
-        (
-            RK4,
-            replace(REGULAR, energy_error=-4e-7),
-            "A slow spiral: 6.3267 steps a turn, nearest 1:6.",
-        ),
+        (VELOCITY_VERLET, REGULAR, ["Regular", "6.3267 steps", "1:6"]),
+        (VELOCITY_VERLET, replace(REGULAR, spins=True), ["Regular", "over the top"]),
+        (VELOCITY_VERLET, ISLAND, ["islands", "3 turns in every 8 steps", "3:8"]),
+        (VELOCITY_VERLET, HALF, ["islands", "1 turn over the top in every 2 steps"]),
+        (VELOCITY_VERLET, replace(LOST, chaotic=True, lyapunov=0.2108), ["Chaotic", "e^0.211"]),
+        (VELOCITY_VERLET, LOST, ["Undecided in 4000 steps"]),
+        (VELOCITY_VERLET, replace(LOST, moves=False), ["equilibrium"]),
+        (RK4, replace(LOST, energy_error=-0.3), ["spirals inwards", "no rotation number"]),
+        (RK4, replace(REGULAR, energy_error=0.3), ["spirals outwards", "6.3267 steps", "1:6"]),
+        (RK4, replace(REGULAR, energy_error=-4e-7), ["slow spiral", "6.3267 steps", "1:6"]),
     ],
-    ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_the_orbit_in_a_sentence(method, kind, said):
-    assert sentence(method, kind) == said
+def test_the_orbit_in_a_sentence(method, kind, parts):
+    assert [part for part in parts if part not in sentence(method, kind)] == []
 
 
 def test_numbers_that_there_are_not_are_a_hyphen():
     assert cells(VELOCITY_VERLET, LOST) == ("undecided", "-", "-", "-", "0 within 0.006")
-    assert cells(VELOCITY_VERLET, replace(REGULAR, rotation=0.0, lyapunov=float("inf")))[1:3] == (
-        "0.0000000",
-        "-",
-    )
-    assert cells(VELOCITY_VERLET, replace(REGULAR, lyapunov=float("inf")))[-1] == "-"
+    still = replace(REGULAR, rotation=0.0, lyapunov=float("inf"))
+    assert cells(VELOCITY_VERLET, still)[1:] == ("0.0000000", "-", "1:6", "-")
 
 
 def test_the_period_of_each_method_stands_beside_the_exact_one():

@@ -1,16 +1,20 @@
-"""The lab as sentences."""
+"""The lab in words, held against the lab."""
 
 import re
 
-from engine.methods import RK4, USUAL_CAST, VELOCITY_VERLET, Cast
+import pytest
+
+from engine.methods import RK4, VELOCITY_VERLET, Cast
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
+from tests.tui.harness import after, lab
+from tui.playback.ghost import Ghost
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
-from tui.words.describe import description
-from tui.words.plain_text import print_run
+from tui.words.plain_text import description, method_sentence, print_run
 
 DRIFT = SCENES["drift"]
 
@@ -28,83 +32,110 @@ class Hour:
 
 
 def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
-    """What is said in so many seconds of the clock."""
+    """What is printed in so many seconds of the clock, after the description."""
     clock, sentences = Hour(), []
     end = clock.now + seconds
-    print_run(
-        source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only
-    )
-    return sentences
+    first = description(source, only)
+    print_run(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only)
+    assert sentences[: len(first)] == first
+    return sentences[len(first) :]
 
 
-def lab(scene=DRIFT, speed=1.0) -> Live:
-    return Live(scene, speed, clock=lambda: 0.0)
+def test_the_default_scene_after_twenty_seconds():
+    live = after(DRIFT, 20)
+    text = " ".join(description(live))
+    for part in (
+        '20.00 s of run 1 of the scene "drift"',
+        "57.3° 0 rad/s",
+        "2.1 s",
+        "0.05 s, z = 0.157",
+    ):
+        assert part in text
+    for index, number in enumerate(("7.15 s", "0.079", "0.0057", "31 min")):
+        assert number in method_sentence(live, index)
+    error = after(DRIFT, 3).sample.readings[3].energy_error
+    assert f"{error:+.2g}; too early: 1 of 5 swings" in method_sentence(after(DRIFT, 3), 3)
 
 
-def test_it_begins_with_a_description():
-    live = lab()
-    first = description(live)
-    assert said(live, 3)[: len(first)] == first
+def test_every_method_has_a_sentence_at_any_time_of_any_scene():
+    for scene in SCENES.values():
+        live = Live(scene, clock=lambda: 0.0)
+        for _ in range(3):
+            for index, method in enumerate(scene.cast):
+                sentence = method_sentence(live, index)
+                assert re.fullmatch(r"[A-Zr].*\.", sentence)
+                assert method.label.split()[-1] in sentence
+            live.step(200)
 
 
-def test_every_second_has_a_sentence_and_every_event_one_more():
-    live = lab()
-    sentences = said(live, 20.5)[len(description(live)) :]
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda live: live.pause(True), "is paused"),
+        (lambda live: live.set_speed(0.5), "0.5 times real time"),
+        (lambda live: live.set_stepping(Stepping(-0.05)), "time runs backwards"),
+        (lambda live: live.set_stepping(Stepping(0.2, equal_cost=True)), "at equal cost"),
+        (lambda live: live.start(SCENES["spin"]), "one turn takes 0.98 s"),
+        (lambda live: setattr(live, "failure", "mine fails."), "mine fails."),
+    ],
+)
+def test_the_description_follows_changes(change, words):
+    live = after(DRIFT, 1)
+    assert words not in " ".join(description(live))
+    change(live)
+    assert words in " ".join(description(live))
+
+
+def test_the_description_has_a_recording_under_the_lab():
+    live = after(DRIFT, 1)
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
+        live.laid_under = Ghost.recorded(recording)
+    assert "Under it, dim: drift, h 0.05 s." in description(live)
+
+
+async def test_d_opens_the_description_and_closes_it():
+    async with lab() as theatre:
+        await theatre.run(20)
+        await theatre.press("d")
+        text = theatre.app.screen.text
+        assert "\n".join(description(theatre.source)[1:]) in text
+        assert "dE/E0" in text.splitlines()[-1]
+        await theatre.press("d")
+        assert theatre.app.screen is theatre.stage
+
+
+def test_every_second_has_a_sentence_and_every_event_one_more_which_is_explained():
+    sentences = said(Live(DRIFT, clock=lambda: 0.0), 20.5)
     events = [text for text in sentences if re.fullmatch(r"[\d.]+ s: (?!energy errors).*", text)]
-    assert events == [
-        "7.15 s: Explicit Euler over the top, 5.1 E0.",
-        "9.00 s: Explicit Euler gains energy.",
-        "9.00 s: RK4 loses energy.",
-        "18.00 s: Symplectic Euler stays bounded.",
-        "18.00 s: Verlet stays bounded.",
-    ]
+    times = [text.partition(" ")[0] for text in events]
+    assert times == ["7.15", "9.00", "9.00", "18.00", "18.00"]
     assert len(sentences) == 20 + len(events)
-
-
-def test_what_happened_is_explained_within_a_second():
-    sentences = said(lab(), 10)
-    at = sentences.index("7.15 s: Explicit Euler over the top, 5.1 E0.")
-    assert sentences[at + 1].startswith("Explicit Euler went over the top at 7.15 s with ")
+    assert "went over the top at 7.15 s" in sentences[sentences.index(events[0]) + 1]
 
 
 def test_the_numbers_are_those_of_the_sample():
-    live = lab()
-    told = re.findall(
-        r"([A-Z][A-Za-z4 ]+) ([-+][\d.e+-]+\d)", said(live, 5.01)[-1].partition("errors ")[2]
-    )
-    for (name, number), method, reading in zip(told, USUAL_CAST, live.sample.readings, strict=True):
-        assert method.label.endswith(name)
-        assert float(number) == float(f"{reading.energy_error:+.2g}")
+    live = Live(DRIFT, clock=lambda: 0.0)
+    numbers = re.findall(r" ([-+][\d.e+-]+\d)", said(live, 5.01)[-1])
+    assert numbers == [f"{reading.energy_error:+.2g}" for reading in live.sample.readings]
 
 
 def test_seconds_are_those_of_the_clock_at_any_speed():
-    slow, fast = lab(speed=0.25), lab(speed=8)
-    assert len(said(slow, 5.1)) == len(description(slow)) + 5
-    assert fast.sample.t == 0
+    assert len(said(Live(DRIFT, 0.25, clock=lambda: 0.0), 5.1)) == 5
+    fast = Live(DRIFT, 8, clock=lambda: 0.0)
     said(fast, 5)
     assert 39 < fast.sample.t < 41
 
 
 def test_of_some_methods_nothing_is_said_of_the_others():
-    sentences = "\n".join(said(lab(), 20.5, (RK4, VELOCITY_VERLET)))
+    sentences = "\n".join(said(Live(DRIFT, clock=lambda: 0.0), 20.5, (RK4, VELOCITY_VERLET)))
     assert "RK4 loses energy" in sentences
     assert "Verlet stays bounded" in sentences
     assert "Euler" not in sentences
 
 
 def test_a_replay_ends_at_its_end():
-    path = GOLDEN / "drift.mcap"
-    with Recording.open(path) as recording:
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
         replay = Replay(recording)
-        sentences = said(replay, 1000)
-        assert sentences[0].startswith("The replay runs in real time")
-        assert len(sentences) < recording.length + 30
+        assert description(replay)[0].startswith("The replay runs in real time")
+        assert len(said(replay, 1000)) < recording.length + 30
         assert replay.playhead.position == recording.length
-
-
-def test_sentences_are_whole_and_plain():
-    for scene in SCENES.values():
-        for text in said(lab(scene), 12):
-            assert text.endswith(".")
-            assert "\n" not in text
-            assert "\x1b" not in text

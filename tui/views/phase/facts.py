@@ -10,8 +10,7 @@ from tui.drawing.palette import QUIET, TEXT, inks, mark
 from tui.drawing.picture import Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.words.motion import energy_share, motion_text, regime
-from tui.words.numbers import scientific
+from tui.words.numbers import energy_share, motion_text, regime, scientific
 
 NAME, CELL = 22, 14  # columns
 
