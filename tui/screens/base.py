@@ -367,7 +367,6 @@ class SourceScreen(SizedScreen[None]):
             each.display = each.id == name
         self.view = name
         self._view_in_front = self.query_one(f"#{name}", View)
-        self.call_after_refresh(self._view_in_front.wake)
         self.refresh_bindings()
         self.show_now()
 

@@ -80,7 +80,6 @@ class View(Box):
         self._is_painted = False
 
     def bound(self, pane: "Pane") -> "Pane":
-        """Register a pane of this view."""
         self._panes.append(pane)
         return pane.data_bind(View.source, View.shown)
 
@@ -108,11 +107,6 @@ class View(Box):
             if is_due and self._sample is not None:
                 pane.follow(self._sample)
 
-    def wake(self) -> None:
-        """Draw what is on screen again: the view was hidden."""
-        for pane in self._panes:
-            pane.draw()
-
     def zoom(self, factor: float) -> None:
         """Zoom by `factor`, in views that have a chart of time."""
 
@@ -131,7 +125,6 @@ class Pane(CellWidget):
     _titles = ("", "")
 
     def follow(self, sample: Sample) -> None:
-        """Show a sample."""
         self.sample = sample
         self.draw()
 
@@ -143,17 +136,14 @@ class Pane(CellWidget):
 
     @property
     def cast(self) -> Cast:
-        """The methods of the run on screen."""
         return self.source.scene.cast
 
     @property
     def places(self) -> list[int]:
-        """The places in the cast of the methods that are shown."""
         return self.shown.places(self.cast)
 
     @property
     def is_live(self) -> bool:
-        """Whether the source is the lab, where runs can be started, and not a recording."""
         return self.source.kind == "LIVE"
 
     def write_titles(self, above: str, below: str = "") -> None:
@@ -171,7 +161,6 @@ class Pane(CellWidget):
             self.show(self.picture(self.source, sample))
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        """Return the sample as a picture of `room`; called when there is any."""
         raise NotImplementedError
 
     def start_at(self, theta: float, omega: float, h: float | None = None) -> None:
@@ -243,7 +232,6 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         return next(described, shown[0])
 
     def words(self, *texts: str) -> list[Row]:
-        """Return wrapped lines of text."""
         width = max(self.room.width - 2, 1)
         return [[(f" {line}", TEXT)] for text in texts for line in wrap(text, width)]
 
@@ -253,11 +241,9 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         return self.is_live or action != "move"
 
     def place_under(self, event: events.MouseEvent) -> Place | None:
-        """Return what can be chosen at the pointer."""
         raise NotImplementedError
 
     def choose(self, place: Place) -> None:
-        """Ask for what is at this place."""
         raise NotImplementedError
 
     def action_choose(self) -> None:
@@ -284,7 +270,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         self.pointer = None
         self.draw()
 
-    def on_click(self, event: events.Click) -> None:
+    async def on_click(self, event: events.Click) -> None:
         if self.is_live and (under := self.place_under(event)) is not None:
             self.cursor = None
             self.choose(under)

@@ -27,7 +27,7 @@ def test_the_table_has_a_row_for_each_step_and_the_orders():
     assert ["claimed", "1", "1", "2", "4"] in lines
 
 
-def test_every_point_is_on_the_chart_and_only_whole_lines_are_joined():
+def test_every_point_is_on_the_chart():
     scene = SCENES["drift"].with_cast(USUAL_CAST[3:])
     points = list(Study(scene, 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
     kind = ("theta", "evaluations")
@@ -35,9 +35,6 @@ def test_every_point_is_on_the_chart_and_only_whole_lines_are_joined():
     chart = "".join(lines.split("\n")[1:-1])
     assert chart.count("r") == 3  # the fourth is only rounding
     assert chart.count("~") == 1
-    for some, lengths in ((points[::2], [1, 1]), (points, [4])):
-        series = accuracy_series(some, *kind, USUAL_CAST, whole=4)
-        assert [len(one.x) for one in series if one.mark == "r"] == lengths
 
 
 def test_as_json_it_holds_points_orders_and_recommendation():

@@ -14,7 +14,6 @@ from tui.playback.shown import Shown
 from tui.views.phase.picture import method_points, phase_picture
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
-from tui.views.reach import amplitude, frame
 
 CHARTS = {"120x40": (68, 16), "80x24": (50, 14)}
 PORTRAITS = {"120x40": (118, 28), "80x24": (78, 15)}
@@ -137,19 +136,6 @@ def test_chaos_without_a_fence_passes_its_line(size):
     fastest, beyond = in_phase_space("chaos-loose", size)
     assert fastest.max() > 1
     assert beyond
-
-
-def test_the_frame_holds_what_stays_and_leaves_out_what_goes():
-    scene = SCENES["gentle"]
-    live = Live(scene, clock=lambda: 0.0)
-    places = range(4)
-    size = amplitude(scene.equations, scene.theta, scene.omega)
-    assert size == pytest.approx(0.1)
-    for seconds in range(30):
-        live.tick(float(seconds))
-        half = frame(scene, live.stepping, live.sample, places)
-        assert half == pytest.approx(1.3 * size)  # although Explicit Euler is far out
-    assert frame(SCENES["large-swing"], live.stepping, live.sample, places) == math.pi
 
 
 def test_an_altered_scene_has_the_shot_of_all_and_a_recorded_one_that_of_its_name():

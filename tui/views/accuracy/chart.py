@@ -63,12 +63,10 @@ def accuracy_series(
     *,
     marks: Sequence[tuple[str, Point]] = (),
     references: References | None = None,
-    whole: int = 0,
 ) -> list[Series]:
     """Return points as letters, x if useless, ~ if limited by rounding; orders as dots.
 
-    Of methods with fewer points than a `whole` line has, no line joins those that are there.  The
-    reference lines are Taylor's series and, upright, what the closed form takes.
+    The reference lines are Taylor's series and, upright, what the closed form takes.
     """
 
     def series(ink: int, mark: str, *some: Point) -> Series:
@@ -85,8 +83,7 @@ def accuracy_series(
         ink = ink_of(method, cast)
         if method.order not in slopes:
             slopes |= _slope(ours, kind, cost)
-        joined = [[point] for point in ours] if len(ours) < whole else [ours]
-        lines += [series(ink, method.letter, *some) for some in joined]
+        lines.append(series(ink, method.letter, *ours))
         flaws += flawed(ink, ours)
     if references:
         taylor = references.taylor

@@ -1,14 +1,14 @@
 """AccuracyPane: error over cost and over time; h is chosen with keyboard or mouse."""
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from textual import events
 from textual.binding import Binding, BindingType
 
 from engine.accuracy.front import front
 from engine.accuracy.growth import Growth, growths
-from engine.accuracy.study import ErrorKind, Point, measured, usual, with_all_methods
+from engine.accuracy.study import Point, measured, usual, with_all_methods
 from engine.methods import Cast, Method
 from engine.run.lockstep import Sample
 from tui.drawing.picture import Picture
@@ -25,8 +25,11 @@ from tui.views.view import Chooser, StepSizeChosen, StudyView
 from tui.words.accuracy import front_words, growth_lines, point_words
 
 MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
-HERE = "@"
-CURSOR = "O"
+
+
+Chart = Literal["energy", "theta", "time"]
+"""Error over cost, or the theta error over time."""
+NEXT: dict[str, Chart] = {"time": "theta", "theta": "energy", "energy": "time"}
 
 
 class AccuracyPane(Chooser[Point]):
@@ -50,8 +53,7 @@ class AccuracyPane(Chooser[Point]):
         self.points: dict[tuple[str, int], Point] = {}  # by method's key and steps
         self.growths: list[Growth] = []  # at the present h
         self.all = False  # the methods that are not in the cast, too
-        self.over_time = False  # the chart of errors in theta over time
-        self._kind: ErrorKind | None = None  # None: as the lab's chart
+        self._chosen: Chart | None = None
         self.placed: Placed = []  # on the chart
         self._chart = Picture()
         self._charted: object = None  # what the chart and the points are for
@@ -78,7 +80,7 @@ class AccuracyPane(Chooser[Point]):
             known = {*self.steps, *(steps for _, steps in self.points)}
             if wanted := [each for each in sorted({*here} - known) if 1 < each <= MAX_STEPS]:
                 self.compute(measured, scene, self.time, wanted, group="here")
-        if self.over_time and self._grown != (start, own):
+        if self.chart == "time" and self._grown != (start, own):
             self._grown = (start, own)
             self.growths = []
             self.compute(growths, scene, own, group="growth")
@@ -91,14 +93,13 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def cast(self) -> Cast:
-        """The methods on the chart: those of the run first."""
         scene = self.source.scene
         return with_all_methods(scene).cast if self.all and scene.general else scene.cast
 
     @property
-    def kind(self) -> ErrorKind:
-        """The error charted over cost: the lab chart's, until another is chosen."""
-        return self._kind or ("theta" if self.shown.quantity == "theta_error" else "energy")
+    def chart(self) -> Chart:
+        """The lab chart's error, until another is chosen."""
+        return self._chosen or ("theta" if self.shown.quantity == "theta_error" else "energy")
 
     def points_of(self, method: Method) -> list[Point]:
         """Return the method's points that every method has, by cost."""
@@ -112,26 +113,22 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def missing(self) -> int:
-        """How many points are not there yet."""
         return sum(len(self.steps) - len(self.points_of(method)) for method in self.cast)
 
     @property
     def settled(self) -> bool:
-        """Whether everything is there and drawn."""
         if not self.source.scene.general:
             return True
         return bool(self.steps) and not self.is_computing and self._charted == self._state
 
     @property
     def aim(self) -> Point | None:
-        """The point that is described: under the pointer, at the cursor, or at the present h."""
         return self.pointer or self.cursor or self.present(self.index)
 
     @property
     def _state(self) -> object:
-        """What the chart depends on."""
         computed = self._start, self.here, len(self.points), len(self.growths)
-        chosen = self.index, self.cursor, self.kind, self.over_time
+        chosen = self.index, self.cursor, self.chart
         return computed, chosen, self.shown, self.room
 
     def picture(self, source: Source, sample: Sample) -> Picture:
@@ -148,81 +145,54 @@ class AccuracyPane(Chooser[Point]):
             if self.room.height >= 18:
                 words = 6 if self.all else 4  # with the letters of all methods
             self._draw_chart(self.room.width, max(self.room.height - words, 1))
-        if self.over_time:
+        if self.chart == "time":
             self.write_titles("Theta error over time, at each method's h")
         else:
             left = f", computing, {self.missing} points left" if self.missing else ""
-            self.write_titles(
-                f"Accuracy (F4) over {self.time:g} s: {self.kind} error{left}",
-                f"{HERE} current h  x no digit right  ~ limited by rounding",
-            )
+            title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
+            self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
         return Picture([*self._chart.rows, *self.words(*self._sentences())][: self.room.height])
 
     def _draw_chart(self, width: int, height: int) -> None:
-        """Draw error over cost, and note where the points are; or error over time."""
         self.placed = []
-        if self.over_time:
+        if self.chart == "time":
             shown = [each for each in self.growths if each.method.key not in self.shown.hidden]
             self._chart = growth_chart(shown, self.cast, width, height)
             return
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
-        marks = [(HERE, point) for place in self.places if (point := self.present(place))]
+        marks = [("@", point) for place in self.places if (point := self.present(place))]
         if self.cursor is not None:
-            marks.append((CURSOR, self.cursor))
-        series = accuracy_series(
-            points, self.kind, "evaluations", self.cast, marks=marks, whole=len(self.steps)
-        )
-        self._chart = accuracy_chart(series, self.kind, "evaluations", width, height)
+            marks.append(("O", self.cursor))
+        series = accuracy_series(points, self.chart, "evaluations", self.cast, marks=marks)
+        self._chart = accuracy_chart(series, self.chart, "evaluations", width, height)
         points += [point for _, point in marks]
-        self.placed = placed(series, points, self.kind, width, height)
+        self.placed = placed(series, points, self.chart, width, height)
 
     def _sentences(self) -> list[str]:
-        """Return the words on a point and the cheapest methods, or on how errors grow."""
-        if self.over_time:
+        if self.chart == "time":
             return growth_lines(self.growths, done=len(self.growths) == len(self.here))
-        aim = self.aim
-        if aim is not None:
-            words = [point_words(aim, self.kind, self._note)]
-        elif self.index < len(self.here):
-            words = ["the current h is not on this chart: it is too large or too small"]
-        else:
-            label = self.cast[self.index].label
-            words = [f"{label} is not shown; the arrows choose one of its points"]
+        words = ["the current h is not on this chart; the arrows choose another"]
+        if self.aim is not None:
+            note = "" if self.pointer or self.cursor else "current h"
+            words = [point_words(self.aim, self.chart, note)]
         if not self.missing:
             points = [point for method in self.cast for point in self.points_of(method)]
-            cheapest = front(points, self.kind, "evaluations")
+            cheapest = front(points, self.chart, "evaluations")
             words.append(front_words(cheapest, "evaluations"))
         if self.all:
             words.append(", ".join(f"{each.letter} {each.label}" for each in self.cast))
         return words
 
-    @property
-    def _note(self) -> str:
-        if self.pointer is None and self.cursor is None:
-            return "current h"
-        if not self.is_live:
-            return ""
-        return "click: use this h" if self.pointer else "Enter: use this h"
-
     def action_chart(self) -> None:
-        """Show the next chart: error over time, theta error over cost, energy error over cost."""
-        if self.over_time:
-            self.over_time = False
-            self._kind = "theta"
-        elif self.kind == "theta":
-            self._kind = "energy"
-        else:
-            self.over_time = True
+        self._chosen = NEXT[self.chart]
         self.draw()
 
     def action_all(self) -> None:
-        """Chart all methods, or the cast alone."""
         self.all = not self.all
-        self.over_time = False
+        self._chosen = None
         self.draw()
 
     def action_move(self, right: int, up: int) -> None:
-        """Move along a method's points, costlier ones to the right, or to another method."""
         if up:
             self.action_method(-up)
             return

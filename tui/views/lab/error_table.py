@@ -91,7 +91,6 @@ def extra_columns(model: Model) -> list[Column]:
 
 
 def _chosen(columns: list[Column], room: int) -> list[Column]:
-    """Return the columns that fit: wide ones, or many narrow ones."""
     wide = [each._replace(head=each.wide_head, width=each.wide_width) for each in columns]
     if sum(column.width + 1 for column in wide) <= room:
         return wide
@@ -162,7 +161,6 @@ class ErrorTable(Pane):
         return Picture(rows)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Show what the head of the column under the pointer means."""
         from tui.words.cards import head_text  # not needed for the first paint
 
         ends = accumulate(map(len, self._head))
@@ -170,6 +168,5 @@ class ErrorTable(Pane):
         self.tooltip = head_text(head.strip()) if event.y == 0 else None
 
     async def on_click(self, event: events.Click) -> None:
-        """Show the method of this row alone, or all again."""
         if 0 < event.y <= len(self.places):
             await self.run_action(f"screen.show_alone({self.places[event.y - 1]})")

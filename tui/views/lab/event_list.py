@@ -40,7 +40,6 @@ class EventList(Pane):
         return text if len(text) <= width else f"{text[: width - 1]}…"
 
     async def on_click(self, event: events.Click) -> None:
-        """Go to an event, or list them all."""
         offset = event.get_content_offset(self)
         if offset is not None and offset.y < len(self._listed):
             line = self._listed[offset.y]

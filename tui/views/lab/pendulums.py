@@ -1,12 +1,7 @@
-"""Pendulum: one method's pendulum, or all on one pivot, in braille.
+"""Pendulum: one method's pendulum, or all on one pivot, in braille, whose dots are square."""
 
-Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The pivot
-is exactly in the middle, since explicit Euler goes over the top; where no method can, it is at the
-top and the rods are longer.
-"""
-
-from collections.abc import Iterator, Sequence
-from math import atan2, cos, isfinite, pi, remainder, sin, tau
+from collections.abc import Sequence
+from math import atan2, cos, isfinite, pi, sin
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -40,7 +35,7 @@ class Bob(NamedTuple):
 
 
 def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float = pi) -> Picture:
-    """Draw pendulums on one pivot in `columns` × `rows` cells; later ones in front.
+    """Draw pendulums on one pivot, later ones in front.
 
     The pivot is in the middle, or at the top if they stay within a `reach` [rad] of a quarter turn.
     """
@@ -77,25 +72,24 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
         if bob.letter:
             row = int(y + (radius + 3) * down) // 4
             letters.append((row, int(x + (radius + 2) * right) // 2, bob.letter, bob.ink))
-    for row, column, letter, ink in _fanned(letters, columns):
-        canvas.label(column, row, letter, ink)
+    _write(canvas, sorted(letters, key=itemgetter(0, 1)))
     canvas.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
     return canvas.picture()
 
 
-def _fanned(letters: Sequence[_Letter], columns: int) -> Iterator[_Letter]:
-    """Yield letters with a blank between those that would touch."""
+def _write(canvas: Canvas, letters: Sequence[_Letter]) -> None:
+    """Write letters with a blank between those that would touch."""
     groups: list[list[_Letter]] = []
-    for each in sorted(letters, key=itemgetter(0, 1)):
-        if groups and groups[-1][-1][0] == each[0] and each[1] - groups[-1][-1][1] < 2:
-            groups[-1].append(each)
-        else:
-            groups.append([each])
+    for each in letters:
+        before = groups[-1][-1] if groups else None
+        if not before or before[0] != each[0] or each[1] - before[1] >= 2:
+            groups.append([])
+        groups[-1].append(each)
     for group in groups:
         first = (group[0][1] + group[-1][1]) // 2 - len(group) + 1
-        first = max(min(first, columns - 2 * len(group) + 1), 0)
+        first = max(min(first, canvas.columns - 2 * len(group) + 1), 0)
         for place, (row, _, letter, ink) in enumerate(group):
-            yield row, first + 2 * place, letter, ink
+            canvas.label(first + 2 * place, row, letter, ink)
 
 
 class Pendulum(Pane):
@@ -103,8 +97,8 @@ class Pendulum(Pane):
 
     MOVES = True
 
-    def __init__(self, drag: list[tuple[float, float]], place: int | None = None) -> None:
-        """`place` in the cast; None: all.  `drag`: s and rad of the pointer, for all panes."""
+    def __init__(self, drag: list[float], place: int | None = None) -> None:
+        """`place` in the cast; None: all.  `drag`: angles [rad] of the pointer, for all panes."""
         super().__init__()
         self._drag = drag
         self._place = place
@@ -122,22 +116,24 @@ class Pendulum(Pane):
         across, down = event.screen_offset - self._down
         if not self._drag and max(abs(across), 2 * abs(down)) < 3:
             return
-        if self.is_live:
-            self._drag.append((event.time, self._theta(event)))
-            self.post_message(Held(self._drag[-1][1]))
-        else:
+        if not self.is_live:
             self._let_go()
             await self.run_action("screen.change")
+            return
+        x, y = event.get_content_offset_capture(self)
+        right = 2 * x + 1 - self.room.width  # from a pivot in the middle
+        down = 4 * y + 2 - 2 * self.room.height
+        self._drag.append(round(atan2(right, down), 3))
+        self.post_message(Held(self._drag[-1]))
 
     async def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Start where the bob is let go; a click shows this method alone, or all again."""
         if self._down is None:
             return
         drag = [*self._drag]
         self._let_go()
         if drag:
             self.post_message(Held(None))
-            self.throw(drag, event.time)
+            self.start_at(drag[-1], 0.0)
         elif self._place is not None:
             await self.run_action(f"screen.show_alone({self._place})")
 
@@ -146,46 +142,25 @@ class Pendulum(Pane):
         self._down = None
         self._drag.clear()
 
-    def _theta(self, event: events.MouseEvent) -> float:
-        """Return the angle of the pointer [rad] about a pivot in the middle."""
-        x, y = event.get_content_offset_capture(self)
-        right = 2 * x + 1 - self.room.width
-        down = 4 * y + 2 - 2 * self.room.height
-        return round(atan2(right, down), 3)
-
-    def throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
-        """Ask for a run from the last angle, at the speed of the pointer's last 0.1 s."""
-        recent = [each for each in drag if now - each[0] < 0.1]
-        omega = 0.0
-        if len(recent) > 1 and recent[-1][0] > recent[0][0]:
-            moved = remainder(recent[-1][1] - recent[0][1], tau)
-            seconds = (recent[-1][0] - recent[0][0]) * abs(self.source.playhead.speed)
-            omega = round(moved / seconds, 2)
-        self.start_at(drag[-1][1], omega)
-
     def picture(self, source: Source, sample: Sample) -> Picture:
-        place = self._place
-        is_overlay = place is None
         places = self.places
         title = "Pendulums"
-        if place is not None:
-            if place >= len(self.cast):
+        exact = "dotted: exact"
+        if self._place is not None:
+            if self._place >= len(self.cast):
                 return Picture()
-            places = [place]
-            title = self.cast[place].label
+            places = [self._place]
+            title = self.cast[self._place].label
+            exact = ""
         scale = self._scale(source, sample, places)
         if scale > 1:
             title += f", angles ×{scale}"
-        self.write_titles(title, self._below(source, "dotted: exact" if is_overlay else ""))
-        bobs = self._ghosts(source, sample.t, places)
-        bobs += [self._bob(source, sample, each) for each in places]
-        if self.shown.exact or is_overlay:
-            bobs += _exact(source, sample.t)
-        if scale > 1:
-            widest = MAGNIFIED
-        elif self._drag:
+        self.write_titles(title, self._below(source, exact))
+        bobs = self._bobs(source, sample, places)
+        widest = MAGNIFIED
+        if self._drag:
             widest = pi  # the pointer needs the room above the pivot, too
-        else:
+        elif scale == 1:
             widest = reach(source.scene, source.stepping, sample, self.places)
             if source.ghost is not None:
                 widest = max(widest, source.ghost.widest)
@@ -204,7 +179,6 @@ class Pendulum(Pane):
         return max(1, int(MAGNIFIED / half)) if largest <= half else 1
 
     def _below(self, source: Source, exact: str) -> str:
-        """Return the extra pendulums: a ghost, which comes first, and the exact motion."""
         room = self.room.width - 4
         if source.ghost is None:
             return exact
@@ -212,30 +186,31 @@ class Pendulum(Pane):
         both = ", ".join(filter(None, (exact, dim)))
         return both if len(both) <= room else dim
 
-    def _bob(self, source: Source, sample: Sample, place: int) -> Bob:
-        model = source.scene.equations
-        reading = sample.readings[place]
-        return Bob(
-            reading.theta,
-            inks(self.cast)[place],
-            trail=source.history.thetas(place, 15) if model.rigid else (),  # half a second
-            length=model.length(reading.extra),
-            letter=self.cast[place].letter if self._place is None else "",
-            diverged=reading.diverged_at is not None,
-        )
-
-    def _ghosts(self, source: Source, t: float, places: Sequence[int]) -> list[Bob]:
-        """Return the same methods of a ghost, fainter."""
-        if source.ghost is None:
-            return []
-        thetas = source.ghost.rods(t)
-        keys = [(inks(self.cast)[place], self.cast[place].key) for place in places]
-        return [Bob(thetas[key], faint(ink)) for ink, key in keys if key in thetas]
-
-
-def _exact(source: Source, t: float) -> list[Bob]:
-    """Return the exact motion at a time [s], where it is known."""
-    scene = source.scene
-    length = scene.equations.exact_length(scene.theta, scene.omega, t)
-    theta = source.exact.at(t).theta
-    return [Bob(theta, EXACT, ghost=True, length=length)] if isfinite(theta) else []
+    def _bobs(self, source: Source, sample: Sample, places: Sequence[int]) -> list[Bob]:
+        scene = source.scene
+        model = scene.equations
+        colours = inks(scene.cast)
+        bobs: list[Bob] = []
+        if source.ghost is not None:
+            thetas = source.ghost.rods(sample.t)
+            for place in places:
+                if (key := scene.cast[place].key) in thetas:
+                    bobs.append(Bob(thetas[key], faint(colours[place])))
+        for place in places:
+            reading = sample.readings[place]
+            bob = Bob(
+                reading.theta,
+                colours[place],
+                length=model.length(reading.extra),
+                diverged=reading.diverged_at is not None,
+            )
+            if model.rigid:
+                bob = bob._replace(trail=source.history.thetas(place, 15))  # half a second
+            if self._place is None:
+                bob = bob._replace(letter=scene.cast[place].letter)
+            bobs.append(bob)
+        theta = source.exact.at(sample.t).theta
+        if isfinite(theta) and (self.shown.exact or self._place is None):
+            length = model.exact_length(scene.theta, scene.omega, sample.t)
+            bobs.append(Bob(theta, EXACT, ghost=True, length=length))
+        return bobs

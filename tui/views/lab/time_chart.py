@@ -103,7 +103,6 @@ class TimeChart(Pane):
 
     @property
     def _look(self) -> Shown:
-        """What to show of the source here."""
         shown = self.shown.of(self.source.sample.run)
         return shown._replace(quantity=shown.quantity_ahead(self._ahead, self.source.scene))
 
@@ -138,7 +137,6 @@ class TimeChart(Pane):
         return time_chart(window, self.cast, look, *self.room, marks)
 
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
-        """Return what is under the pointer, or how to change the chart."""
         room = self.room.width - 6
         if self.pointer is not None and (reading := plot.at(self.pointer)) is not None:
             return _read_out(reading, [self.cast[place].letter for place in plot.places], room)

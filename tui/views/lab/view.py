@@ -76,7 +76,6 @@ def _grid(columns: int, rows: int, methods: int) -> tuple[int, int]:
 
 
 def _tiles(columns: int, rows: int, count: int, across: int) -> list[Region]:
-    """Return regions line by line; the last line's ones share its width."""
     down = -(-count // across)
     tiles: list[Region] = []
     for line in range(down):
@@ -107,11 +106,11 @@ class CellLayout(Layout):
 
 
 class Stage(Box):
-    """What is above the table.  Its size decides which panes there are and how large."""
+    """What is above the table."""
 
-    def __init__(self, view: "LabView", *panes: Widget) -> None:
+    def __init__(self, layout: CellLayout, *panes: Widget) -> None:
         super().__init__(*panes)
-        self._layout = CellLayout(view.regions)
+        self._layout = layout
 
     @property
     def layout(self) -> CellLayout:
@@ -124,7 +123,7 @@ class LabView(View):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self._arranged_for: object = None
-        drag: list[tuple[float, float]] = []
+        drag: list[float] = []
         self.pendulums = [Pendulum(drag, place) for place in range(MOST_METHODS)]
         self._others: dict[str, Pane] = {
             "overlay": Pendulum(drag),
@@ -135,7 +134,8 @@ class LabView(View):
         }
 
     def compose(self) -> ComposeResult:
-        yield Stage(self, *map(self.bound, [*self.pendulums, *self._others.values()]))
+        panes = map(self.bound, [*self.pendulums, *self._others.values()])
+        yield Stage(CellLayout(self._regions), *panes)
         yield self.bound(ErrorTable())
 
     def zoom(self, factor: float) -> None:
@@ -146,8 +146,7 @@ class LabView(View):
     def _places(self) -> list[int]:
         return self.shown.places(self.source.scene.cast)
 
-    def regions(self, size: Size) -> dict[Widget, Region]:
-        """Place the panes on a stage of this size; hidden methods leave their room to others."""
+    def _regions(self, size: Size) -> dict[Widget, Region]:
         tiles, others = places(size.width, size.height, len(self._places))
         self._others["phase"].can_focus = "phase" in others  # Tab leads to what one sees only
         shown = [self.pendulums[place] for place in self._places]

@@ -79,8 +79,9 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     if left != 1:
         return f" Ring, {radius}: the true motion leaves {left:.9f} of its area"
     behind = source.sample.step - step
-    state = f": {behind} steps behind" if behind else " (g: another)"
-    return f" Ring of neighbouring starts, {radius}{state}"
+    return f" Ring of neighbouring starts, {radius}" + (
+        f": {behind} steps behind" if behind else ""
+    )
 
 
 def area_text(ratio: float) -> tuple[str, str]:

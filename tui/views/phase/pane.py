@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.reactive import var
 
 from engine.methods.own import OwnMethodError
 from engine.models.model import State
 from engine.run.lockstep import Sample
+from engine.scenes import Scene
 from tui.cli.time_limit import limited
 from tui.drawing.picture import Picture
 from tui.playback.live import has_own
@@ -22,52 +22,42 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
 
 DOTS = 4  # that an arrow moves the crosshair
-RING = 0.1  # of the amplitude: large enough to be seen, and it stays a ring for a while
 
 
 class PhasePane(Chooser[State]):
-    """Click or enter chooses a start; a drag shows the orbit through the pointer."""
+    """Click or enter chooses a start; the orbit through the crosshair or the pointer is shown."""
 
     BINDING_GROUP_TITLE = "Phase space"
-    HELP = "A click starts there, a drag shows the orbit first; the wheel zooms, arrows move."
+    HELP = "A click starts there, the pointer shows the orbit; the wheel zooms, arrows move."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
-        Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
+        Binding("g", "screen.switch('ring')", "Ring", tooltip="ring of neighbours"),
     ]
     MOVES = True
     NEEDS_NUMPY = True
-
-    radius: var[float | None] = var(None)
-    """Of the ring of neighbours, over the amplitude or 1 rad; None: no ring but that of a shot."""
 
     def __init__(self) -> None:
         super().__init__()
         self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None
-        self.aiming = False  # the pointer is about to choose a start
+        self._ringless: Scene | None = None  # a user's method cannot carry a ring there
         self.zoomed: Viewport | None = None  # None: the whole portrait
 
     @property
     def settled(self) -> bool:
-        """Whether the ring shown is that of the sample."""
         if self.sample is None or not self.drawable or self.neighbours is None:
             return self.sample is not None
         return self.neighbours.step == self.sample.step
 
-    def watch_radius(self) -> None:
-        """Begin another ring at the run's start."""
-        self.neighbours = self.ring = None
-        self.draw()
-
     @property
-    def cells(self) -> tuple[int, int]:
-        """Columns and rows of the plot; a pane that is just being hidden still has one of each."""
+    def _cells(self) -> tuple[int, int]:
+        # a pane that is just being hidden still has one of each
         return max(self.room.width, 1), max(self.room.height - 1, 1)
 
     @property
     def viewport(self) -> Viewport:
         if self.zoomed is not None:
-            self.zoomed = self.zoomed.resized(*self.cells)
+            self.zoomed = self.zoomed.resized(*self._cells)
             return self.zoomed
         scene = self.source.scene
         half = math.pi
@@ -76,11 +66,10 @@ class PhasePane(Chooser[State]):
             half = self.shown.theta or frame(scene, stepping, self.sample, self.places)
         line = self.shown.line
         fence = abs(line.value) if line and line.quantity == "omega" else 0.0
-        return Viewport.portrait(*self.cells, scene, half, fence)
+        return Viewport.portrait(*self._cells, scene, half, fence)
 
     @property
     def aim(self) -> State | None:
-        """The state at the crosshair or, if there is none, under the pointer."""
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
@@ -92,36 +81,36 @@ class PhasePane(Chooser[State]):
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         self._carry_ring(source, sample)
         portrait = Portrait.of(self.viewport, source.scene.equations)
-        orbit = self.pointer if self.aiming else self.cursor
         points = method_points(source, sample, self.shown, self.ring)
-        plot = phase_picture(portrait, points, self.cursor, orbit, self.shown.line)
+        plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
-        """Let the ring keep up, by so many steps a frame as cost 5 ms."""
         scene = source.scene
-        share = self.radius or (RING if self.shown.ring else None)
-        if share is None or scene.why_no_ring:
+        if not self.shown.ring or scene.why_no_ring or scene is self._ringless:
             self.neighbours = self.ring = None
             return
         from engine.phase_space.area import Neighbours
 
-        radius = share * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
+        # large enough to be seen, and it stays a ring for a while
+        radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         if self.neighbours is None or self.neighbours.radius != radius:
             self.neighbours = Neighbours(radius)
-        steps = 1 if has_own(scene) else 100
+        steps = 1 if has_own(scene) else 100  # a frame; they cost 5 ms
         try:
             with limited("the ring"):
                 self.ring = self.neighbours.follow(
                     scene, sample.run, sample.step, source.changes, steps
                 )
         except OwnMethodError as error:
-            self.radius = self.neighbours = self.ring = None
+            self._ringless = scene
+            self.neighbours = self.ring = None
             self.notify(str(error), severity="warning", markup=False)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        cancels = self.aiming or self.zoomed is not None
-        return (action == "cancel" and cancels) or super().check_action(action, parameters)
+        if action == "cancel" and self.zoomed is not None:
+            return True
+        return super().check_action(action, parameters)
 
     def action_move(self, right: int, up: int) -> None:
         if self.drawable:
@@ -134,10 +123,8 @@ class PhasePane(Chooser[State]):
         self.draw()
 
     def action_cancel(self) -> None:
-        """Leave the crosshair, or show the whole portrait again."""
-        if self.cursor is None and not self.aiming:
+        if self.cursor is None:
             self.zoomed = None
-        self.aiming = False
         super().action_cancel()
 
     def action_zoom(self, factor: float) -> None:
@@ -150,43 +137,13 @@ class PhasePane(Chooser[State]):
         self.zoomed = viewport.zoomed(factor, x, y)
         self.draw()
 
-    def action_radius(self) -> None:
-        """Take the next larger ring, then the small ones, then none."""
-        from engine.phase_space.area import RADII
-
-        first = RADII.index(RING)
-        radii = (None, *RADII[first:], *RADII[:first])
-        self.radius = radii[(radii.index(self.radius) + 1) % len(radii)]
-
     def place_under(self, event: events.MouseEvent) -> State | None:
         cell = self._cell(event)
         return cell and self.viewport.at_cell(*cell)
 
-    async def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Show the orbit through the pointer until it is released."""
-        if self._cell(event) is None:
-            if event.y == 0:
-                await self.run_action("screen.view('phase')")
-            return
-        self.focus(scroll_visible=False)
-        if self.is_live:
-            self.capture_mouse()
-            self.aiming = True
-            self.cursor = None
-            self.pointer = self.place_under(event)
-            self.draw()
-
-    def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Choose the start under the pointer, if the drag has not been cancelled."""
-        self.release_mouse()
-        place = self.place_under(event)
-        if self.aiming and place is not None:
-            self.choose(place)
-        self.aiming = False
-        self.draw()
-
-    def on_click(self, event: events.Click) -> None:
-        event.prevent_default()  # the start was chosen on release
+    async def on_click(self, event: events.Click) -> None:
+        if event.y == 0:  # the title
+            await self.run_action("screen.view('phase')")
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         self._wheel(event, 0.8)
@@ -201,7 +158,6 @@ class PhasePane(Chooser[State]):
             self.draw()
 
     def _cell(self, event: events.MouseEvent) -> tuple[int, int] | None:
-        """Return the plot's cell under the pointer."""
         x, y = event.get_content_offset_capture(self)
-        columns, rows = self.cells
+        columns, rows = self._cells
         return (x, y) if x in range(columns) and y in range(rows) else None

@@ -167,7 +167,6 @@ class Section:
 
     @np.errstate(all="ignore")  # a method may be farther out than dots can be counted
     def add(self, points: Points) -> None:
-        """Draw those orbits, a column each, that leave a gap to those before."""
         x = np.floor(self._viewport.x(points[0]))
         y = np.floor(self._viewport.y(points[1]))
         inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)

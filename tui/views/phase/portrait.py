@@ -23,32 +23,29 @@ LABEL = 4  # columns of the numbers along the left edge
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Portrait:
-    """The part that does not move, for one viewport: computed once, drawn in each frame."""
+    """The part that does not move, for one viewport."""
 
     viewport: Viewport
     model: Model
     levels: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
-    curves: Dots
     separatrix: Dots
-    ground: Canvas  # with both
+    ground: Canvas  # with all curves
     words: Sequence[Word]
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
     def of(cls, viewport: Viewport, model: Model) -> "Portrait":
-        """Draw the portrait of a model."""
         theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
         levels = model.level(theta, omega, np.cos)
-        curves = _dots(_border(_bands(levels)))
         separatrix = _dots(_border((levels < 0) & model.has_separatrix, heavy=True))
         words = axes(viewport)
         if model.has_separatrix:
             words += _names(levels, omega)
         ground = Canvas(viewport.columns, viewport.rows)
-        ground.scatter(*curves, FRAME)
+        ground.scatter(*_dots(_border(_bands(levels))), FRAME)
         ground.scatter(*separatrix, TEXT)
-        return cls(viewport, model, levels, curves, separatrix, ground, words)
+        return cls(viewport, model, levels, separatrix, ground, words)
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """Return the exact orbit through a state, where orbits are curves of equal energy."""
@@ -122,7 +119,6 @@ def _dots(mask: Mask) -> Dots:
 
 
 def _names(levels: Any, omega: Any) -> list[Word]:
-    """Name the regimes in view at their middles, and the separatrix where there is room."""
     spins = levels < 0
     words: list[Word] = []
     regions = (

@@ -69,7 +69,6 @@ class SectionPane(PhasePane):
         return self._map(source) if self.shows_section else super().picture(source, sample)
 
     def _map(self, source: Source) -> Picture:
-        """Return the section, and a line about the orbit aimed at, or that of the start."""
         method = self.cast[self.index]
         h = abs(source.stepping.own[self.index])
         model = source.scene.equations
@@ -138,6 +137,5 @@ class PhaseView(StudyView):
         super().follow(sample, read)
 
     def _make_room(self) -> None:
-        """Leave all of the view to a map, and to a portrait where there is little room."""
         has_room = self.size.height >= MIN_ROWS
         self.query_one(Facts).display = has_room and not self.pane.shows_section

@@ -1,8 +1,6 @@
-"""Viewport: which part of phase space a rectangle of character cells shows.
+"""Viewport: which part of phase space a rectangle of character cells shows, in a canvas' dots.
 
-Dots as on the canvas: 2×4 a cell, x to the right, y downwards, dot (i, j) covers [i, i+1) ×
-[j, j+1).  The viewport's middle is the centre of its middle cell, so that theta = 0 and omega = 0
-can be clicked.
+Its middle is the centre of its middle cell, so that theta = 0 and omega = 0 can be clicked.
 """
 
 import math
@@ -31,8 +29,8 @@ class Viewport(NamedTuple):
     ) -> "Viewport":
         """Return -theta to theta [rad], with the orbit that comes to rest there, and +-omega.
 
-        At pi it holds all three regimes: it reaches beyond the fastest of the separatrix and of the
-        scene's orbit, by a power of 1.3, so that another start seldom changes it.
+        At pi it reaches beyond the separatrix and the scene's orbit, by a power of 1.3, so that
+        another start seldom changes it.
         """
         fastest = 2 * scene.w0 * math.sin(theta / 2)
         if theta == math.pi:
@@ -50,11 +48,9 @@ class Viewport(NamedTuple):
 
     @property
     def middle(self) -> tuple[int, int]:
-        """The corner of dots in the centre of the middle cell."""
         return 2 * (self.columns // 2) + 1, 4 * (self.rows // 2) + 2
 
     def x(self, theta: Any) -> Any:
-        """Return where an angle is [dots]."""
         import numpy as np  # not needed for the first paint
 
         x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
@@ -64,7 +60,6 @@ class Viewport(NamedTuple):
         return x
 
     def y(self, omega: Any) -> Any:
-        """Return where an angular velocity is [dots]."""
         return self.middle[1] - (omega - self.omega) / self.omega_per_dot
 
     def theta_at(self, x: Any) -> Any:
@@ -86,7 +81,6 @@ class Viewport(NamedTuple):
         return State(roundest(theta, self.theta_per_dot / 2), omega)
 
     def at_cell(self, column: int, row: int) -> State:
-        """Return the roundest state within half a dot of a cell's centre."""
         return self.at(2 * column + 1, 4 * row + 2)
 
     def _turned(self, theta: float) -> float:
@@ -96,21 +90,21 @@ class Viewport(NamedTuple):
 
     @property
     def theta_span(self) -> float:
-        """From the left edge to the right one [rad]."""
         return 2 * self.columns * self.theta_per_dot
 
     def zoomed(self, factor: float, x: float, y: float) -> "Viewport":
         """Return `factor` times as much of phase space; (x, y) [dots] keeps its state."""
         factor = min(max(factor, MIN_SPAN / self.theta_span), MAX_SPAN / self.theta_span)
+        left = (x - self.middle[0]) * (1 - factor)
+        above = (y - self.middle[1]) * (1 - factor)
         return self._replace(
-            theta=self.theta + (x - self.middle[0]) * self.theta_per_dot * (1 - factor),
-            omega=self.omega - (y - self.middle[1]) * self.omega_per_dot * (1 - factor),
+            theta=self.theta + left * self.theta_per_dot,
+            omega=self.omega - above * self.omega_per_dot,
             theta_per_dot=self.theta_per_dot * factor,
             omega_per_dot=self.omega_per_dot * factor,
         )
 
     def panned(self, right: float, down: float) -> "Viewport":
-        """Move what is shown by so many dots."""
         return self._replace(
             theta=self._turned(self.theta - right * self.theta_per_dot),
             omega=self.omega + down * self.omega_per_dot,
@@ -127,7 +121,6 @@ class Viewport(NamedTuple):
         return self.at(min(max(x + right, 0), width - 1), min(max(y - up, 0), height - 1))
 
     def resized(self, columns: int, rows: int) -> "Viewport":
-        """Return the same stretch of phase space on another rectangle."""
         return self._replace(
             columns=columns,
             rows=rows,

@@ -14,7 +14,7 @@ from engine.stability.study import amplitude
 from tui.drawing.palette import TEXT, Palette, palette
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
-from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side, title
+from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side
 from tui.views.view import Chooser, StudyView
 
 PASSES = (300, 10_000)
@@ -80,27 +80,25 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def _begin(self, cast: Cast) -> None:
         self.grid = _grid(cast)
         self.cells: Cells = self.grid.unknown()
-        self._pieces = 0  # of the map that have been computed
+        self._is_begun = False
         self._title = ""
         self.cursor = self.pointer = None
-        self._panels: list[list[Row]] = []
-        self._drawn: object = None  # what the panels are for
 
     @property
     def settled(self) -> bool:
-        """Whether the map is complete and drawn."""
         if not self.source.scene.general:
             return True
-        return self._pieces > 0 and not self.is_computing and self._drawn == self._state
+        return self._is_begun and not self.is_computing
 
     def add(self, result: Piece) -> None:
         self.cells[result.z, result.method] = result.cells
-        self._pieces += 1
+        self._is_begun = True
         # in tenths, as each new title repaints the pane
         state = f", computing {int(10 * result.done) * 10} %"
         if result.done == 1 and result.steps == PASSES[-1]:
             state = ""
         self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]{state}"
+        self.draw()
 
     def here(self, index: int) -> tuple[float, float] | None:
         """Return the (z, amplitude) of a method on screen, if it swings."""
@@ -110,19 +108,12 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return abs(self.source.stepping.own[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
-        """Return the described place of a method: at the cursor, the pointer, or nearest to here."""
         if self.cursor or self.pointer:
             return self.cursor or self.pointer
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
         z, theta = here
         return int(abs(self.grid.z - z).argmin()), int(abs(self.grid.theta - theta).argmin())
-
-    @property
-    def _state(self) -> object:
-        """What the panels depend on."""
-        run = self.source.scene, self.source.stepping.own
-        return run, self._pieces, self.shown, self.app.theme, self.room, self.cursor
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
@@ -135,15 +126,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         columns, rows = self._panel_size
         if columns <= 2 * MARGIN:
             return Picture()
-        if self._drawn != self._state:
-            self._drawn = self._state
-            self._panels = [self._panel(index, columns, rows) for index in self.places]
-        panels = []
-        for index, (_, *lines) in zip(self.places, self._panels, strict=True):
-            aim = self.aim(index)
-            text = note(self.cells[aim[0], index, aim[1]]) if aim else ""
-            head = title(index, self.cast[index], columns, self._colours, text)
-            panels.append([head, *lines])
+        panels = [self._panel(index, columns, rows) for index in self.places]
         words = ""
         if self.places and (aim := self.aim(self.index)):
             words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
@@ -152,12 +135,21 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return Picture([*side_by_side(panels, 2), *below, *self._legend])
 
     def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
-        """Return a method's panel, with a mark at the cursor or at the present h."""
         here = self.here(index)
         if self.cursor is not None:
             here = self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]
-        w0 = self.source.scene.w0
-        return panel(self.grid, self.cells, index, columns, rows, self._colours, here=here, w0=w0)
+        aim = self.aim(index)
+        return panel(
+            self.grid,
+            self.cells,
+            index,
+            columns,
+            rows,
+            self._colours,
+            here=here,
+            w0=self.source.scene.w0,
+            note=note(self.cells[aim[0], index, aim[1]]) if aim else "",
+        )
 
     @property
     def _colours(self) -> Palette | None:
@@ -190,7 +182,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.start_at(float(self.grid.theta[theta]), 0.0, h)
 
     def place_under(self, event: events.MouseEvent) -> tuple[int, int] | None:
-        """Return the place under the pointer; its method is the one described from now on."""
         columns, rows = self._panel_size
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)

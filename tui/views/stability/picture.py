@@ -71,6 +71,7 @@ def panel(
     *,
     here: tuple[float, float] | None = None,
     w0: float | None = None,
+    note: str = "",
 ) -> list[Row]:
     """Draw one method's panel: its title, `rows` of the map, and the axis.
 
@@ -80,10 +81,7 @@ def panel(
     width = columns - MARGIN
     values = scores(cells[:, index], grid.steps)
     if palette is None:
-        drawn = worst(values, width, rows).tolist()
-        lines: list[list[Cell]] = [
-            [(character(value, grid.steps), NOBODY) for value in line] for line in drawn
-        ]
+        lines = _in_characters(worst(values, width, rows), grid.steps)
     else:
         lines = _in_colours(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
     signs = list(theory(method, grid, rows))
@@ -92,18 +90,28 @@ def panel(
     for z, theta, sign in signs:
         if place := _place(grid, z, theta, width, rows):
             row, column = place
-            ink = lines[row][column][1]
-            if palette and isinstance(ink, Style):
-                ink += Style(color=palette.text, reverse=sign == HERE)
-            else:
-                sign = _WITHOUT_COLOUR[sign]
-            lines[row][column] = sign, ink
+            lines[row][column] = _signed(lines[row][column][1], sign, palette)
     degrees = _degrees(grid, width, rows)
     map_rows = [
         [(f"{degrees.get(row, ''):>3} ", NOBODY), *_joined(line)] for row, line in enumerate(lines)
     ]
     axis = " " * MARGIN + _axis(grid, width, w0)
-    return [title(index, method, columns, palette), *map_rows, [(axis, NOBODY)]]
+    name = f"{'':{MARGIN}}{mark(index, method)} "
+    title = f"{name}{method.label}: {note}".rstrip(": ")
+    if len(title) > columns:
+        title = name + note
+    bold = Style(bold=True) if palette else NOBODY
+    return [[(title[:columns].ljust(columns), bold)], *map_rows, [(axis, NOBODY)]]
+
+
+def _signed(ink: Ink, sign: str, palette: Palette | None) -> Cell:
+    if palette and isinstance(ink, Style):
+        return sign, ink + Style(color=palette.text, reverse=sign == HERE)
+    return _WITHOUT_COLOUR[sign], ink
+
+
+def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
+    return [[(character(value, steps), NOBODY) for value in line] for line in values.tolist()]
 
 
 def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
@@ -126,7 +134,6 @@ def _style(front: str, back: str) -> Style:
 
 
 def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
-    """Yield the cells of a row, those that look alike as one."""
     for (text, ink), cells in groupby(line):
         yield text * len(list(cells)), ink
 
@@ -141,7 +148,6 @@ def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
 
 
 def _axis(grid: Grid, width: int, w0: float | None) -> str:
-    """Return round numbers below their columns, the symbol behind the last."""
     symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
     line = ""
     for value, text in number_ticks(grid.z[0] / scale, grid.z[-1] / scale, max(width // 6, 2)):
@@ -149,15 +155,6 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
         if place is not None and len(line) <= place[1] <= width - len(text) - 2:
             line = line.ljust(place[1]) + text
     return f"{line} {symbol}".ljust(width)
-
-
-def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:
-    """Return the line above a panel."""
-    mine = f"{'':{MARGIN}}{mark(place, method)} "
-    text = f"{mine}{method.label}: {note}".rstrip(": ")
-    if len(text) > columns:
-        text = mine + note
-    return [(text[:columns].ljust(columns), Style(bold=True) if palette else NOBODY)]
 
 
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:

@@ -1,10 +1,10 @@
+"""F5: the stability map under mouse and keyboard."""
+
 import math
-from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 import numpy as np
 import pytest
-from textual.pilot import Pilot
 
 from engine.scenes import SCENES, Scene
 from engine.stability.outcomes import UNKNOWN
@@ -13,61 +13,52 @@ from tui.playback.live import Live
 from tui.screens.live import LiveScreen
 from tui.views.stability.pane import StabilityPane
 
-VERLET, RK4 = 2, 3  # in USUAL_CAST
+VERLET = 2  # in USUAL_CAST
 
 
-def is_complete(pane: StabilityPane) -> bool:
-    return pane.settled
+@pytest.fixture(autouse=True)
+def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tui.views.stability.pane.PASSES", (20, 60))
 
 
 @asynccontextmanager
-async def stability_view(
-    monkeypatch: pytest.MonkeyPatch,
-    scene: Scene = SCENES["drift"],
-    size: tuple[int, int] = (80, 24),
-) -> AsyncIterator[tuple[Pilot[object], StabilityPane, Live]]:
+async def stability_view(scene: Scene = SCENES["drift"], size: tuple[int, int] = (80, 24)):
     """The view with a map of 60 steps, once that is complete."""
-    monkeypatch.setattr("tui.views.stability.pane.PASSES", (20, 60))
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), "f5", StabilityPane, is_complete, size) as (pilot, pane):
-        yield pilot, pane, live
+    screen = LiveScreen(live)
+    async with view_of(screen, "f5", StabilityPane, lambda pane: pane.settled, size) as view:
+        yield *view, live
 
 
 @pytest.mark.other_process
-async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (_, pane, _live):
+async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen():
+    async with stability_view() as (_, pane, live):
         assert (pane.cells["fate"] != UNKNOWN).all()
         sixty = type(pane.grid)(pane.grid.theta[:5], pane.grid.z[30:35], 60)
         assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
         for text in ("Explicit Euler: grows", "Symplectic Euler: held", "RK4: held", "0.8 h"):
             assert text in pane.text
-
-
-async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (_, pane, live):
-        z, theta = pane.here(VERLET)
-        assert (z, theta) == (live.scene.z, 1.0)
+        assert pane.here(VERLET) == (live.scene.z, 1.0)
         assert pane.text.count("@") == 4
         assert "Velocity Verlet at h 0.0539 s, 58.1°: held" in pane.text
 
 
-async def test_enter_starts_with_the_cursors_amplitude_and_step(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, live):
+async def test_enter_starts_with_the_cursors_amplitude_and_step():
+    async with stability_view() as (pilot, pane, live):
         z, theta = pane.aim(VERLET)
         await pilot.press(*["right"] * 7, "up", "enter")
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
-        assert live.scene.theta == pane.grid.theta[theta + 1]
-        assert live.scene.omega == 0
+        assert (live.scene.theta, live.scene.omega) == (pane.grid.theta[theta + 1], 0)
         assert pane.cursor is None
         assert pane.aim(VERLET) == (z + 7, theta + 1)
         await pilot.press("u")
         assert live.scene == SCENES["drift"]
 
 
-async def test_a_click_starts_with_what_was_clicked_on(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, live):
-        # RK4's panel is below and to the right: its map begins behind panel, gap and labels, all inside a frame.
+async def test_a_click_starts_with_what_was_clicked_on():
+    async with stability_view() as (pilot, pane, live):
+        # RK4's map is below and to the right, behind a panel, a gap and labels, inside a frame
         lowest = max(y for y, line in enumerate(pane.text.splitlines()) if line.startswith(" 90 "))
         await pilot.click(StabilityPane, offset=(1 + 38 + 2 + 4 + 16, 1 + lowest))
         assert live.scene.z == pytest.approx(1.5, abs=0.1)
@@ -75,52 +66,42 @@ async def test_a_click_starts_with_what_was_clicked_on(monkeypatch: pytest.Monke
         assert "RK4 at h" in pane.text
 
 
-async def test_the_cursor_stays_on_the_map_and_esc_leaves_it(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, _):
+async def test_the_cursor_stays_on_the_map_and_esc_leaves_it():
+    async with stability_view() as (pilot, pane, _):
         before = pane.aim(VERLET)
         for _ in range(50):
             pane.action_move(-1, -1)
         assert pane.cursor == (0, 0)
         await pilot.press("escape")
-        assert pane.cursor is None
-        assert pane.aim(VERLET) == before
+        assert (pane.cursor, pane.aim(VERLET)) == (None, before)
 
 
-async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, _):
+async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_to_the_others():
+    async with stability_view() as (pilot, pane, _):
         for label in ("RK4 at", "Explicit Euler at", "Symplectic Euler at", "Velocity Verlet at"):
             await pilot.press("tab")
             assert label in pane.text
-
-
-async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, live):
-        assert "  4 h" not in pane.text
-        live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
-        await until(pilot, lambda: "  4 h" in pane.text)
-        assert "0.8 h" not in pane.text
-
-
-async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, _):
         await pilot.press("1")
         await pilot.pause(0.3)
         assert "Explicit" not in pane.text
-        for key in "234":
-            await pilot.press(key)
+        await pilot.press("2", "3", "4")
         await pilot.pause(0.3)
-        assert "1 e" not in pane.text
+        assert "4 r" not in pane.text
 
 
-async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch, SCENES["spin"]) as (_, pane, _live):
+async def test_the_axis_is_that_of_the_scenes_pendulum_and_one_that_spins_is_not_on_the_map():
+    async with stability_view() as (pilot, pane, live):
+        live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
+        await until(pilot, lambda: "  4 h" in pane.text)
+        assert "0.8 h" not in pane.text
+        live.start(SCENES["spin"])
+        await until(pilot, lambda: "@" not in pane.text)
         assert pane.here(VERLET) is None
-        assert "@" not in pane.text
 
 
 @pytest.mark.parametrize("size", [(60, 16), (79, 20)])
-async def test_it_fits_small_terminals(size: tuple[int, int], monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch, size=size) as (pilot, pane, _):
+async def test_it_fits_small_terminals(size):
+    async with stability_view(size=size) as (pilot, pane, _):
         await pilot.press("right", "up")
         lines = pane.text.splitlines()
         assert len(lines) <= pane.size.height
