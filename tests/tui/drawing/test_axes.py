@@ -4,15 +4,32 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from tui.drawing.axes import envelope, linear_axis, log_axis, log_time_axis, log_x_axis, time_axis
+from tui.drawing.axes import (
+    envelope,
+    held,
+    linear_axis,
+    log_axis,
+    log_time_axis,
+    log_x_axis,
+    per_column,
+    time_axis,
+    time_span,
+)
 
 ROWS = st.integers(3, 60)
+NUMBERS = st.floats(-1e6, 1e6)
 
 
-def rows_of_labels(axis, rows):
-    """The row, counted from above and in fractions, at which each label stands."""
-    return [rows * (axis.high - place) / (axis.high - axis.low) for place in axis.labels]
+def assert_even(axis, rows):
+    """Labels stand in the middle of equally spaced rows, and are narrow."""
+    places = rows * (axis.high - np.array(list(axis.labels))) / (axis.high - axis.low)
+    assert places % 1 == pytest.approx(0.5, abs=1e-6)
+    apart = -np.diff(places)
+    assert np.all(apart >= 1 - 1e-6)
+    assert np.allclose(apart, apart[:1], atol=1e-6)
+    assert 5 <= axis.label_width <= 11  # a sign, the six digits that differ, and e-15
 
 
 @given(st.floats(-17, 6), st.floats(0, 23), ROWS)
@@ -21,74 +38,50 @@ def test_a_logarithmic_axis_covers_its_range_and_labels_evenly_spaced_rows(low, 
     assert axis.low <= low
     assert low + size <= axis.high
     assert all(float(label) == pytest.approx(10.0**place) for place, label in axis.labels.items())
-    assert_even(rows_of_labels(axis, rows))
+    assert_even(axis, rows)
 
 
-@given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), ROWS)
+@given(NUMBERS, NUMBERS, ROWS)
 def test_a_linear_axis_covers_its_range_and_labels_evenly_spaced_rows(a, b, rows):
     low, high = min(a, b), max(a, b)
     axis = linear_axis(low, high, rows)
     assert axis.low <= low
     assert high <= axis.high
-    assert_even(rows_of_labels(axis, rows))
+    assert_even(axis, rows)
     step = np.diff(list(axis.labels))[:1].sum() or 1.0
-    for place, label in axis.labels.items():
-        assert float(label) == pytest.approx(
-            place, abs=1e-6 * step
-        )  # the label is the number, and not a rounded one
+    for place, label in axis.labels.items():  # the label is the number, and not a rounded one
+        assert float(label) == pytest.approx(place, abs=1e-6 * step)
 
 
-def assert_even(rows):
-    assert all(row % 1 == pytest.approx(0.5, abs=1e-6) for row in rows)
-    apart = -np.diff(rows)
-    assert np.all(apart >= 1 - 1e-6)
-    assert np.allclose(apart, apart[:1], atol=1e-6)
-
-
-@given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), st.integers(8, 60))
+@given(NUMBERS, NUMBERS, st.integers(8, 60))
 def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, b, rows):
     low, high = min(a, b), max(a, b)
     assume(high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15))
     axis = linear_axis(low, high, rows)
     assert 2 <= len(axis.labels) <= rows / 2 + 1
-    assert high - low >= 0.33 * (
-        axis.high - axis.low
-    )  # 8 rows: the next round step, and whole rows between labels
+    assert high - low >= 0.33 * (axis.high - axis.low)
 
 
-@given(st.floats(-1e6, 1e6), st.floats(0, 1), ROWS)
-def test_labels_stay_narrow_enough_for_the_smallest_chart(middle, spread, rows):
-    for axis in (
-        linear_axis(*sorted((middle, middle * (1 + spread))), rows),
-        log_axis(-17, 6, rows),
-    ):
-        assert 5 <= axis.label_width <= 11  # a sign, the six digits that differ, and e-15
+@pytest.mark.parametrize(
+    ("axis", "labels"),
+    [
+        (log_axis(-7.3, 0.6, 14), "1e-8 1e-6 1e-4 1e-2 1"),
+        (linear_axis(-0.06, 4.3, 14), "-1 0 1 2 3 4 5"),
+        (linear_axis(4.503, 4.509, 10), "4.502 4.504 4.506 4.508 4.510"),
+        (linear_axis(-3e-7, 2e-7, 10), "-4e-7 -2e-7 0 2e-7"),
+    ],
+)
+def test_the_most_common_axes_of_the_lab(axis, labels):
+    assert list(axis.labels.values()) == labels.split()
 
 
-def test_the_most_common_axes_of_the_lab():
-    assert log_axis(-7.3, 0.6, 14).labels == {
-        0: "1",
-        -2: "1e-2",
-        -4: "1e-4",
-        -6: "1e-6",
-        -8: "1e-8",
-    }
-    assert log_axis(-6.0, 0.8, 11).low == pytest.approx(-6.333, abs=1e-3)  # no empty decade
-    assert list(linear_axis(-0.06, 4.3, 14).labels.values()) == ["-1", "0", "1", "2", "3", "4", "5"]
-    assert list(linear_axis(4.503, 4.509, 10).labels.values()) == [
-        "4.502",
-        "4.504",
-        "4.506",
-        "4.508",
-        "4.510",
-    ]
-    assert list(linear_axis(-3e-7, 2e-7, 10).labels.values())[:2] == ["-4e-7", "-2e-7"]
+def test_there_is_no_empty_decade():
+    assert log_axis(-6.0, 0.8, 11).low == pytest.approx(-6.333, abs=1e-3)
 
 
 @given(st.floats(0, 1e9), st.floats(0.5, 1e6), st.integers(8, 200))
 def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns):
-    axis = time_axis(start, start + size, columns)
-    labels = list(axis.labels.values())
+    labels = list(time_axis(start, start + size, columns).labels.values())
     assert len(labels) <= columns / 10 + 2
     units = [label.partition(" ")[2] for label in labels]
     assert set(units[:-1]) <= {""}
@@ -96,9 +89,7 @@ def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns
 
 
 @given(st.floats(-300, 300), st.floats(0, 600), st.integers(9, 200))
-def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_labels(
-    low, size, columns
-):
+def test_a_horizontal_logarithmic_axis_covers_its_range_with_few_labels(low, size, columns):
     axis = log_x_axis(low, low + size, columns)
     assert axis.low <= low
     assert low + size <= axis.high
@@ -117,3 +108,70 @@ def test_an_envelope_holds_the_largest_value_for_one_piece_or_two():
     values = np.where(x == 2.5, 9.0, 1.0)[:, None]
     assert envelope(x, values, 1.0).ravel().tolist() == [1] * 4 + [9] * 4 + [1] * 4
     assert envelope(x, values, 0.0) is values
+
+
+@st.composite
+def series(draw):
+    """Times that ascend, some of them equal, on an edge or well beside it; values with gaps."""
+    count = draw(st.integers(0, 60))
+    x = np.cumsum(draw(arrays(np.float64, count, elements=st.floats(0, 2)))).round(6)
+    low = draw(arrays(np.float64, (count, 2), elements=NUMBERS | st.just(np.nan)))
+    return x, low, low + draw(arrays(np.float64, (count, 2), elements=st.floats(0, 10)))
+
+
+@given(series(), st.integers(1, 30))
+def test_a_column_has_the_lowest_low_and_the_highest_high_of_its_rows(data, columns):
+    x, low, high = data
+    lows, highs = per_column(x, low, high, 0, 40, columns)
+    edges = (
+        np.linspace(0, 40, columns + 1) - 1e-9 * 40 / columns
+    )  # a row there belongs to the right
+    edges[-1] = np.nextafter(40, 41)
+    for column in range(columns):
+        inside = (x >= edges[column]) & (x < edges[column + 1])
+        rows = np.vstack([low[inside], [[np.nan] * 2]]), np.vstack([high[inside], [[np.nan] * 2]])
+        assert np.array_equal(lows[column], np.fmin.reduce(rows[0]), equal_nan=True)
+        assert np.array_equal(highs[column], np.fmax.reduce(rows[1]), equal_nan=True)
+
+
+@given(series(), st.integers(1, 30), st.floats(0, 50))
+def test_a_held_column_is_the_largest_of_those_before_it_up_to_the_end_of_the_data(
+    data, columns, hold
+):
+    x, _, high = data
+    largest = held(x, high, 0, 40, columns, hold)
+    plain = per_column(x, high, high, 0, 40, columns)[1]
+    back = min(math.ceil(hold / (40 / columns)), columns)
+    for column in range(columns):
+        expected = np.fmax.reduce(plain[max(column - back, 0) : column + 1])
+        if column > 0 and not (len(x) and x[-1] > column * 40 / columns):
+            expected = np.full(2, np.nan)
+        assert np.array_equal(largest[column], expected, equal_nan=True)
+
+
+def test_values_from_before_the_chart_are_held_into_its_first_columns():
+    x = np.array([0.5, 1.5, 2.5])
+    values = np.array([[9.0], [1.0], [2.0]])
+    assert held(x, values, 1, 3, 2, 0.0).ravel().tolist() == [1, 2]
+    assert held(x, values, 1, 3, 2, 1.0).ravel().tolist() == [9, 2]
+
+
+@given(st.floats(0, 1e9), st.floats(1, 1e4), st.integers(5, 200))
+def test_a_window_ends_within_a_column_of_the_last_moment_and_columns_keep_their_place(
+    latest, seconds, columns
+):
+    start, end = time_span(np.array([0.0, latest]), seconds, columns)
+    assert end - start == pytest.approx(seconds, rel=1e-4)  # 1e9 s less 20 s has few digits left
+    assert latest <= end * (1 + 1e-9)
+    assert end <= max(latest + seconds / columns, seconds) * (1 + 1e-9)
+    column = end / (seconds / columns)
+    assert abs(column - round(column)) <= 1e-3
+
+
+@given(st.floats(0, 1e9))
+def test_the_whole_run_fills_at_least_nine_tenths_of_the_chart(latest):
+    start, end = time_span(np.array([0.0, latest]), None, 50)
+    assert start == 0
+    assert max(latest, 1) <= end * (1 + 1e-9)
+    assert end <= max(1.1 * latest, 1.1)
+    assert time_span(np.array([]), None, 50) == (0, 1)

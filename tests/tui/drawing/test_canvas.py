@@ -7,29 +7,21 @@ from tui.drawing.canvas import Canvas
 from tui.drawing.palette import NOBODY, TEXT
 from tui.drawing.picture import Picture
 
-DOT_OF_BIT = {
-    0: (0, 0),
-    1: (0, 1),
-    2: (0, 2),
-    3: (1, 0),
-    4: (1, 1),
-    5: (1, 2),
-    6: (0, 3),
-    7: (1, 3),
-}
+DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit
 COLUMNS, ROWS = 10, 6
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 NEAR = st.integers(-240, 400).map(lambda eighths: eighths / 8)  # moving them by 40 rounds nothing
+ENDS = st.tuples(NEAR, NEAR, NEAR, NEAR)
 
 
 def dots(picture):
     """The dots of a picture, read back from its characters as Unicode defines them."""
     return {
         (2 * column + right, 4 * row + down)
-        for row, spans in enumerate(picture.rows)
-        for column, character in enumerate("".join(text for text, _ in spans))
+        for row, line in enumerate(picture.text.split("\n"))
+        for column, character in enumerate(line)
         if character != " "
-        for bit, (right, down) in DOT_OF_BIT.items()
+        for bit, (right, down) in enumerate(DOTS)
         if (ord(character) - 0x2800) >> bit & 1
     }
 
@@ -38,14 +30,6 @@ def drawn(draw, columns=COLUMNS, rows=ROWS):
     canvas = Canvas(columns, rows)
     draw(canvas)
     return canvas.picture()
-
-
-def test_a_dot_is_where_it_was_put():
-    for x in range(4):
-        for y in range(8):
-            assert dots(
-                drawn(lambda canvas, x=x, y=y: canvas.points([(x + 0.5, y + 0.5)], 0), 2, 2)
-            ) == {(x, y)}
 
 
 @given(st.lists(st.tuples(ANY, ANY)))
@@ -71,56 +55,38 @@ def test_a_row_has_as_few_spans_as_possible():
 
 
 def test_a_line_has_one_dot_in_each_column_of_dots_or_row_where_it_is_steep():
-    canvas = Canvas(10, 3)
-    canvas.path(np.array([0, 19.9, 15]), np.array([0, 6, 11.9]), 0)
-    assert canvas.picture().text == "⠉⠑⠒⠢⠤⣀⡀\n      ⠈⠉⠑⡲\n       ⢀⠎"
-    canvas = Canvas(6, 1)
-    canvas.line(0, 0, 12, 0, 0, dotted=True)
-    assert canvas.picture().text == "⠁⠈ ⠁⠈"
+    path = np.array([[0, 19.9, 15], [0, 6, 11.9]])
+    assert drawn(lambda canvas: canvas.path(*path, 0), 10, 3).text == (
+        "⠉⠑⠒⠢⠤⣀⡀\n      ⠈⠉⠑⡲\n       ⢀⠎"
+    )
+    assert drawn(lambda canvas: canvas.line(0, 0, 12, 0, 0, dotted=True), 6, 1).text == "⠁⠈ ⠁⠈"
 
 
-@given(st.tuples(NEAR, NEAR, NEAR, NEAR))
+@given(ENDS)
 def test_the_dots_of_a_line_touch_each_other_and_the_line(ends):
     """On a canvas large enough for all of it."""
     x0, y0, x1, y1 = (end + 40 for end in ends)
-    found = sorted(dots(drawn(lambda canvas: canvas.line(x0, y0, x1, y1, 0), 60, 30)))
+    found = dots(drawn(lambda canvas: canvas.line(x0, y0, x1, y1, 0), 60, 30))
     for i, j in ((x0, y0), (x1, y1)):  # both ends are reached to a dot
         assert min(max(abs(int(i) - right), abs(int(j) - down)) for right, down in found) <= 1
+    length = (x1 - x0) ** 2 + (y1 - y0) ** 2 or 1.0
     for i, j in found:
-        # Half the diagonal of a dot: the line passes through each of them.
-        assert distance_to_segment(i + 0.5, j + 0.5, x0, y0, x1, y1) <= 0.7072
-    if len(found) > 1:
-        for i, j in found:
-            assert any(
-                (i + right, j + down) in found
-                for right in (-1, 0, 1)
-                for down in (-1, 0, 1)
-                if right or down
-            )
+        across, down = i + 0.5 - x0, j + 0.5 - y0
+        share = min(max((across * (x1 - x0) + down * (y1 - y0)) / length, 0), 1)
+        distance = np.hypot(across - share * (x1 - x0), down - share * (y1 - y0))
+        assert distance <= 0.7072  # half the diagonal of a dot: the line passes through it
+        near = {(i + right, j + down) for right in (-1, 0, 1) for down in (-1, 0, 1)}
+        assert len(found) == 1 or len(found & near) > 1
 
 
-def distance_to_segment(px, py, x0, y0, x1, y1):
-    length = (x1 - x0) ** 2 + (y1 - y0) ** 2
-    share = (
-        0.0
-        if length == 0
-        else min(max(((px - x0) * (x1 - x0) + (py - y0) * (y1 - y0)) / length, 0), 1)
-    )
-    return np.hypot(px - x0 - share * (x1 - x0), py - y0 - share * (y1 - y0))
-
-
-@given(st.tuples(NEAR, NEAR, NEAR, NEAR))
+@given(ENDS)
 def test_a_line_that_leaves_the_canvas_is_the_same_inside_it(ends):
     x0, y0, x1, y1 = ends
-    y0, y1 = (
-        y0 + 0.0314159,
-        y1 + 0.0314159,
-    )  # so that no line runs exactly between two dots, where rounding decides
+    y0, y1 = y0 + 0.0314159, y1 + 0.0314159  # between two dots rounding would decide
     small = dots(drawn(lambda canvas: canvas.line(x0, y0, x1, y1, 0)))
     large = dots(drawn(lambda canvas: canvas.line(x0 + 40, y0 + 40, x1 + 40, y1 + 40, 0), 60, 30))
-    assert small == {
-        (i - 40, j - 40) for i, j in large if 40 <= i < 40 + 2 * COLUMNS and 40 <= j < 40 + 4 * ROWS
-    }
+    moved = {(i - 40, j - 40) for i, j in large}
+    assert small == {(i, j) for i, j in moved if 0 <= i < 2 * COLUMNS and 0 <= j < 4 * ROWS}
 
 
 @given(st.lists(st.tuples(ANY, ANY), min_size=1, max_size=5).map(np.array))
@@ -131,22 +97,20 @@ def test_any_numbers_make_a_path_with_no_more_dots_than_the_canvas_is_long(point
 
 @pytest.mark.parametrize("far", [1e20, 1e300])
 def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
-    assert dots(drawn(lambda canvas: canvas.line(-far, 5, far, 5, 0))) == {
-        (x, 5) for x in range(2 * COLUMNS)
-    }
+    found = dots(drawn(lambda canvas: canvas.line(-far, 5, far, 5, 0)))
+    assert found == {(x, 5) for x in range(2 * COLUMNS)}
 
 
 def test_a_path_is_broken_where_a_point_is_not_a_number():
-    points = np.array([(0, 0), (5, 10), (np.nan, 3), (10, 10), (15, 0)])
-    assert drawn(lambda canvas: canvas.path(*points.T, 0), 8, 3).text == "⢣     ⢠⠃\n ⢣   ⢠⠃\n  ⠣  ⠇"
+    path = np.array([[0, 5, np.nan, 10, 15], [0, 10, 3, 10, 0]])
+    assert drawn(lambda canvas: canvas.path(*path, 0), 8, 3).text == "⢣     ⢠⠃\n ⢣   ⢠⠃\n  ⠣  ⠇"
 
 
-def test_a_disc_is_round_because_dots_are_square():
-    assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0), 6, 3).text == " ⢀⣤⣤⡀\n ⣿⣿⣿⣿\n ⠈⠛⠛⠁"
-    assert (
-        drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=True), 6, 3).text
-        == " ⢀⠤⠤⡀\n ⡇  ⢸\n ⠈⠒⠒⠁"
-    )
+@pytest.mark.parametrize(
+    ("hollow", "text"), [(False, " ⢀⣤⣤⡀\n ⣿⣿⣿⣿\n ⠈⠛⠛⠁"), (True, " ⢀⠤⠤⡀\n ⡇  ⢸\n ⠈⠒⠒⠁")]
+)
+def test_a_disc_is_round_because_dots_are_square(hollow, text):
+    assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=hollow), 6, 3).text == text
 
 
 @given(ANY, ANY)
@@ -183,8 +147,4 @@ def test_pictures_are_stacked_and_compared_row_by_row():
     picture = Picture.stacked(Canvas(4, 2).picture(), Picture.of_line("ab", 1))
     assert picture.text == "\n\nab"
     assert picture.changed_rows(Canvas(4, 2).picture()) == [2]
-    assert Canvas(4, 2).picture().changed_rows(picture) == [2]
-
-
-def test_a_picture_without_columns_has_empty_rows():
     assert Canvas(0, 2).picture().text == "\n"
