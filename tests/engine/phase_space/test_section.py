@@ -30,33 +30,24 @@ def kind(method, theta, z, steps=4000, omega=0.0):
 
 
 @pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-def test_the_section_is_direct_iteration_bit_for_bit(method):
-    model, h, starts = Pendulum(9.81), 0.3, spread(7, (-math.pi, math.pi), (-6.0, 6.0))
-    theta, omega = iterate(method, model, h, starts, 40)
-    phase, force = starts, model.force(np.sin)
-    for step in range(41):
-        assert np.array_equal(theta[step], phase[0])
-        assert np.array_equal(omega[step], phase[1])
-        phase = method.step(force, phase, h)
-
-
-@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-def test_an_orbit_is_direct_iteration_in_plain_floats_bit_for_bit(method):
-    model = Pendulum(9.81)
-    theta, omega = orbit(method, model, 0.1, (2.0, 0.5), 100)
-    phase = (2.0, 0.5)
-    for at in zip(theta.tolist(), omega.tolist(), strict=True):
-        assert at == phase
-        phase = method.step(model.force(), phase, 0.1)
+def test_a_section_and_an_orbit_are_direct_iteration_bit_for_bit(method):
+    model, starts = Pendulum(9.81), spread(7, (-math.pi, math.pi), (-6.0, 6.0))
+    for found, force, start, h in (
+        (iterate(method, model, 0.3, starts, 40), model.force(np.sin), starts, 0.3),
+        (orbit(method, model, 0.1, (2.0, 0.5), 40), model.force(), (2.0, 0.5), 0.1),
+    ):
+        phase = start
+        for theta, omega in zip(*found, strict=True):
+            assert np.array_equal((theta, omega), phase)
+            phase = method.step(force, phase, h)
 
 
 def test_however_a_section_is_cut_its_bits_are_the_same():
     starts = spread(60, (-math.pi, math.pi), (-2.6, 2.6))
-    whole = iterate(VERLET, UNIT, 1.0, starts, 50)
     parts = list(pieces(VERLET, UNIT, 1.0, starts, 50))
     assert [part[0].shape for part in parts] == [(51, 25), (51, 25), (51, 10)]
-    for which in (0, 1):
-        assert np.array_equal(np.concatenate([part[which] for part in parts], axis=1), whole[which])
+    whole = iterate(VERLET, UNIT, 1.0, starts, 50)
+    assert np.array_equal(np.concatenate([np.array(part) for part in parts], axis=2), whole)
 
 
 def test_starts_are_spread_evenly_however_many_one_takes():
@@ -68,7 +59,7 @@ def test_starts_are_spread_evenly_however_many_one_takes():
 
 
 @pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
-@pytest.mark.parametrize("z", [0.05, 0.3, 0.77, 1.0, 1.3, 1.7, 1.95])
+@pytest.mark.parametrize("z", [0.05, 0.77, 1.0, 1.95])
 def test_small_swings_turn_by_twice_the_arcsine_of_half_z(key, z):
     rotation = kind(method_of(key), 1e-4, z).rotation
     assert rotation == pytest.approx(2 * math.asin(z / 2) / math.tau, abs=1e-7)
@@ -76,11 +67,9 @@ def test_small_swings_turn_by_twice_the_arcsine_of_half_z(key, z):
 
 @pytest.mark.parametrize("z", [0.3, 1.0])
 def test_a_linear_oscillator_turns_so_at_every_amplitude(z):
-    model = LinearOscillator(1.0)
+    model, expected = LinearOscillator(1.0), 2 * math.asin(z / 2) / math.tau
     theta, omega = orbit(VERLET, model, z, (2.0, 1.0), 3000)
-    assert rotation_number(theta, omega, 1.0) == pytest.approx(
-        2 * math.asin(z / 2) / math.tau, abs=1e-10
-    )
+    assert rotation_number(theta, omega, 1.0) == pytest.approx(expected, abs=1e-10)
     assert not kind_of(VERLET, model, z, (theta, omega)).spins
 
 
@@ -100,12 +89,8 @@ def test_small_steps_turn_as_the_exact_pendulum_does():
         ("symplectic_euler", 0.5, 1.44, Fraction(1, 4)),
         ("velocity_verlet", 1.25, 1.09, Fraction(1, 6)),
         ("velocity_verlet", 1.47, 1.125, Fraction(1, 6)),
-        (
-            "velocity_verlet",
-            0.3,
-            2.05,
-            Fraction(1, 2),
-        ),  # beyond the linear limit: caught by a 2-cycle
+        # beyond the linear limit: caught by a 2-cycle
+        ("velocity_verlet", 0.3, 2.05, Fraction(1, 2)),
     ],
 )
 def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
@@ -126,23 +111,12 @@ def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island_over_the_top():
 
 
 @pytest.mark.parametrize(
-    ("key", "theta", "z"),
-    [
-        ("velocity_verlet", 2.3, 1.1),
-        ("symplectic_euler", 2.3, 1.1),
-        ("velocity_verlet", 0.3, 2.05 + 0.2),
-    ],
+    ("method", "theta", "z"), [(VERLET, 2.3, 1.1), (SYMPLECTIC, 2.3, 1.1), (VERLET, 0.3, 2.25)]
 )
-def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(key, theta, z):
-    found = kind(method_of(key), theta, z)
-    assert found.chaotic
+def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(method, theta, z):
+    found = kind(method, theta, z)
+    assert (found.chaotic, found.rotation) == (True, None)
     assert found.lyapunov > 0.05
-    assert found.rotation is None
-
-
-def test_strong_chaos_has_the_lyapunov_number_of_the_standard_map():
-    z = math.sqrt(20.0)  # K = z²; ln(K/2) for K >= 10: Chirikov, Phys. Rep. 52 (1979) 263
-    assert kind(SYMPLECTIC, 2.0, z, 20_000).lyapunov == pytest.approx(math.log(10), abs=0.05)
 
 
 @pytest.mark.parametrize(
@@ -154,13 +128,10 @@ def test_regular_orbits_are_not_called_chaotic(theta, z):
 
 @pytest.mark.parametrize("steps", [300, 4000])
 def test_a_regular_orbits_lyapunov_number_is_below_what_so_many_steps_can_tell(steps):
-    found = [
-        kind(VERLET, theta, z, steps).lyapunov
-        for theta, z in ((2.0, 0.05), (1.0, 0.5), (0.5, 1.41))
-    ]
-    assert (
-        0 < max(found) < least_lyapunov(steps) < kind(VERLET, 2.0, 1.4, steps).lyapunov
-    )  # which is chaotic
+    regular = [(2.0, 0.05), (1.0, 0.5), (0.5, 1.41)]
+    largest = max(kind(VERLET, theta, z, steps).lyapunov for theta, z in regular)
+    chaotic = kind(VERLET, 2.0, 1.4, steps).lyapunov
+    assert 0 < largest < least_lyapunov(steps) < chaotic
 
 
 def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
@@ -172,9 +143,12 @@ def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
     assert found.energy_error > 1e6
 
 
-def test_at_rest_nothing_turns():
+def test_at_rest_and_in_few_steps_nothing_turns():
     rest = kind(VERLET, 0.0, 0.5)
     assert (rest.moves, rest.rotation, rest.fraction, rest.chaotic) == (False, None, None, False)
+    for steps in (1, 2, 5):
+        found = kind(VERLET, 1.0, 0.3, steps)
+        assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
 
 
 def test_an_orbit_ends_where_numbers_stop_being_finite():
@@ -186,34 +160,17 @@ def test_an_orbit_ends_where_numbers_stop_being_finite():
     assert found.steps == len(theta) - 1
 
 
-@pytest.mark.parametrize("steps", [1, 2, 5])
-def test_orbits_of_few_steps_have_no_rotation_number(steps):
-    found = kind(VERLET, 1.0, 0.3, steps)
-    assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
-
-
-@pytest.mark.parametrize(
-    ("rotation", "fraction"),
-    [
-        (0.2499, (1, 4)),
-        (0.1672, (1, 6)),
-        (0.0159, (1, 63)),
-        (0.38, (3, 8)),
-        (1.0001, (1, 1)),
-        (0.0, (0, 1)),
-    ],
-)
-def test_the_nearest_fraction_is_a_small_one(rotation, fraction):
-    assert nearest_fraction(rotation) == Fraction(*fraction)
+def test_the_nearest_fraction_is_a_small_one():
+    rotations = 0.2499, 0.1672, 0.0159, 0.38, 1.0001, 0.0
+    found = [str(nearest_fraction(rotation)) for rotation in rotations]
+    assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0"]
 
 
 @pytest.mark.parametrize("method", [SYMPLECTIC, VERLET], ids=lambda method: method.key)
-@pytest.mark.parametrize("z", [0.1, 0.5, 1.5])
+@pytest.mark.parametrize("z", [0.1, 1.5])
 def test_small_swings_take_the_period_of_theory(method, z):
-    model, h = Pendulum(4.0), z / 2.0
-    assert numerical_period(method, model, h, (1e-4, 0.0)) == pytest.approx(
-        h * math.pi / math.asin(z / 2), rel=1e-6
-    )
+    found = numerical_period(method, Pendulum(4.0), z / 2, (1e-4, 0.0))
+    assert found == pytest.approx(z / 2 * math.pi / math.asin(z / 2), rel=1e-6)
 
 
 @pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.0), (0.0, 3.0)])
