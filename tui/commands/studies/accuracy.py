@@ -27,7 +27,6 @@ from engine.accuracy.study import (
     usual,
     with_all_methods,
 )
-from engine.methods import Method
 from engine.methods.own import OwnMethod
 from engine.run import compiled, loops
 from engine.scenes import Scene, check_h
@@ -162,8 +161,11 @@ def report(found: Findings, interrupted: bool) -> Report:
             ],
             "absent": found.references and found.references.absent,
             "orders": [
-                {"method": one.method.key, "claimed": _claimed(one.method)}
-                | {"measured": one.measured}
+                {
+                    "method": one.method.key,
+                    "claimed": None if isinstance(one.method, OwnMethod) else one.method.order,
+                    "measured": one.measured,
+                }
                 for one in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
@@ -187,32 +189,31 @@ def _records(found: Findings) -> Iterator[dict[str, Any]]:
         yield record | {"reason": TRUTH, "tolerance": None}
 
 
-def _rungs(found: Findings) -> list[dict[str, str]]:
-    """Return the rows of the table: the errors of all methods with one h, and the orders."""
-    rows: dict[int, dict[str, str]] = {}
+def _rungs(found: Findings) -> list[dict[str, Any]]:
+    """Return the rows of the table: the points of all methods with one h."""
+    rows: dict[int, dict[str, Any]] = {}
     for point in found.points:
-        place = {"h": f"{point.h:.4g}", "z": f"{point.z:.3g}", "steps": str(point.steps)}
+        row = rows.setdefault(point.steps, fields_of(point, "h", "z", "steps"))
+        row[point.method.key] = point
+    return list(rows.values())
+
+
+def _columns(found: Findings) -> list[Column]:
+    def error(point: Point) -> str:
         flaw = point.flaw(found.options.error)
         mark = f"{MARKS[flaw]} " if flaw else ""
-        row = rows.setdefault(point.steps, place)
-        row[point.method.key] = f"{mark}{point.error(found.options.error):.1e}{_seconds(point)}"
-    measured = {"h": "order", "steps": "measured"}
-    claims = {"steps": "claimed"}
-    for order in found.orders:
-        measured[order.method.key] = "-" if order.measured is None else f"{order.measured:.2f}"
-        claims[order.method.key] = str(_claimed(order.method) or "-")
-    return [*rows.values(), *([measured, claims] if found.orders else [])]
+        return f"{mark}{point.error(found.options.error):.1e}{_seconds(point)}"
+
+    columns = [Column("h [s]", "h", ".4g"), Column("z = h·w0", "z", ".3g")]
+    columns.append(Column("steps", "steps", "d"))
+    for method in found.scene.cast:
+        head = f"{method.label} ({method.force_evaluations}/step)"
+        columns.append(Column(head, methodcaller("get", method.key), error))
+    return columns
 
 
 def _seconds(point: Point) -> str:
     return "" if point.seconds is None else f" in {length(point.seconds)}"
-
-
-def _columns(found: Findings) -> list[Column]:
-    heads = {"h": "h [s]", "z": "z = h·w0", "steps": "steps"}
-    for method in found.scene.cast:
-        heads[method.key] = f"{method.label} ({method.force_evaluations}/step)"
-    return [Column(head, methodcaller("get", key, ""), right=True) for key, head in heads.items()]
 
 
 def _notes(found: Findings) -> Iterator[Any]:
@@ -220,7 +221,13 @@ def _notes(found: Findings) -> Iterator[Any]:
     cost = found.options.cost
     flaws = {flaw for point in found.points if (flaw := point.flaw(kind))}
     yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws)
-    yield "order measured on the theta error over at most one period; n/step: force evaluations"
+    yield "n/step: force evaluations"
+    measured = [
+        f"{order.method.label} {order.measured:.2f}"
+        for order in found.orders
+        if order.measured is not None
+    ]
+    yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
     if words := growth_words(found.growth):
         yield f"at h = {found.scene.h:g} s, {words}"
     if found.references:
@@ -241,11 +248,6 @@ def _notes(found: Findings) -> Iterator[Any]:
         yield from _advice_notes(found, advice)
     if len(found.advice) > 1:
         yield f"\n{_winners(found.advice)}"
-
-
-def _claimed(method: Method) -> int | None:
-    """Return the claimed order; nothing is claimed of a user's own method."""
-    return None if isinstance(method, OwnMethod) else method.order
 
 
 def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:

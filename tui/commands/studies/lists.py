@@ -69,25 +69,15 @@ def _column(name: str) -> str:
     return f"start_{name}" if name in ("theta", "omega") else name
 
 
-@dataclass(frozen=True, slots=True)
-class Tasks:
-    """The runs of a list, in order."""
-
-    scenes: SceneList
-    time: float  # s
-    is_compiled: bool
-
-    def __len__(self) -> int:
-        return len(self.scenes)
-
-    def __iter__(self) -> Iterator[Task]:
-        steps = 0  # loops are compiled for one model
-        if self.scenes.axes.keys() <= {"theta", "omega", "h"}:
-            corners = self.scenes.corners()
-            total = sum(steps_for(scene, self.time) for scene in corners)
-            steps = total * len(self) // len(corners)
-        for scene in self.scenes:
-            yield Task(scene, self.time, steps, self.is_compiled)
+def _tasks(scenes: SceneList, options: argparse.Namespace) -> Iterator[Task]:
+    """Yield the runs of a list, in order."""
+    steps = 0  # loops are compiled for one model
+    if scenes.axes.keys() <= {"theta", "omega", "h"}:
+        corners = scenes.corners()
+        total = sum(steps_for(scene, options.time) for scene in corners)
+        steps = total * len(scenes) // len(corners)
+    for scene in scenes:
+        yield Task(scene, options.time, steps, not options.no_compiled)
 
 
 def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
@@ -105,33 +95,12 @@ def partial_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.partial")
 
 
-class Rows:
-    """The rows of the runs that are done, in memory or in a file."""
-
-    def __init__(self, file: IO[bytes] | None = None, done: int = 0) -> None:
-        self.kept: list[Row] = []
-        self.done = done  # runs
-        self._file = file
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Add the rows of a run; in a file, they can be read at once."""
-        if self._file is None:
-            self.kept += rows
-        else:
-            self._file.write(_text_of(rows, with_head=not self.done))
-            self._file.flush()
-        self.done += 1
-
-
 @contextmanager
-def _rows_of(tasks: Tasks, options: argparse.Namespace) -> Iterator[Rows]:
-    """Yield the rows, for CSV those of FILE.partial, which gets its name once it has all of them.
-
-    Raises UserError if the file is taken, or is to be resumed and not of these tasks.
-    """
+def _opened(options: argparse.Namespace) -> Iterator[IO[bytes] | None]:
+    """Yield FILE.partial for rows of CSV.  Raises UserError if it is taken."""
     path: Path | None = options.output
     if path is None or path.suffix.lower() != ".csv" or is_stream(path):
-        yield Rows()
+        yield None
         return
     part = partial_of(path)
     is_there = part.exists()
@@ -144,16 +113,10 @@ def _rows_of(tasks: Tasks, options: argparse.Namespace) -> Iterator[Rows]:
         )
     with writing(part), part.open("r+b" if is_there and options.resume else "w+b") as file:
         hold(file)
-        rows = Rows(file, _resumed(file, tasks))
-        yield rows
-        if rows.done == len(tasks):
-            os.fsync(file.fileno())
-            give_name(part, path, options.force)
-        elif not rows.done:
-            part.unlink()
+        yield file
 
 
-def _resumed(file: IO[bytes], tasks: Tasks) -> int:
+def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
     """Return how many whole runs a file has, and cut it after them.
 
     Raises UserError if its rows are not of these tasks, or if the last run gives other numbers now.
@@ -174,7 +137,7 @@ def _resumed(file: IO[bytes], tasks: Tasks) -> int:
         end = file.tell()
         done += 1
         last = task, b"".join(lines)
-    if done == len(tasks) and file.readline():
+    if done == runs and file.readline():
         raise UserError(f"{name} was begun with other arguments; it has more runs.")
     if last is not None and _text_of(last[0].rows(), with_head=True) != head + last[1]:
         raise UserError(
@@ -187,30 +150,43 @@ def _resumed(file: IO[bytes], tasks: Tasks) -> int:
 
 
 def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) -> Exit:
-    tasks = Tasks(scenes, options.time, not options.no_compiled)
+    """Run every combination, and print the rows, or keep them in the file as they come."""
+    runs = len(scenes)
+    kept: list[Row] = []
     checks: list[Check] = []
     ended: UserError | None = None
-    with _rows_of(tasks, options) as rows:
-        rest = islice(tasks, rows.done, None)
+    with _opened(options) as file:
+        done = _resumed(file, _tasks(scenes, options), runs) if file else 0
+        rest = islice(_tasks(scenes, options), done, None)
         try:
-            with workers_of(options) as workers, progress(f"{len(tasks):,} runs") as show:
-                for task, found in workers.map(_computed, rest):
-                    rows.add(found)
-                    show(rows.done, len(tasks))
+            with workers_of(options) as workers, progress(f"{runs:,} runs") as show:
+                for task, rows in workers.map(_computed, rest):
+                    if file:
+                        file.write(_text_of(rows, with_head=not done))
+                        file.flush()
+                    else:
+                        kept += rows
+                    done += 1
+                    show(done, runs)
                     if gate:
-                        checks.append(_check(scenes, task, found, gate))
+                        checks.append(_check(scenes, task, rows, gate))
         except (KeyboardInterrupt, UserError, OwnMethodError) as error:
             ended = explained(error)
-    if rows.kept:
-        publish(_report(scenes, options.time, rows.kept, is_whole=ended is None), options)
+        if file and done == runs:
+            os.fsync(file.fileno())
+            give_name(partial_of(options.output), options.output, options.force)
+        elif file and not done:
+            partial_of(options.output).unlink()
+    if kept:
+        publish(_report(scenes, options.time, kept, is_whole=ended is None), options)
     if ended is None:
-        return conclude(options, f"pendu-tui run, {len(tasks)} runs", checks)
-    if not rows.done:
+        return conclude(options, f"pendu-tui run, {runs} runs", checks)
+    if not done:
         raise ended
-    kept = f"{rows.done} of {len(tasks)} runs are done"
-    if not rows.kept:
-        kept += f" and kept in {printable(str(partial_of(options.output)))}; --resume goes on"
-    warn(f"{str(ended).rstrip('.')}: {kept}.")
+    where = ""
+    if not kept:
+        where = f" and kept in {printable(str(partial_of(options.output)))}; --resume goes on"
+    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done{where}.")
     return ended.code
 
 
