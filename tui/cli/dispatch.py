@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError, explained
+from tui.cli.files import repeat_swallowed_interrupts
 from tui.cli.install import hidden_package
 
 if TYPE_CHECKING:
@@ -73,6 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
+    if arguments is None:
+        repeat_swallowed_interrupts()
     if why := hidden_package():
         print(f"pendu-tui: {why}", file=sys.stderr)
         return Exit.USAGE

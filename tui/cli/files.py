@@ -5,6 +5,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
@@ -48,6 +49,20 @@ def check_free(path: Path, force: bool) -> None:
 def interruptible() -> AbstractContextManager[None]:
     """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
     return _signals_to(signal.default_int_handler)
+
+
+def repeat_swallowed_interrupts() -> None:
+    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it."""
+    report = sys.unraisablehook
+
+    def hook(swallowed: "sys.UnraisableHookArgs") -> None:
+        if not issubclass(swallowed.exc_type, KeyboardInterrupt):
+            report(swallowed)
+            return
+        again = main_thread().ident, signal.SIGINT
+        Timer(0.05, signal.pthread_kill, again).start()  # s; by then the callback has returned
+
+    sys.unraisablehook = hook
 
 
 @contextmanager

@@ -1,7 +1,9 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
+import ctypes
 import os
 import signal
+import sys
 import time
 from functools import partial
 from pathlib import Path
@@ -10,7 +12,7 @@ from signal import SIGHUP, SIGINT, SIGTERM
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.cli.files import whole_file
+from tui.cli.files import repeat_swallowed_interrupts, whole_file
 
 WRITERS = {
     "export": ("export", "drift", "-o"),
@@ -58,6 +60,18 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
     assert file.read_text() == "older"
     assert list(tmp_path.iterdir()) == [file]
     assert signal.getsignal(SIGTERM) is before
+
+
+def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    repeat_swallowed_interrupts()
+
+    def wait():
+        ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(SIGINT))()  # swallows it
+        time.sleep(5)
+
+    with pytest.raises(KeyboardInterrupt):
+        wait()
 
 
 def test_force_does_not_replace_a_folder(tmp_path):
