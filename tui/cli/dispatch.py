@@ -89,7 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, Exception) as error:
         refusal = explained(error)
         from recordings.errors import printable
-        from tui.cli.output import warn
+        from tui.cli.report import warn
 
         warn(printable(str(refusal), limit=1000))
         try:

@@ -4,8 +4,7 @@ import argparse
 
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import count, positive
-from tui.cli.output import warn
-from tui.cli.report import add_report_options, publish
+from tui.cli.report import add_report_options, publish, warn
 from tui.cli.scene import add_scene_options, general_scene_of
 from tui.cli.workers import add_worker_options
 from tui.commands.studies import figures

@@ -7,8 +7,7 @@ from typing import Any
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, resolve
-from tui.cli.output import warn
-from tui.cli.report import Column, Report, Table, add_report_options, form_of
+from tui.cli.report import Column, Report, Table, add_report_options, form_of, warn
 
 EXAMPLES = """\
 examples:

@@ -14,8 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file, whole_file
 from tui.cli.install import install_advice
 from tui.cli.options import add_file, add_recording, resolve
-from tui.cli.output import progress, warn
-from tui.cli.report import write_csv
+from tui.cli.report import progress, warn, write_csv
 
 if TYPE_CHECKING:
     from recordings.recording import Recording

@@ -7,10 +7,9 @@ Units in its heads, such as Time (ps), are those of the answer.
 import argparse
 
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
+from tui.cli.checks import Check, add_check_options, conclude, parse
 from tui.cli.columns import LATEST
 from tui.cli.errors import Exit, UserError
-from tui.cli.fail_if import parse
-from tui.cli.junit import Check, add_check_options, conclude
 from tui.cli.options import add_file, count, positive
 from tui.cli.report import Report, add_report_options, form_of
 

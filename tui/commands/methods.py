@@ -13,8 +13,7 @@ from engine.scenes import DEFAULT_SCENE, MOST_METHODS
 from tui.cli.cast import KEYS, add_cast_options, cast_of
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
-from tui.cli.output import fields_of
-from tui.cli.report import Column, Report, add_report_options, finite, publish
+from tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
 
 EXAMPLES = """\
 examples:

@@ -12,8 +12,7 @@ from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import check_free
 from tui.cli.options import add_file, add_recording, count, resolve
-from tui.cli.output import fields_of, progress
-from tui.cli.report import Column, Report, Table, add_report_options, form_of
+from tui.cli.report import Column, Report, Table, add_report_options, fields_of, form_of, progress
 from tui.words.numbers import counted, seconds
 
 if TYPE_CHECKING:

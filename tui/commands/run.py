@@ -6,10 +6,9 @@ from pathlib import Path
 from engine.methods import METHODS
 from engine.run.judgement import DEFINITIONS
 from engine.scenes import Scene
+from tui.cli.checks import FIELDS, add_check_options, parse
 from tui.cli.errors import UserError
-from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free
-from tui.cli.junit import add_check_options
 from tui.cli.options import add_file, count, duration
 from tui.cli.report import add_report_options
 from tui.cli.scene import add_scene_options, scenes_of

@@ -7,7 +7,7 @@ from pathlib import Path
 from tui.cli.errors import Exit, UserError
 from tui.cli.install import install_advice
 from tui.cli.options import add_file, count
-from tui.cli.output import warn
+from tui.cli.report import warn
 from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_picture_options, terminal_options_of
 

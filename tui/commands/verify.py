@@ -10,8 +10,7 @@ from recordings.errors import RecordingError, printable
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count, resolve
-from tui.cli.output import progress, warn
-from tui.cli.report import Report, add_report_options, form_of
+from tui.cli.report import Report, add_report_options, form_of, progress, warn
 from tui.words.numbers import counted
 
 EXAMPLES = """\

@@ -14,7 +14,7 @@ from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from tui.cli.errors import Exit, UserError, explained
-from tui.cli.output import progress, warn
+from tui.cli.report import progress, warn
 
 # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
 if TYPE_CHECKING:

@@ -1,5 +1,6 @@
 import csv
 import io
+import itertools
 import json
 import math
 
@@ -7,7 +8,7 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 
-from tui.cli.report import Column, Report, Table
+from tui.cli.report import Column, Report, Table, progress, warn
 
 ROWS = [
     {"method": "rk4", "error": 0.1 + 0.2, "why": "it loses a little energy at every step"},
@@ -84,3 +85,39 @@ def test_csv_has_a_line_for_each_row_and_numbers_that_read_back_the_same(capsys)
 def test_csv_of_other_records_than_the_rows(capsys):
     assert printed(report(records=iter([{"a": 1}, {"a": 2}])), "csv", capsys) == "a\n1\n2\n"
     assert printed(report(records=()), "csv", capsys) == ""
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
+    clock = itertools.count(0, seconds_per_call)
+    monkeypatch.setattr("sys.stderr", stream)
+    monkeypatch.setattr("tui.cli.report.monotonic", lambda: next(clock))
+    with progress("working") as show:
+        for done in range(5):
+            show(done, 5)
+    return stream.getvalue()
+
+
+def test_a_terminal_shows_a_bar_and_the_time_left_for_work_of_more_than_a_second(monkeypatch):
+    bar = shown(Terminal(), 0.5, monkeypatch)
+    assert "working" in bar
+    assert "left" in bar
+    assert shown(Terminal(), 0.1, monkeypatch) == ""
+    assert shown(io.StringIO(), 0.5, monkeypatch) == ""
+
+
+def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
+    sentence = (
+        "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter of that."
+    )
+    monkeypatch.setenv("COLUMNS", "30")
+    warn(sentence)
+    assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"
+    monkeypatch.setattr("sys.stderr", terminal := Terminal())
+    warn(sentence)
+    lines = terminal.getvalue().splitlines()
+    assert (max(map(len, lines)) <= 30, " ".join(lines)) == (True, f"pendu-tui: {sentence}")

@@ -23,7 +23,7 @@ from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.cli.fail_if import FIELDS
+from tui.cli.checks import FIELDS
 from tui.commands.studies.lists import partial_of
 from tui.words.numbers import about
 

@@ -31,8 +31,16 @@ from engine.methods.own import OwnMethod
 from engine.run import compiled, loops
 from engine.scenes import Scene, check_h
 from tui.cli.errors import UserError
-from tui.cli.output import console, fields_of, progress, scene_line
-from tui.cli.report import Column, Report, Table, method_column
+from tui.cli.report import (
+    Column,
+    Report,
+    Table,
+    console,
+    fields_of,
+    method_column,
+    progress,
+    scene_line,
+)
 from tui.cli.workers import workers_of
 from tui.commands.studies.figures import lines_of
 from tui.drawing.palette import PALETTES

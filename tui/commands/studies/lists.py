@@ -23,11 +23,9 @@ from recordings.files import is_stream
 from recordings.files import publish as give_name
 from recordings.headless import simulate, steps_for
 from recordings.library import hold, in_use
+from tui.cli.checks import Check, Gate, conclude
 from tui.cli.errors import Exit, UserError, explained
-from tui.cli.fail_if import Gate
-from tui.cli.junit import Check, conclude
-from tui.cli.output import progress, warn
-from tui.cli.report import Column, Report, publish
+from tui.cli.report import Column, Report, progress, publish, warn
 from tui.cli.scene import SceneList
 from tui.cli.time_limit import limited_steps
 from tui.cli.workers import workers_of

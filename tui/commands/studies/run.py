@@ -18,12 +18,19 @@ from recordings.errors import printable
 from recordings.fields import NUMBERS, OPTIONAL
 from recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from recordings.recorder import Recorder
+from tui.cli.checks import Check, Gate, conclude
 from tui.cli.errors import Exit
-from tui.cli.fail_if import Gate
 from tui.cli.files import stop_requests
-from tui.cli.junit import Check, conclude
-from tui.cli.output import fields_of, progress, scene_line, warn
-from tui.cli.report import Column, Report, method_column, publish
+from tui.cli.report import (
+    Column,
+    Report,
+    fields_of,
+    method_column,
+    progress,
+    publish,
+    scene_line,
+    warn,
+)
 from tui.commands.studies import figures
 from tui.words.insight import irregular, milestone_insight, sentence
 from tui.words.numbers import z_text

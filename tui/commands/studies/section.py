@@ -23,8 +23,7 @@ from engine.phase_space.section import (
 )
 from engine.scenes import Scene
 from tui.cli.errors import UserError
-from tui.cli.output import console, progress, scene_line
-from tui.cli.report import Column, Report, Table, publish
+from tui.cli.report import Column, Report, Table, console, progress, publish, scene_line
 from tui.cli.workers import workers_of
 from tui.commands.studies import figures
 from tui.drawing.palette import PALETTES, ink_of

@@ -17,8 +17,7 @@ from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
 from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
 from tui.cli.errors import UserError, explained
 from tui.cli.files import whole_file
-from tui.cli.output import console, progress
-from tui.cli.report import Column, Report, Table, finite, method_column
+from tui.cli.report import Column, Report, Table, console, finite, method_column, progress
 from tui.cli.workers import workers_of
 from tui.commands.studies.figures import lines_of
 from tui.drawing.palette import PALETTES

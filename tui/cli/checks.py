@@ -1,30 +1,37 @@
-"""The gate of --fail-if: `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`.
+"""Checks: the expression of --fail-if, its exit code, and JUnit XML, which CI shows as tests.
 
-A gate is comparisons joined by `and`, `or` and parentheses.  Python's parser reads it; nothing is
-evaluated but the nodes named here.  It fails safe: a comparison holds, whatever its sign, where its
-method has diverged or its value is not known (None, missing, not finite).  Hence there is no `not`.
-Only `diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is
-compared by == or != with a verdict; too_early (or 'too early') is one, so `!= bounded` is careful.
+`velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows` is comparisons joined by `and`,
+`or` and parentheses.  Python's parser reads it; nothing is evaluated but the nodes named here.  It
+fails safe: a comparison holds, whatever its sign, where its method has diverged or its value is not
+known (None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it
+is, None meaning that the method never diverged.  `verdict` is compared by == or != with a verdict;
+too_early (or 'too early') is one, so `!= bounded` is careful.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
 
+import argparse
 import ast
 import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
 from engine.methods import USUAL_CAST, Cast
 from engine.run.judgement import VERDICTS, Progress
+from recordings.errors import printable
 from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from tui.cli.cast import find
-from tui.cli.errors import UserError
-from tui.cli.options import did_you_mean
+from tui.cli.errors import Exit, UserError
+from tui.cli.files import text_file
+from tui.cli.options import Suggestions, add_file, did_you_mean
+from tui.cli.report import MAX_CELL, warn
 
 FIELDS = (
     *NUMBERS,
@@ -176,3 +183,46 @@ def _found(
 def _quoted(text: str) -> str:
     """`text` in quotes, short and without control characters."""
     return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+class Check(NamedTuple):
+    """A check that passed, or failed with a sentence."""
+
+    name: str
+    said: str  # what was found
+    failure: str | None
+
+
+def add_check_options(parser: argparse.ArgumentParser, names: Iterable[str], meaning: str) -> None:
+    """Add --fail-if, whose comparisons have these names, and --junit, for `conclude`."""
+    parser.add_argument("--fail-if", metavar="EXPR", choices=Suggestions(names), help=meaning)
+    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML")
+
+
+def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -> Exit:
+    """Report checks that failed, write the XML where it is asked for, and return the exit code."""
+    failed = [check for check in checks if check.failure is not None]
+    if failed:
+        where = ""
+        if len(checks) > 1:
+            where = f" in {len(failed)} of {len(checks)} runs, first at {failed[0].name}"
+        warn(f"the check failed{where}: {options.fail_if} ({failed[0].failure})")
+    if options.junit:
+        write_junit(options.junit, suite, checks)
+    return Exit.CHECK_FAILED if failed else Exit.FINE
+
+
+def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:
+    """Write a file with one test a check; an earlier report is replaced."""
+    name = printable(suite, MAX_CELL)
+    failures = sum(check.failure is not None for check in checks)
+    counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "skipped": "0"}
+    root = Element("testsuite", {"name": name, **counts})
+    for check in checks:
+        case = SubElement(root, "testcase", classname=name, name=printable(check.name, MAX_CELL))
+        if check.failure is not None:
+            SubElement(case, "failure", message=printable(check.failure, MAX_CELL))
+        SubElement(case, "system-out").text = printable(check.said, MAX_CELL)
+    indent(root)
+    with text_file(path, force=True) as out:
+        ElementTree(root).write(out, encoding="unicode", xml_declaration=True)
