@@ -1,10 +1,11 @@
 """Live: a run that follows the clock, and is recorded."""
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from copy import copy
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from engine.methods.own import OwnMethod, OwnMethodError
 from engine.run.judgement import Judgement, Milestone
@@ -14,9 +15,9 @@ from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 from recordings.events import Event, EventKind, noticed
 from tui.cli.time_limit import limited
+from tui.playback.common import Playback, Playhead, RecordingStatus, RunState
 from tui.playback.compiler import patient
 from tui.playback.history import History
-from tui.playback.source import Pace, Playhead, RecordingStatus, RunState, Source
 
 if TYPE_CHECKING:
     from recordings.recorder import LiveRecorder
@@ -27,10 +28,12 @@ CHUNK = 256  # steps between looks at the clock, about a millisecond
 ROW_RATE = 30  # rows of the history, and samples of the recording, a second at full pace
 
 
-class Live(Source):
+class Live(Playback):
     """The lab: it runs, it is changed, it is recorded once a recorder is there."""
 
-    kind = "LIVE"
+    kind: Literal["LIVE"] = "LIVE"
+    knows_past = True
+    later_marks = ()
     _run: RewindableRun
     _left: "Ghost | None" = None  # the run before the restart with another step
 
@@ -75,16 +78,23 @@ class Live(Source):
 
     @property
     def ghost(self) -> "Ghost | None":
+        """The run that is laid under this one."""
         ghost = self._left or self.laid_under
         return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
 
     @property
     def next_step(self) -> float:
+        """Seconds of the clock until the next step."""
         ahead = self._run.x + abs(self.stepping.h) - self.playhead.position
         return ahead / abs(self.playhead.speed)
 
     @property
+    def is_marked(self) -> bool:
+        return self.has_mark(self.events)
+
+    @property
     def events(self) -> Sequence[Event]:
+        """What was done up to the sample."""
         run = self._run
         if not run.in_past:
             return self._events
@@ -117,8 +127,9 @@ class Live(Source):
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
-        done = self.playhead.position - before.position
-        self.pace = self.pace.after(max(0.0, now - before.seen), due, done)
+        if due:
+            share = (self.playhead.position - before.position) / due
+            self.pace += (share - self.pace) * (1 - math.exp(before.seen - now))  # over a second
         return self._take_sample(is_row=False)
 
     def _forward(self, steps: int) -> None:
@@ -142,6 +153,7 @@ class Live(Source):
             self.failure = str(error)
 
     def step(self, n: int) -> Sample:
+        """Pause and go n steps forward, or back where n is negative."""
         self.pause(True)
         target = self._run.step + n
         while self._run.step < target and not self.failure:
@@ -153,6 +165,7 @@ class Live(Source):
         return self._take_sample()
 
     def go_to(self, run: int, step: int) -> bool:
+        """Pause and go to a step of the run; return False for another run."""
         if reached := run == self._run.run:
             self.step(step - self._run.step)
         return reached
@@ -178,7 +191,7 @@ class Live(Source):
     def set_speed(self, speed: float) -> None:
         if speed != self.playhead.speed:
             self.playhead = self.playhead._replace(speed=speed)
-            self.pace = Pace()
+            self.pace = 1.0
             self._note_here("speed", speed=speed)
 
     # Changes of the run
@@ -212,6 +225,7 @@ class Live(Source):
 
     @property
     def run_state(self) -> RunState:
+        """The run as an undo can bring it back."""
         return RunState(self._run, self.history, self._left)
 
     def return_to(self, state: RunState) -> None:

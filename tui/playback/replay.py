@@ -2,19 +2,19 @@
 
 import math
 import time
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping, SteppingChange, change_before
 from recordings.events import Event, check_present
+from tui.playback.common import Playback, Playhead, RecordingStatus
 from tui.playback.history import History
 from tui.playback.live import Live
 from tui.playback.marks import Mark, Marks
-from tui.playback.source import Playhead, RecordingStatus, Source
 
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run, SamplePlace
@@ -27,10 +27,13 @@ MAX_PIECES = 300  # in pieces of a second, evenly spread
 NANOSECOND = 1e-9  # s; clocks in a file are rounded to it
 
 
-class Replay(Source):
+class Replay(Playback):
     """A recording on screen.  The playhead is on the recording clock."""
 
-    kind = "REPLAY"
+    kind: Literal["REPLAY"] = "REPLAY"
+    ghost = None
+    run_state = None
+    next_step = None
     run: "Run"
 
     def __init__(
@@ -51,11 +54,17 @@ class Replay(Source):
     # What is known at the playhead
 
     @property
+    def is_marked(self) -> bool:
+        return self.has_mark([*self.events, *self.later_marks])
+
+    @property
     def events(self) -> Sequence[Event]:
+        """What was done up to the playhead."""
         return [event for clock, event in self.recording.events if clock <= self.playhead.position]
 
     @property
     def milestones(self) -> Sequence[Milestone]:
+        """What the lab noticed in this run up to the sample."""
         return [each for each in self.run.milestones if each.step <= self.sample.step]
 
     @property
@@ -76,6 +85,7 @@ class Replay(Source):
 
     @property
     def later_marks(self) -> Sequence[Event]:
+        """Marks up to the playhead that are not in the recording."""
         return [self._event(mark) for mark in self.marks if mark.clock <= self.playhead.position]
 
     def _event(self, mark: Mark) -> Event:
@@ -138,6 +148,7 @@ class Replay(Source):
         self.playhead = self.playhead._replace(speed=speed)
 
     def step(self, n: int) -> Sample:
+        """Pause and go n samples forward, or back where n is negative."""
         self.pause(True)
         move = self.recording.next if n > 0 else self.recording.previous
         for _ in range(abs(n)):
@@ -153,20 +164,14 @@ class Replay(Source):
         self._follow()
 
     def go_to(self, run: int, step: int) -> bool:
+        """Pause and go to what was done or noticed at a step; return False if nothing was."""
         self.pause(True)
-        found = self.recording.run_of(run)
-        if found is None:
-            return False
-
-        def step_at(nanosecond: int) -> int:
-            place = self.recording.at(nanosecond * NANOSECOND)
-            sample = self.recording.sample(place).value if place else None
-            return sample.step if isinstance(sample, Sample) and sample.run == run else -1
-
-        begin = round(found.begin / NANOSECOND)
-        clocks = range(begin, round(found.end / NANOSECOND))
-        self.seek((begin + bisect_left(clocks, step, key=step_at)) * NANOSECOND)
-        return True
+        known = [(clock, event.run, event.step) for clock, event in self.recording.events]
+        known += [(mark.clock, mark.run, mark.step) for mark in self.marks]
+        clock = next((clock for clock, *at in known if at == [run, step]), None)
+        if clock is not None:
+            self.seek(clock)
+        return clock is not None
 
     def seek_event(self, direction: int) -> None:
         position = self.playhead.position
@@ -236,6 +241,7 @@ class Replay(Source):
 
     @property
     def knows_past(self) -> bool:
+        """Whether the whole past of the sample is at hand."""
         return self._reading is None
 
     def fill(self) -> bool:

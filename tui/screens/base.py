@@ -19,8 +19,9 @@ from engine.scenes import MOST_METHODS
 from recordings import library
 from tui.cli.errors import explained
 from tui.cli.time_limit import limited
+from tui.playback.common import State, doubled
 from tui.playback.shown import Shown
-from tui.playback.source import Source, State, doubled
+from tui.playback.source import Source
 from tui.screens.lines import InsightLine, KeyLine, SizedScreen, StatusLine, TooSmall
 from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following

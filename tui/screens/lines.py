@@ -95,7 +95,7 @@ def _time(source: Source) -> Iterator[Segment]:
         yield Segment(12, "backwards" if source.stepping.h < 0 else "running")
     speed = speed_text(playhead.speed)
     yield Segment(7, speed)
-    if (share := source.pace.share) < 0.99:
+    if (share := source.pace) < 0.99:
         yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", WARN)
     yield Segment(11, f"t {seconds(source.sample.t)}")
 

@@ -12,8 +12,9 @@ from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
+from tui.playback.common import State
 from tui.playback.live import Live
-from tui.playback.source import Source, State
+from tui.playback.source import Source
 from tui.screens.base import SourceScreen
 from tui.screens.lines import TourPanel
 from tui.views.view import Held, SceneChosen, StepSizeChosen

@@ -15,8 +15,8 @@ from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from recordings.events import Event
 from tests.tui.harness import FPS, Lab
+from tui.playback.common import Playhead, doubled
 from tui.playback.live import FRAME_BUDGET, Live
-from tui.playback.source import Pace, Playhead, doubled
 
 FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
 
@@ -91,17 +91,6 @@ def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_l
     assert playhead.at(now - 9.0).position == playhead.position  # a clock set back
 
 
-def test_a_pace_is_the_share_of_what_was_due_that_was_done_and_forgets_within_seconds():
-    pace = Pace()
-    assert pace.share == 1.0
-    for _ in range(300):
-        pace = pace.after(1 / 30, due=1 / 30, done=1 / 60)
-    assert pace.share == pytest.approx(0.5)
-    for _ in range(5 * 30):
-        pace = pace.after(1 / 30, due=1 / 30, done=1 / 30)
-    assert pace.share == pytest.approx(1.0, abs=math.exp(-5))  # five time constants
-
-
 @given(st.integers(-40, 40))
 def test_speeds_stay_within_their_limits_and_double_exactly_within_them(times):
     expected = 2.0 ** min(max(times, -10), 20)
@@ -142,11 +131,11 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
     bench.run(5)
-    assert bench.live.pace.share < 0.9
+    assert bench.live.pace < 0.9
     assert bench.live.playhead.position == pytest.approx(bench.live.sample.t)
     bench.live.set_speed(1)
     bench.run(5)
-    assert bench.live.pace.share == pytest.approx(1.0)
+    assert bench.live.pace == pytest.approx(1.0)
 
 
 def test_a_step_is_one_step_and_pauses():

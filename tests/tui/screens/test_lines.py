@@ -5,9 +5,9 @@ import pytest
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import after, eventful
+from tui.playback.common import Playhead, RecordingStatus
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.playback.source import Pace, Playhead, RecordingStatus
 from tui.screens.lines import fitted, speed_text, status_row
 from tui.screens.replay import bar, facts
 
@@ -71,11 +71,11 @@ def test_a_start_without_a_name_is_shown_in_numbers():
 
 
 def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
-    slow = taped(pace=Pace(due=1.0, done=0.62))
+    slow = taped(pace=0.62)
     assert "only 62 % of 1×" in text(status_row(slow, 80))
-    hopeless = taped(pace=Pace(due=1.0, done=0.011), playhead=Playhead(speed=2.0**18))
+    hopeless = taped(pace=0.011, playhead=Playhead(speed=2.0**18))
     assert "only 1.1 % of 262144×" in text(status_row(hopeless, 120))
-    assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
+    assert "only" not in text(status_row(taped(pace=0.995), 80))
     broken = taped(recording_status=Taped.recording_status._replace(failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
     begun = Playhead(seen=0.0)

@@ -1,0 +1,100 @@
+"""What a lab and a replay share."""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from engine.models.model import ExactMotion
+from engine.run.lockstep import Sample
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping, SteppingChange
+from engine.scenes import Scene
+from recordings.events import Event
+from tui.playback.history import History
+from tui.playback.shown import Shown
+
+if TYPE_CHECKING:
+    from tui.playback.ghost import Ghost
+
+
+class Playhead(NamedTuple):
+    """How far playback has come, in seconds of what is played."""
+
+    position: float = 0.0  # s
+    speed: float = 1.0  # seconds played per second of clock
+    paused: bool = False
+    seen: float | None = None  # s, the last clock reading
+
+    def at(self, now: float) -> "Playhead":
+        """Return the playhead at `now` [s] of a clock, which moves nothing by going back."""
+        elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
+        return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
+
+    def moved_to(self, position: float) -> "Playhead":
+        return self._replace(position=position)
+
+
+class RecordingStatus(NamedTuple):
+    """The recording that is being written, or replayed."""
+
+    name: str
+    seconds: float  # of the recording clock
+    failed: str | None = None  # why nothing is recorded right now, in a sentence
+
+
+class RunState(NamedTuple):
+    """A run of the lab where it was left, with its past."""
+
+    run: RewindableRun
+    history: History
+    left: "Ghost | None"  # the run before it, if that is laid under
+
+
+class State(NamedTuple):
+    """All that an undo may change."""
+
+    stepping: Stepping
+    speed: float
+    shown: Shown
+    run: RunState | None  # None: a replay has no other
+
+
+class Playback:
+    """One Sample a frame, and what is known around it.  Times of the clock are passed in, in s."""
+
+    playhead: Playhead
+    history: History
+    """The run on screen up to the sample; after a jump, a replay's past grows for some frames."""
+    pace: float = 1.0
+    """1: in real time; below, the processor cannot follow."""
+    failure: str | None = None
+    """Why the run stands still: what is wrong with a user's method, in a sentence."""
+
+    @property
+    def sample(self) -> Sample:
+        """All methods at the playhead."""
+        return self.history.sample
+
+    @property
+    def scene(self) -> Scene:
+        return self.history.scene
+
+    @property
+    def exact(self) -> ExactMotion:
+        """The exact motion of the scene: at(t), period, regime."""
+        return self.history.exact
+
+    @property
+    def changes(self) -> Sequence[SteppingChange]:
+        """How the run steps, in order; in a recording including what is still to come."""
+        return self.history.changes
+
+    def has_mark(self, events: Iterable[Event]) -> bool:
+        """Return whether the sample on screen has a mark among these events."""
+        here = ("mark", self.sample.run, self.sample.step)
+        return any((event.kind, event.run, event.step) == here for event in events)
+
+
+def doubled(speed: float, times: int) -> float:
+    """The speed doubled so many times, halved if negative; from 2^-10 to 2^20, its sign stays."""
+    return math.copysign(min(max(abs(speed) * 2.0**times, 2.0**-10), 2.0**20), speed)
