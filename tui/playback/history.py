@@ -41,6 +41,7 @@ class History:
         self._current: Row | None = None
         self._last_row = -1  # its step
         self._waiting: list[Row] = []
+        self._trails: tuple[Row, int, Floats] | None = None
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
@@ -201,11 +202,15 @@ class History:
 
         At the last `length` samples, (samples, methods + 1, 2).
         """
-        assert self._current is not None
-        return self.rows.trails(self._current, length)
+        current = self._current
+        assert current is not None
+        if self._trails is None or self._trails[0] is not current or self._trails[1] < length:
+            self._trails = current, length, self.rows.trails(current, length)
+        return self._trails[2][-length:]
 
     def thetas(self, index: int, length: int) -> list[float]:
         """Return theta [rad] of a method at the last `length` samples, oldest first."""
         if self._rows is None:
             return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
-        return self.trails(length)[:, index, 0].tolist()  # type: ignore[no-any-return]
+        # as many as phase space shows, so that they are read once a frame
+        return self.trails(300)[-length:, index, 0].tolist()  # type: ignore[no-any-return]
