@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Protocol, cast
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.content import Content
-from textual.reactive import Initialize, var
+from textual.reactive import var
 from textual.timer import Timer
 from textual.widget import Widget
 
@@ -77,15 +77,8 @@ class SourceScreen(SizedScreen[None]):
         Binding("escape", "back", "chart: back from the zoom", False, "esc"),
         Binding("v", "view", "View", tooltip="next view"),
         *(
-            Binding(
-                f"f{n}",
-                f"view({name!r})",
-                f"view: {VIEWS[name].title}",
-                False,
-                f"F{n}",
-                group=_VIEWS,
-            )
-            for n, name in enumerate(VIEWS, 2)
+            Binding(f"f{n}", f"view({name!r})", f"view: {view.title}", False, f"F{n}", group=_VIEWS)
+            for n, (name, view) in enumerate(VIEWS.items(), 2)
         ),
         Binding("E,shift+e", "events", "list all events", show=False),
         Binding("d", "describe", "describe it in words", show=False),
@@ -99,9 +92,7 @@ class SourceScreen(SizedScreen[None]):
         Binding("q", "quit", "Quit", tooltip="finish the recording, quit"),
     ]
 
-    source: var[Source] = var(
-        Initialize(lambda screen: cast(Source, cast(Any, screen).first_source))
-    )
+    source: var[Source] = var(cast(Source, None))  # there is one from the start
     shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
     held: float | None = None
@@ -118,7 +109,7 @@ class SourceScreen(SizedScreen[None]):
         super().__init__()
         self._prepare = prepare
         self._notices = notices
-        self.first_source = source
+        self.set_reactive(SourceScreen.source, source)
         self.set_reactive(SourceScreen.shown, Shown().through(source.scene))
         self.clock = clock
         self.set_reactive(SourceScreen.view, self.first_view(source))

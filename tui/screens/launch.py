@@ -120,10 +120,9 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
     def go_live(live: "Live") -> "LiveScreen":
         return live_screen(live, None if no_record else recording_path(None))
 
-    reason = replay.recording.reason
-    notices = (
-        [f"This recording is incomplete ({reason}); showing what is intact."] if reason else []
-    )
+    notices = []
+    if reason := replay.recording.reason:
+        notices.append(f"This recording is incomplete ({reason}); showing what is intact.")
     return ReplayScreen(replay, go_live, notices=notices)
 
 

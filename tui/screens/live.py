@@ -222,7 +222,7 @@ class LiveScreen(SourceScreen):
 
     def begin(self) -> None:
         super().begin()
-        if self.begins_with_tour:
+        if self.begins_with_tour and self._timer is not None:
             self.action_tour()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

@@ -14,8 +14,6 @@ from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
 from tui.terminal.options import FPS, USUAL, TerminalOptions
 
-PATIENCE = 30.0  # s for the charts to be built
-
 
 async def still(
     scene: Scene,
@@ -42,28 +40,20 @@ async def still(
 
 async def settled(app: PenduApp) -> None:
     """Wait until every pane shows the newest data."""
-    async with asyncio.timeout(PATIENCE):
-        while not all(
-            _is_settled(pane) for pane in app.source_screen.query("#views *").results(Widget)
-        ):
+    async with asyncio.timeout(30):
+        while not all(map(_is_settled, app.source_screen.query("#views *").results(Widget))):
             await asyncio.sleep(0.01)
 
 
 def _is_settled(pane: Widget) -> bool:
-    # else it is still to hear that it is shown
-    shown = getattr(pane, "drawable", True) or not pane.is_on_screen
-    return shown and getattr(pane, "settled", True)
+    # what is on screen and not drawable is still to hear that it is shown
+    is_shown = getattr(pane, "drawable", True) or not pane.is_on_screen
+    return is_shown and getattr(pane, "settled", True)
 
 
 def normalised(svg: str) -> str:
     """The picture without the random number in Rich's names."""
     return re.sub(r"terminal-\d+-", "terminal-", svg)
-
-
-TEXT = re.compile(
-    r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'
-)
-WORD = re.compile(r"[!-~]+|[^\s]")
 
 
 def portable(svg: str) -> str:
@@ -72,7 +62,8 @@ def portable(svg: str) -> str:
     Inkscape and librsvg ignore the length, and their fonts have other widths, of braille above all.
     """
     fonts = "font-family: Fira Code, DejaVu Sans Mono, monospace"
-    return TEXT.sub(_placed, svg).replace("font-family: Fira Code, monospace", fonts)
+    text = r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'
+    return re.sub(text, _placed, svg).replace("font-family: Fira Code, monospace", fonts)
 
 
 def _placed(found: re.Match[str]) -> str:
@@ -80,7 +71,7 @@ def _placed(found: re.Match[str]) -> str:
     text = html.unescape(escaped)
     cell = float(length) / max(1, cell_len(text))
     parts = []
-    for word in WORD.finditer(text):
+    for word in re.finditer(r"[!-~]+|[^\s]", text):
         x = float(start) + cell_len(text[: word.start()]) * cell
         width = cell_len(word[0]) * cell
         place = f'{opening}x="{x:.5g}" {y} textLength="{width:.5g}"{rest}'

@@ -31,19 +31,18 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
         await theatre.run(1)
         await theatre.press("space", key_of(view))
         before = ""
-        while before != (
-            before := await picture(theatre)
-        ):  # a resting lab draws late panes after 1/4 s
+        while before != (before := await picture(theatre)):  # late panes follow after 1/4 s
             await theatre.pilot.pause(0.4)
         theatre.app.action_use_theme(theme)
         after = await picture(theatre)
         assert lines_of(before) == lines_of(after)
         colours = {found.upper() for found in re.findall(r"fill: (#[0-9a-fA-F]{6})", after)}
-        old, new = PALETTES["dark"], PALETTES[theme]
-        assert not colours & {old.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)} - set(
-            new.methods
+        old, new = (
+            {PALETTES[each].colour(ink).upper() for ink in (0, 1, 2, 3, TEXT)}
+            for each in ("dark", theme)
         )
-        assert colours >= {new.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)}
+        assert not colours & old - set(PALETTES[theme].methods)
+        assert colours >= new
 
 
 async def test_forms_help_and_the_palette_are_ascii_too():
@@ -59,15 +58,9 @@ async def test_forms_help_and_the_palette_are_ascii_too():
 
 def colours(app) -> set[Color]:
     """All colours on the screen, in front and behind."""
-    styles = [
-        segment.style
-        for strip in app.screen._compositor.render_strips()
-        for segment in strip
-        if segment.style
-    ]
-    return {
-        colour for style in styles for colour in (style.color, style.bgcolor) if colour is not None
-    }
+    strips = app.screen._compositor.render_strips()
+    styles = [segment.style for strip in strips for segment in strip if segment.style]
+    return {each for style in styles for each in (style.color, style.bgcolor)} - {None}
 
 
 async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
@@ -77,10 +70,9 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
         for key in (*map(key_of, VIEWS), "i"):
             await theatre.press(key)
             await theatre.pilot.pause(0.3)
-            assert len(colours(theatre.app)) > 3
-            assert all(
-                colour.is_system_defined or colour.is_default for colour in colours(theatre.app)
-            )
+            found = colours(theatre.app)
+            assert len(found) > 3
+            assert all(each.is_system_defined or each.is_default for each in found)
 
 
 async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):

@@ -4,7 +4,6 @@ import asyncio
 
 import pytest
 from textual.command import CommandList
-from textual.containers import VerticalScroll
 from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import Screen
@@ -16,44 +15,21 @@ from tui.screens.dialogs import TextScreen
 from tui.screens.palette import Commands, LabCommands
 
 
-async def opened(theatre) -> TextScreen:
-    await theatre.press("question_mark")
-    help_screen = theatre.app.screen
-    assert isinstance(help_screen, TextScreen)
-    return help_screen
-
-
-async def test_dismissed_twice_a_text_closes_only_itself():
+async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
     async with lab() as theatre:
-        help_screen = await opened(theatre)
-        help_screen.dismiss()
-        help_screen.dismiss()
-        await theatre.pilot.pause()
-        assert theatre.app.screen is theatre.stage
-
-
-async def test_a_text_below_another_one_stays_when_it_is_dismissed():
-    async with lab() as theatre:
-        help_screen = await opened(theatre)
+        await theatre.press("question_mark")
+        help_screen = theatre.app.screen
+        assert isinstance(help_screen, TextScreen)
         above = TextScreen("Above", "it")
         await theatre.app.push_screen(above)
         help_screen.dismiss()
         await theatre.pilot.pause()
         assert theatre.app.screen is above
-        await theatre.press("escape", "escape")
+        await theatre.press("escape")
+        help_screen.dismiss()
+        help_screen.dismiss()
+        await theatre.pilot.pause()
         assert theatre.app.screen is theatre.stage
-
-
-async def test_with_reduced_motion_a_text_scrolls_at_once():
-    async with lab() as theatre:
-        theatre.app.animation_level = "none"
-        help_screen = await opened(theatre)
-        places: list[float] = []
-        scroll = help_screen.query_one(VerticalScroll)
-        scroll.watch(scroll, "scroll_y", lambda y: places.append(y), init=False)
-        await theatre.press("pagedown")
-        assert places == [scroll.scroll_target_y]
-        assert places[0] > 0
 
 
 async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypatch):
@@ -62,9 +38,7 @@ async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypat
     async def closed_meanwhile(self, query):
         async for hit in search(self, query):
             yield hit
-        await theatre.app.screen.query_one(
-            CommandList
-        ).remove()  # closing takes its parts away one by one
+        await theatre.app.screen.query_one(CommandList).remove()  # as closing does
         searched.set()
 
     async with lab() as theatre:
@@ -123,9 +97,7 @@ async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(
     async with lab() as theatre:
         await theatre.press("i")
         monkeypatch.setattr(Screen, "_on_resize", counted)
-        with (
-            theatre.app.batch_update()
-        ):  # Textual then paints with a message of its own, between the sizes
+        with theatre.app.batch_update():  # it then paints by a message between the sizes
             theatre.app._size = Size(30, 12)
             for size in (Size(70, 11), Size(30, 12)):
                 theatre.app.screen.post_message(Resize(size, size))

@@ -14,17 +14,14 @@ from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import on_stage
 from tests.tui.monkey import (
-    ESCDELAY,
     LOOK,
     SIZE,
-    play,
     play_on_stage,
     presses,
     small_studies,
     wild_presses,
     wild_stage,
 )
-from tests.tui.pty_lab import PtyLab
 from tui.cli.options import resolve
 from tui.playback.live import Live
 from tui.playback.replay import Replay
@@ -93,19 +90,3 @@ async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_eithe
             if each.source.kind == "LIVE"
         ]
     assert all_verify(library) == len(recorded)
-
-
-@pytest.mark.skipif(
-    "PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time"
-)
-@pytest.mark.parametrize("command", ["live", "replay"])
-def test_random_keys_and_clicks_do_no_harm_to_the_real_program(tmp_path, command):
-    library = tmp_path / "library"
-    arguments = [command]
-    if command == "replay":
-        arguments.append(str(shutil.copy(resolve("drift"), tmp_path)))  # marks are kept beside it
-    with PtyLab(*arguments, size=SIZE, PENDU_RECORDINGS=str(library), ESCDELAY=ESCDELAY) as pendu:
-        pendu.wait_for("Quit")
-        code = play(pendu, PRESSES, SEED)
-        assert code == 0, pendu.output.decode(errors="replace").rpartition("\x1b[?1049l")[2]
-    assert all_verify(library) >= 1

@@ -114,9 +114,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
     path = recorded(tmp_path / "drift.mcap", 20.0)
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
-        slowly = itertools.count(
-            0.0, 0.003
-        ).__next__  # so that a frame has time for some samples only
+        slowly = itertools.count(0.0, 0.003).__next__  # a frame has time for some samples only
         return ReplayScreen(
             Replay(Recording.open(path), slowly),
             lambda live: LiveScreen(live, clock),
@@ -138,10 +136,8 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
     def go_live(live: Live) -> LiveScreen:
         raise UserError("/nowhere is not writable: choose another folder.")
 
-    def make(clock: Callable[[], float]) -> ReplayScreen:
-        return ReplayScreen(Replay(Recording.open(path), clock=lambda: 0.0), go_live, clock)
-
-    async with on_stage(make, (120, 40)) as theatre:
+    async with player(path) as theatre:
+        theatre.stage._go_live = go_live
         await theatre.press("right", "f")
         await theatre.pilot.pause(0.1)
         assert isinstance(theatre.stage, ReplayScreen)
@@ -154,13 +150,10 @@ async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_i
     async with player(path) as theatre:
         await theatre.press("i", "M", "plus", "minus", "p", "P", "r", "n")
         (told,) = theatre.app._notifications
-        assert (
-            told.message == "A recording cannot be changed: f continues it live, and then it can."
-        )
+        assert "cannot be changed" in told.message
         await theatre.press("m", "b", "comma")  # the replay has its own
-        assert (
-            len([each for each in theatre.app._notifications if each.message == told.message]) == 1
-        )
+        notices = [each.message for each in theatre.app._notifications]
+        assert notices.count(told.message) == 1
 
 
 async def test_a_mark_becomes_a_tick(path):
