@@ -74,10 +74,6 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         first = theatre.stage.query_one(LabView).pendulums[1]
         colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
         assert colour in inks(first.picture(theatre.source, theatre.source.sample))
-        assert (
-            first.border_subtitle == "dim: h 0.1 s"
-            or "dim: swing, h 0.1 s" in first.border_subtitle
-        )
         chart = theatre.stage.query(TimeChart).first()
         assert chart.plot is not None
         assert colour in inks(chart.plot.picture)

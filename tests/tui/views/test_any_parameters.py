@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,12 +13,12 @@ from engine.models import MODELS, PARAMETERS
 from engine.scenes import LIMITS, SCENES, Scene
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
+from tui.drawing.picture import Picture
 from tui.drawing.time_chart import time_chart
 from tui.playback.shown import Shown, quantities
 from tui.screens.lines import status_row
 from tui.views.lab.error_table import table
-from tui.views.lab.pendulums import Bob, pendulum_picture
-from tui.views.phase.facts import fact_rows
+from tui.views.phase.picture import fact_rows
 from tui.words.command_line import scene_arguments
 from tui.words.insight import insight_text, lasting, sentence
 from tui.words.plain_text import description
@@ -50,30 +51,15 @@ def scenes(model: str) -> st.SearchStrategy[Scene]:
 
 
 def on_screen(live) -> str:
-    """What the panes of the lab show of it, but for colours."""
-    scene, sample, history = live.scene, live.sample, live.history
-    rows = [
-        status_row(live, 120),
-        *table(live, sample, Shown(), 120),
-        *fact_rows(live, Shown(), None, 120),
-    ]
-    charts = [
-        time_chart(
-            history.window(), scene.cast, Shown(quantity=quantity, log=log), 60, 14
-        ).picture.text
-        for quantity in quantities(scene)
-        for log in (True, False)
-    ]
-    lengths = [scene.equations.length(reading.extra) for reading in sample.readings]
-    bobs = [
-        Bob(reading.theta, 0, length=length)
-        for reading, length in zip(sample.readings, lengths, strict=True)
-    ]
-    picture = pendulum_picture(40, 12, bobs).text
+    """The text of the lab's lines, tables and charts, and its sentences."""
+    tables = table(live, live.sample, Shown(), 120), fact_rows(live, Shown(), None, 120)
+    pictures = [Picture([status_row(live, 120), *tables[0], *tables[1]])]
+    for quantity, log in product(quantities(live.scene), (True, False)):
+        shown = Shown(quantity=quantity, log=log)
+        chart = time_chart(live.history.window(), live.scene.cast, shown, 60, 14)
+        pictures.append(chart.picture)
     sentences = [*description(live), insight_text(live), *map(sentence, lasting(live))]
-    return "\n".join(
-        ["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences
-    )
+    return "\n".join([*(picture.text for picture in pictures), *sentences])
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -155,7 +155,7 @@ class Pendulum(Pane):
         scale = self._scale(source, sample, places)
         if scale > 1:
             title += f", angles ×{scale}"
-        self.write_titles(title, self._below(source, exact))
+        self.write_titles(title, exact)
         bobs = self._bobs(source, sample, places)
         widest = MAGNIFIED
         if self._drag:
@@ -164,27 +164,18 @@ class Pendulum(Pane):
             widest = reach(source.scene, source.stepping, sample, self.places)
             if source.ghost is not None:
                 widest = max(widest, source.ghost.widest)
-        bobs = [
-            bob._replace(theta=scale * bob.theta, trail=[scale * each for each in bob.trail])
-            for bob in bobs
-        ]
+        for at, bob in enumerate(bobs):
+            trail = [scale * theta for theta in bob.trail]
+            bobs[at] = bob._replace(theta=scale * bob.theta, trail=trail)
         return pendulum_picture(*self.room, bobs, widest)
 
     def _scale(self, source: Source, sample: Sample, places: Sequence[int]) -> int:
-        """Return by how much to enlarge angles that are too small to be seen; 1 once one is not."""
+        """Return by how much to enlarge angles that are too small to be seen."""
         if self.shown.overview or self._drag:
             return 1
         half = self.shown.theta or frame(source.scene, source.stepping, sample, self.places)
         largest = max((abs(sample.readings[each].theta) for each in places), default=pi)
         return max(1, int(MAGNIFIED / half)) if largest <= half else 1
-
-    def _below(self, source: Source, exact: str) -> str:
-        room = self.room.width - 4
-        if source.ghost is None:
-            return exact
-        dim = source.ghost.label(room - len(exact) - 2)
-        both = ", ".join(filter(None, (exact, dim)))
-        return both if len(both) <= room else dim
 
     def _bobs(self, source: Source, sample: Sample, places: Sequence[int]) -> list[Bob]:
         scene = source.scene

@@ -45,11 +45,11 @@ def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
 
 
 def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
-    """Return what the chart shows, and for how long back."""
+    """Return what the chart shows, and for how long back [s]."""
     name, magnitude = _names(shown.quantity, model)
     cycle = ""
     if shown.stretch is not None:
-        span = _span(shown.stretch.begin, shown.stretch.end)
+        span = f"{shown.stretch.begin:.5g} to {shown.stretch.end:.5g} s"
     else:
         span = "all" if shown.seconds is None else about(shown.seconds)
         if exact.period:
@@ -58,18 +58,7 @@ def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
     return f"max {magnitude}{cycle}, {span}" if shown.log else f"{name}, {span}"
 
 
-def _span(begin: float, end: float) -> str:
-    """Return a stretch with as many decimals as tell its ends apart: "31.2 to 33.0 s"."""
-
-    def decimals(size: float) -> int:
-        return max(1 - math.floor(math.log10(size)), 0)
-
-    first = decimals(min(begin or end, end - begin))
-    return f"{begin:.{first}f} to {end:.{decimals(end - begin)}f} s"
-
-
 def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
-    """Return methods at a moment, as far as they fit: "12.35 s: e 3.3e+00 s 7.9e-02"."""
     text = f"{seconds(reading.t)}:"
     for letter, value in zip(letters, reading.values, strict=True):
         part = f" {letter} {value:.1e}"
@@ -79,7 +68,7 @@ def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
 
 
 def _step_changes(changes: Sequence[SteppingChange]) -> list[tuple[float, str]]:
-    """Return each change of the step after the start: elapsed time [s] and "h 0.1"."""
+    """Return the elapsed times [s] and "h 0.1" of changes after the start."""
     marks: list[tuple[float, str]] = []
     elapsed = 0.0
     for before, change in pairwise(changes):

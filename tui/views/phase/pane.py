@@ -73,8 +73,7 @@ class PhasePane(Chooser[State]):
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        from tui.views.phase.facts import caption
-        from tui.views.phase.picture import method_points, phase_picture
+        from tui.views.phase.picture import caption, method_points, phase_picture
         from tui.views.phase.portrait import Portrait
 
         below = "click: start, wheel: zoom" if self.is_live else "wheel: zoom"

@@ -14,9 +14,8 @@ from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
-from tui.views.phase.facts import fact_rows
 from tui.views.phase.pane import PhasePane
-from tui.views.phase.picture import Section, starts
+from tui.views.phase.picture import Section, fact_rows, starts
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Pane, StudyView
 from tui.words.orbit import sentence

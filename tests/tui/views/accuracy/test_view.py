@@ -97,15 +97,6 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         assert live.stepping.h == 0.05
 
 
-async def test_at_equal_cost_every_method_is_at_its_own_h():
-    async with accuracy_view() as (pilot, pane, live):
-        await pilot.press("n")
-        await complete(pilot, pane)
-        assert pane.here == [100, 100, 100, 25]
-        await pilot.press("left", "left", "enter")
-        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
-
-
 async def test_another_h_moves_the_mark_and_another_start_the_points():
     async with accuracy_view() as (pilot, pane, live):
         before = dict(pane.points)
@@ -113,6 +104,11 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
         await complete(pilot, pane)
         assert pane.here == [50] * 4
         assert before.items() <= pane.points.items()
+        await pilot.press("u", "n")
+        await complete(pilot, pane)
+        assert pane.here == [100, 100, 100, 25]  # at equal cost each method has its own
+        await pilot.press("left", "left", "enter")
+        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
         live.start(SCENES["large-swing"])
         await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)

@@ -65,14 +65,6 @@ def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
         assert up == {(x, 4 * rows - 1 - y) for x, y in right}
 
 
-def test_a_full_turn_is_a_circle_because_both_directions_have_one_scale():
-    found = dots(picture(30, 10, Bob(0.0, 0, trail=np.linspace(0, 2 * math.pi, 1000))))
-    x, y = ([dot[axis] for dot in found] for axis in (0, 1))
-    assert max(x) - min(x) == pytest.approx(max(y) - min(y), abs=2)  # the bob stands out
-    assert max(x) + min(x) == 2 * 30 - 1
-    assert min(y) == pytest.approx(0, abs=2)  # the pane is used
-
-
 @given(st.floats(allow_nan=False, allow_infinity=False), st.integers(1, 40), st.integers(1, 20))
 def test_any_angle_fits_any_pane(theta, columns, rows):
     bob = Bob(theta, 0, trail=[theta, math.nan], letter="e")

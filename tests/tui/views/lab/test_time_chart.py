@@ -79,9 +79,8 @@ def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_th
 @pytest.mark.parametrize(
     ("ends", "span"),
     [
-        ((0.5, 1000.0), "0.50 to 1000 s"),
-        ((500.0, 501.5), "500.0 to 501.5 s"),
-        ((0.0, 20.0), "0 to 20 s"),
+        ((0.5, 1000.0), "0.5 to 1000 s"),
+        ((500.0, 501.53), "500 to 501.53 s"),
     ],
 )
 def test_a_title_says_the_ends_of_a_stretch_as_exactly_as_they_differ(ends, span):

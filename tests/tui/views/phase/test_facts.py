@@ -11,7 +11,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
-from tui.views.phase.facts import area_text, fact_rows, place_text
+from tui.views.phase.picture import area_text, fact_rows, place_text
 
 
 def followed(live, steps=200):
