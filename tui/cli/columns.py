@@ -134,10 +134,9 @@ def read_table(
         if number in (None, count):
             found = table
             found.number = count
-    if found is None and count:
-        raise _unreadable(f"there is no table {number}; the input has {count}.")
     if found is None:
-        raise _unreadable(_NO_ROW)
+        why = f"there is no table {number}; the input has {count}."
+        raise _unreadable(why if count else _NO_ROW)
     found.count = count
     found.finish(start)
     return found
@@ -149,7 +148,8 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
     A step back to a later time than the first is a restart from a checkpoint: the same table.  So
     is a header that comes again on each page, as NAMD's.
     """
-    table = Table(Head((), ()), [])
+    head = Head((), ())
+    table = Table(head, [])
     first: float | None = None  # usable time
     on_page = 0  # rows since the head
     for number, record in enumerate(records):
@@ -160,7 +160,6 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
         if None in record:
             table.skipped["without_numbers"] += 1
             continue
-        head = table.head
         if isinstance(record, Head):
             head = record
             begins = head != table.head or on_page >= 64
@@ -173,11 +172,12 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
                 yield table
             first = None
             table = Table(head, [array("d") for group in head.places for _ in group])
-        if isinstance(record, list):
-            if first is None and abs(record[0]) < LATEST:
-                first = record[0]
-            for column, value in zip(table.columns, record, strict=True):
-                column.append(value)
+        if isinstance(record, Head):
+            continue
+        if first is None and abs(record[0]) < LATEST:
+            first = record[0]
+        for column, value in zip(table.columns, record, strict=True):
+            column.append(value)
     if first is not None:
         yield table
 
@@ -285,15 +285,14 @@ class _Text:
         width = len(numbers)
         if self._places and (self._headers or None in numbers or width == self._width):
             return None
+        if self._headers:
+            fitting = (names for names in self._headers if len(names) == width)
+            head = Head.of(next(fitting, self._headers[0]), self._wanted)
+            return head if head and max(chain(*head.places)) < width else None
         if not self._names and width == len(self._above):
             self._names = self._above
-        names = [self._legend.get(place, "") for place in range(width)]
-        if self._headers:
-            names = next((each for each in self._headers if len(each) == width), self._headers[0])
-        head = Head.of(names, self._wanted)
-        if head is None or max(chain(*head.places)) >= width:
-            return None
-        if not self._headers and None in [numbers[place] for place in chain(*head.places)]:
+        head = Head.of([self._legend.get(place, "") for place in range(width)], self._wanted)
+        if head is None or None in [numbers[place] for place in chain(*head.places)]:
             return None
         shared = _split(self._legend.get(-1, ""))[1]
         return Head(head.places, (head.units[0], *(unit or shared for unit in head.units[1:])))
@@ -338,8 +337,7 @@ def _parsed(line: str) -> dict[str, Any]:
     """Return the object of a line of JSON; an empty one for a line that is none."""
     with suppress(ValueError, RecursionError):
         item = json.loads(line)
-        if isinstance(item, dict):
-            return item
+        return item if isinstance(item, dict) else {}
     return {}
 
 
@@ -354,14 +352,12 @@ def _of_arrays(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Rec
     """Yield the head and the rows of the arrays in an .npz."""
     import numpy as np
 
-    names: list[str] = []
     try:
-        source = stream if stream.seekable() else io.BytesIO(stream.read())
-        with np.load(source, allow_pickle=False) as arrays:
-            names += arrays
-            if head := Head.of(names, wanted):
-                found = [np.ravel(arrays[names[place]]) for place in chain(*head.places)]
-                columns = [column.astype(float).tolist() for column in found]
+        arrays = np.load(io.BytesIO(stream.read()), allow_pickle=False)
+        names = list(arrays)
+        if head := Head.of(names, wanted):
+            found = [np.ravel(arrays[names[place]]) for place in chain(*head.places)]
+            columns = [column.astype(float).tolist() for column in found]
     except Exception as error:  # whatever a broken archive leads to
         raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
     if head is None:
