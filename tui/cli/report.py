@@ -33,12 +33,13 @@ MAX_CELL = 1000  # characters
 
 def warn(sentence: str) -> None:
     """Print a sentence besides the data, on stderr."""
-    text = f"pendu-tui: {sentence}"
-    print(_wrapped(text) if sys.stderr.isatty() else text, file=sys.stderr)
+    print(_fitted(f"pendu-tui: {sentence}", sys.stderr), file=sys.stderr)
 
 
-def _wrapped(text: str) -> str:
-    """Return a text in lines that fit the terminal; no word or path is broken."""
+def _fitted(text: str, stream: TextIO) -> str:
+    """Return a text in lines that fit the terminal, if it is one; no word or path is broken."""
+    if not stream.isatty():
+        return text
     columns = shutil.get_terminal_size().columns
     return "\n".join(
         textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False)
@@ -59,26 +60,12 @@ def scene_line(scene: Scene, *more: str) -> str:
     return f"{scene.name}{model}: {listed} (SI units)"
 
 
-def print_lines(*lines: str) -> None:
-    """Print sentences, wrapped between words where the terminal is narrower."""
-    for line in lines:
-        print(_wrapped(line) if sys.stdout.isatty() else line)
-
-
 def console(piped_width: int | None = None) -> "Console":
     """Return where to draw: as wide as the terminal, or `piped_width` where there is none."""
     from rich.console import Console
 
     width = None if sys.stdout.isatty() else piped_width
     return Console(width=width, markup=False, emoji=False, highlight=False)
-
-
-def draw(renderable: "RenderableType") -> None:
-    """Print what Rich draws, in 240 columns where the output is no terminal."""
-    on = console(240)
-    with on.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
-        on.print(renderable, no_wrap=True, overflow="crop")
-    print(drawn.get(), end="")
 
 
 @contextmanager
@@ -181,16 +168,24 @@ class Report:
             schema = f"pendu.{self.name}/{self.version}"
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
             print(text, file=out)
-            return
-        if form == "csv":
-            write_records(self.rows if self.records is None else self.records, out or sys.stdout)
-            return
-        table = [Table(self.columns, self.rows)] if self.columns else []
-        for part in (*([self.title] if self.title else []), *table, *self.notes):
+        elif form == "csv":
+            records = self.rows if self.records is None else self.records
+            write_records(records, out or sys.stdout)
+        else:
+            self._show_table()
+
+    def _show_table(self) -> None:
+        parts: list[Any] = [self.title] if self.title else []
+        if self.columns:
+            parts.append(Table(self.columns, self.rows))
+        for part in (*parts, *self.notes):
             if isinstance(part, str):
-                print_lines(part)
-            else:
-                draw(part)
+                print(_fitted(part, sys.stdout))
+                continue
+            on = console(240)
+            with on.capture() as drawn:  # or Rich ends the process when a pipe's reader is gone
+                on.print(part, no_wrap=True, overflow="crop")
+            print(drawn.get(), end="")
 
 
 def finite(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -150,12 +150,11 @@ def scenes_of(
         )
     name = options.scene or options.scene_option
     scene = scene_named(name, lecture) if name else default or DEFAULT_SCENE
-    given = {each: getattr(options, each) for each in NUMBERS}
-    axes = {
-        each: value if isinstance(value, list) else [value]
-        for each, value in given.items()
-        if value is not None
-    }
+    axes: dict[str, Sequence[float]] = {}
+    for each in NUMBERS:
+        given = getattr(options, each)
+        if given is not None:
+            axes[each] = given if isinstance(given, list) else [given]
     scenes = SceneList(scene.with_cast(cast_of(options, scene.cast, model=scene.model)), axes)
     scenes.corners()
     return scenes
