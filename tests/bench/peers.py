@@ -142,25 +142,6 @@ def diffrax_solvers() -> Iterator[Solver]:
         yield solver(f"diffrax {name}", partial(finished, jax.jit(solve)), GRID[-1:], TIMES)
 
 
-def numbalsoda_solvers() -> Iterator[Solver]:
-    """LSODA and DOP853 from compiled code."""
-    numbalsoda = import_module("numbalsoda")
-
-    @import_module("numba").cfunc(numbalsoda.lsoda_sig)
-    def slope(t: float, y: Any, change: Any, parameters: Any) -> None:
-        change[0] = y[1]
-        change[1] = -W0_SQUARED * math.sin(y[0])
-
-    start = np.array(START)
-    for name in ("lsoda", "dop853"):
-
-        def solve(tolerance: float, times: Any, name: str = name) -> Any:
-            run = getattr(numbalsoda, name)
-            return run(slope.address, start, times, rtol=tolerance, atol=tolerance)[0][:, 0]
-
-        yield solver(f"numbalsoda {name}", solve, end=np.array([0.0, END]), path=GRID)
-
-
 def heyoka_solvers() -> Iterator[Solver]:
     """Taylor's method, its order chosen by the tolerance."""
     heyoka = import_module("heyoka")
@@ -191,7 +172,6 @@ def heyoka_solvers() -> Iterator[Solver]:
 SOLVERS = {
     "engine": (taylor_solvers, method_solvers),
     "heyoka": (heyoka_solvers,),
-    "numbalsoda": (numbalsoda_solvers,),
     "diffrax": (diffrax_solvers,),
     "scipy": (scipy_solvers,),
 }

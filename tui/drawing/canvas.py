@@ -3,9 +3,7 @@
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
 the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a
 cell, which has the ink of the last one drawn.  Points outside or not finite are not drawn.
-
-Frames of the lab have a few hundred dots: plain integers are faster than NumPy for so few, and the
-first paint need not wait for NumPy.
+Pendulums have few dots: without NumPy they are faster, and the first paint need not wait for it.
 """
 
 import codecs
@@ -13,6 +11,7 @@ import copy
 import re
 from collections.abc import Iterable
 from functools import lru_cache
+from itertools import product
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
@@ -30,7 +29,6 @@ _BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
 """Cells of one ink; blank ones look the same in any ink, so they belong to what is before them."""
-_FAR = 1e6  # dots; nothing so far away is visible
 
 
 class Canvas:
@@ -128,13 +126,16 @@ class Canvas:
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        if not (abs(x) < _FAR and abs(y) < _FAR):
+        if not (-radius < x < self.width + radius and -radius < y < self.height + radius):
             return
         most = radius * radius
         least = (radius - 1) ** 2 if hollow and radius > 1 else -1.0
-        across = [(i, (i + 0.5 - x) ** 2) for i in range(floor(x - radius), floor(x + radius) + 2)]
-        down = [(j, (j + 0.5 - y) ** 2) for j in range(floor(y - radius), floor(y + radius) + 2)]
-        self.points([(i, j) for j, dy in down for i, dx in across if least < dx + dy <= most], ink)
+        square = product(
+            range(floor(y - radius), floor(y + radius) + 2),
+            range(floor(x - radius), floor(x + radius) + 2),
+        )
+        distances = (((i, j), (i + 0.5 - x) ** 2 + (j + 0.5 - y) ** 2) for j, i in square)
+        self.points([dot for dot, distance in distances if least < distance <= most], ink)
 
     def label(self, column: int, row: int, text: str, ink: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
@@ -151,10 +152,9 @@ class Canvas:
     def label_where_blank(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> bool:
         """Write text at the first of some cells where it covers nothing, if there is one."""
         for column, row in places:
-            cells = range(column, column + len(text))
-            if all(
-                self.is_free(at, row) and not self._bits[row * self.columns + at] for at in cells
-            ):
+            first = row * self.columns + column
+            is_free = all(self.is_free(column + at, row) for at in range(len(text)))
+            if is_free and not any(self._bits[first : first + len(text)]):
                 self.label(column, row, text, ink)
                 return True
         return False

@@ -16,9 +16,7 @@ WARN = -4
 QUIET = -5
 GOOD = -6
 NOBODY = -7
-"""Inks that are not methods': exact motion, lines and borders, text, warnings, text that matters
-less, what is as it should be, blanks.  FRAME is too faint for words.
-"""
+"""Inks that are not methods'.  QUIET is text that matters less; FRAME is too faint for words."""
 
 FAINT = 64
 """Added to a method's ink: its fainter colour, for trails."""
@@ -49,10 +47,8 @@ class Palette(NamedTuple):
 
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the
-# casts of the scenes.  The worst pair of the classics is 19.5 apart (dark), 13.3 (light) and 21.6
-# (high-contrast, all with 7:1), of any scene's cast 10.7, 10.2 and 11.2; red, green, yellow and
-# blue are 3.5 apart.  Light colours must be dark to be read on white, yet none looks black.  The
-# terminal's own are at least 14.4 apart on black in the palettes of xterm, VGA, Tango and Windows.
+# casts of the scenes: the classics are 13.3 apart at least, where red, green, yellow and blue are
+# 3.5 apart.  Light colours must be dark to be read on white, yet none looks black.
 PALETTES = {
     "dark": Palette(
         methods=(

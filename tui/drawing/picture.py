@@ -47,7 +47,7 @@ class Picture:
     def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
         """Wrap and centre a text; lines that do not fit are cut off."""
         lines = textwrap.wrap(text, max(columns, 1))[:rows]
-        above = [""] * ((rows - len(lines)) // 2)
-        below = [""] * (rows - len(lines) - len(above))
-        centred = [" " * ((columns - len(line)) // 2) + line for line in lines]
-        return cls(tuple(((line.ljust(columns), ink),) for line in (*above, *centred, *below)))
+        above = (rows - len(lines)) // 2
+        page = [""] * above + [" " * ((columns - len(line)) // 2) + line for line in lines]
+        page += [""] * (rows - len(page))
+        return cls(tuple(((line.ljust(columns), ink),) for line in page))

@@ -132,12 +132,10 @@ def time_chart(
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 
-    On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
-    logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
-    column if that is longer; otherwise zero crossings would tear the lines.  There a long run as a
-    whole has a logarithmic axis of time, too: steady growth is a slope, and a bounded error is
-    flat; and where one error passes another for the rest of the chart, there is a CROSSING.  Behind
-    all that are the same methods of a ghost, fainter.  A line ends where it leaves the chart.
+    A column spans the lowest to the highest value in it.  On a logarithmic axis it shows the
+    largest magnitude of the half swing that ends there, so that zeros do not tear the lines; a long
+    run as a whole has logarithmic time, too: steady growth is a slope.  A CROSSING is where one
+    error passes another for the rest of the chart.  A ghost's same methods lie behind, fainter.
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
