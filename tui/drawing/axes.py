@@ -201,42 +201,26 @@ def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, fl
     return end - seconds, end
 
 
-def envelope(x: Floats, values: Floats, hold: float) -> Floats:
-    """Return at each x the largest value of its piece of `hold` seconds and the piece before."""
-    if not hold or not len(x):
-        return values
-    starts = np.flatnonzero(np.diff(np.floor(x / hold), prepend=-1.0))
-    largest = np.fmax.reduceat(values, starts, axis=0)
-    largest[1:] = np.fmax(largest[1:], largest[:-1].copy())
-    return np.repeat(largest, np.diff(starts, append=len(x)), axis=0)
-
-
 def per_column(
-    x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int
+    x: Floats, low: Floats, high: Floats, edges: Floats, hold: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Return the lowest `low` and highest `high` of the rows in each part of [start, end].
+    """Return the lowest `low` and highest `high` of the rows in each column or `hold` before it.
 
-    x ascends.  Returns (columns, series); nan where no row falls into a column.
+    x ascends; a column lies between two edges.  Returns (columns, series); nan where no row is, and
+    in columns after the last row.
     """
-    lows = np.full((columns, low.shape[1]), np.nan)
+    lows = np.full((len(edges) - 1, low.shape[1]), np.nan)
     highs = lows.copy()
     # A row on an edge belongs to the right-hand column, however the edge is rounded.
-    slack = 1e-9 * (end - start) / columns
-    edges = np.searchsorted(x, np.linspace(start, end, columns + 1) - slack)
-    edges[-1] = np.searchsorted(x, end, "right")
-    filled = np.flatnonzero(edges[1:] > edges[:-1])
+    slack = 1e-9 * np.diff(edges)
+    begins = np.searchsorted(x, edges[:-1] - slack - hold)
+    ends = np.searchsorted(x, edges[1:] - slack)
+    ends[-1] = np.searchsorted(x, edges[-1], "right")
+    begun = np.append(0, ends[:-1]) < len(x)
+    filled = np.flatnonzero((ends > begins) & begun)
     if len(filled):
-        lows[filled] = np.fmin.reduceat(low[: edges[-1]], edges[filled], axis=0)
-        highs[filled] = np.fmax.reduceat(high[: edges[-1]], edges[filled], axis=0)
+        pairs = np.stack([begins[filled], ends[filled]], axis=1).ravel()
+        beyond = np.full((1, low.shape[1]), np.nan)  # so that the end is a row, too
+        lows[filled] = np.fmin.reduceat(np.vstack([low, beyond]), pairs, axis=0)[::2]
+        highs[filled] = np.fmax.reduceat(np.vstack([high, beyond]), pairs, axis=0)[::2]
     return lows, highs
-
-
-def held(x: Floats, values: Floats, start: float, end: float, columns: int, hold: float) -> Floats:
-    """Return the largest value of the last `hold` seconds at each column, (columns, series)."""
-    column = (end - start) / columns
-    back = min(math.ceil(hold / column), columns)
-    _, highs = per_column(x, values, values, start - back * column, end, back + columns)
-    largest: Floats = np.fmax.reduce([highs[at : at + columns] for at in range(back + 1)])
-    begun = math.ceil((x[-1] - start) / column) if len(x) else 0
-    largest[max(begun, 1) :] = np.nan
-    return largest

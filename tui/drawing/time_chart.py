@@ -12,8 +12,6 @@ from engine.methods import Cast
 from tui.drawing.axes import (
     Axis,
     Floats,
-    envelope,
-    held,
     linear_axis,
     log_axis,
     log_time_axis,
@@ -107,24 +105,23 @@ class _Run(NamedTuple):
     low: Floats  # (rows, methods)
     high: Floats
 
-    def extremes(self, axis: Axis, columns: int) -> tuple[Floats, Floats]:
+    def extremes(self, edges: Floats) -> tuple[Floats, Floats]:
         """Return the lowest and the highest value in each column, (columns, methods)."""
-        return per_column(self.window.x, self.low, self.high, axis.low, axis.high, columns)
+        return per_column(self.window.x, self.low, self.high, edges)
 
-    def largest(self, axis: Axis, columns: int, log_time: bool) -> Floats:
+    def largest(self, edges: Floats, log_time: bool) -> Floats:
         """Return log10 of the largest magnitude at each column, (columns, methods).
 
         At the start errors are zero, which has no logarithm.
         """
         x = self.window.x
-        repeats = self.window.repeats
+        hold = self.window.repeats
+        if not log_time:  # whole columns: nothing flickers while they move
+            column = float(edges[-1] - edges[0]) / (len(edges) - 1)
+            hold = column * math.ceil(hold / column)
         known = np.where(x[:, None] > 0, np.fmax(abs(self.low), abs(self.high)), np.nan)
         logs = np.log10(np.maximum(known, FLOOR))
-        if not log_time:
-            return held(x, logs, axis.low, axis.high, columns, repeats)
-        logs = envelope(x, logs, repeats)
-        x = np.log10(np.maximum(x, 1e-9))
-        return per_column(x, logs, logs, axis.low, axis.high, columns)[1]
+        return per_column(x, logs, logs, edges, hold)[1]
 
 
 def time_chart(
@@ -150,12 +147,14 @@ def time_chart(
         label_width = y_axis.label_width
     columns = width - 1 - ROOM - label_width
     x_axis = _time_axis(window, shown, columns, log_time)
+    places_of_edges = np.linspace(x_axis.low, x_axis.high, columns + 1)
+    edges = 10.0**places_of_edges if log_time else places_of_edges
     if shown.log:
-        largest = [run.largest(x_axis, columns, log_time) for run in runs]
+        largest = [run.largest(edges, log_time) for run in runs]
         y_axis = _log_y_axis(np.hstack(largest), [*levels.values()], rows)
         sides = [(each, each) for each in largest]
     else:
-        sides = [run.extremes(x_axis, columns) for run in runs]
+        sides = [run.extremes(edges) for run in runs]
     plot = _Plot(Canvas(width, height), x_axis, y_axis, columns, rows, shown.log)
     plot.draw_axes()
     plot.draw_marks(marks.changes, levels, log_time)

@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -7,8 +8,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tui.drawing.axes import (
-    envelope,
-    held,
     linear_axis,
     log_axis,
     log_time_axis,
@@ -103,13 +102,6 @@ def test_a_long_run_is_labelled_in_s_min_h_and_days():
     assert [round(10**place) for place in axis.labels] == [1, 5, 60, 300, 3600, 18000, 86400]
 
 
-def test_an_envelope_holds_the_largest_value_for_one_piece_or_two():
-    x = np.arange(0.0, 6.0, 0.5)
-    values = np.where(x == 2.5, 9.0, 1.0)[:, None]
-    assert envelope(x, values, 1.0).ravel().tolist() == [1] * 4 + [9] * 4 + [1] * 4
-    assert envelope(x, values, 0.0) is values
-
-
 @st.composite
 def series(draw):
     """Times that ascend, some of them equal, on an edge or well beside it; values with gaps."""
@@ -119,41 +111,18 @@ def series(draw):
     return x, low, low + draw(arrays(np.float64, (count, 2), elements=st.floats(0, 10)))
 
 
-@given(series(), st.integers(1, 30))
-def test_a_column_has_the_lowest_low_and_the_highest_high_of_its_rows(data, columns):
+@given(series(), st.integers(1, 30), st.just(0.0) | st.floats(0.01, 50))
+def test_a_column_has_the_extremes_of_its_rows_and_of_those_held_from_before(data, columns, hold):
     x, low, high = data
-    lows, highs = per_column(x, low, high, 0, 40, columns)
-    edges = (
-        np.linspace(0, 40, columns + 1) - 1e-9 * 40 / columns
-    )  # a row there belongs to the right
+    edges = np.linspace(0, 40, columns + 1)
+    lows, highs = per_column(x, low, high, edges, hold)
+    edges -= 1e-9 * 40 / columns  # a row on an edge belongs to the right
     edges[-1] = np.nextafter(40, 41)
-    for column in range(columns):
-        inside = (x >= edges[column]) & (x < edges[column + 1])
+    for column, (begin, end) in enumerate(pairwise(edges)):
+        inside = (x >= begin - hold) & (x < end) & (column == 0 or bool(np.any(x >= begin)))
         rows = np.vstack([low[inside], [[np.nan] * 2]]), np.vstack([high[inside], [[np.nan] * 2]])
         assert np.array_equal(lows[column], np.fmin.reduce(rows[0]), equal_nan=True)
         assert np.array_equal(highs[column], np.fmax.reduce(rows[1]), equal_nan=True)
-
-
-@given(series(), st.integers(1, 30), st.floats(0, 50))
-def test_a_held_column_is_the_largest_of_those_before_it_up_to_the_end_of_the_data(
-    data, columns, hold
-):
-    x, _, high = data
-    largest = held(x, high, 0, 40, columns, hold)
-    plain = per_column(x, high, high, 0, 40, columns)[1]
-    back = min(math.ceil(hold / (40 / columns)), columns)
-    for column in range(columns):
-        expected = np.fmax.reduce(plain[max(column - back, 0) : column + 1])
-        if column > 0 and not (len(x) and x[-1] > column * 40 / columns):
-            expected = np.full(2, np.nan)
-        assert np.array_equal(largest[column], expected, equal_nan=True)
-
-
-def test_values_from_before_the_chart_are_held_into_its_first_columns():
-    x = np.array([0.5, 1.5, 2.5])
-    values = np.array([[9.0], [1.0], [2.0]])
-    assert held(x, values, 1, 3, 2, 0.0).ravel().tolist() == [1, 2]
-    assert held(x, values, 1, 3, 2, 1.0).ravel().tolist() == [9, 2]
 
 
 @given(st.floats(0, 1e9), st.floats(1, 1e4), st.integers(5, 200))

@@ -7,7 +7,7 @@ from hypothesis.extra.numpy import arrays
 from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, inks, size
-from tui.drawing.axes import held, per_column, time_span
+from tui.drawing.axes import per_column, time_span
 from tui.drawing.chart import Series, loglog_chart
 from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
 from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, Marks, time_chart
@@ -69,10 +69,12 @@ def test_every_column_shows_its_extremes_or_on_a_logarithmic_axis_its_largest_ma
         values = np.copysign(0.5 + abs(values), values)  # the smallest is on the axis, too
     data = window(x, values, repeats=repeats)
     found, dot, columns = plotted(chart(data, width, height, seconds=10, shown=[0], log=log), log)
-    span = time_span(x, 10, columns)
-    expected = per_column(x, values[:, None], values[:, None], *span, columns)
+    edges = np.linspace(*time_span(x, 10, columns), columns + 1)
+    expected = per_column(x, values[:, None], values[:, None], edges)
     if log:
-        expected = [np.log10(held(x, abs(values)[:, None], *span, columns, repeats))]
+        hold = np.ceil(repeats / (10 / columns)) * 10 / columns
+        sizes = abs(values)[:, None]
+        expected = [np.log10(per_column(x, sizes, sizes, edges, hold)[1])]
     for extremes in expected:
         for column, value in enumerate(extremes.ravel()):
             if not np.isnan(value):
@@ -180,7 +182,7 @@ def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
     assert len({min(column) // 4 for column in heights}) == 1
     growing = [max(column) for column in heights]
     assert growing == sorted(growing, reverse=True)
-    assert growing[0] - growing[-1] >= 20
+    assert growing[0] - growing[-1] >= 16
 
 
 def test_where_one_error_passes_another_for_good_there_is_a_cross():
