@@ -36,6 +36,8 @@ class History:
         self._model = scene.equations
         self._reference = self._model.reference(scene.theta, scene.omega)
         self._extra = [each.name for each in self._model.quantities()]
+        common = ("energy_error", "theta_error", "shadow_error")
+        self._quantities: tuple[Quantity, ...] = (*common, *self._extra, "energy")
         self._repeats = (self.exact.period or 0.0) / (2 if self.exact.regime == "libration" else 1)
         self._capacity = capacity
         self._current: Row | None = None
@@ -143,10 +145,6 @@ class History:
         self._last_row = self.rows.last_step(self.rows.count)
         if self._returned is not None and self._returned.step > step:
             self._returned = None
-
-    @property
-    def _quantities(self) -> tuple[Quantity, ...]:
-        return "energy_error", "theta_error", "shadow_error", *self._extra, "energy"
 
     @property
     def rows(self) -> "Rows":

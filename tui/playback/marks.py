@@ -58,5 +58,5 @@ def _read(path: Path) -> list[Mark]:
     return sorted(marks, key=lambda mark: mark.clock)
 
 
-def _mark(clock: Any, run: Any, step: Any, text: Any = None) -> Mark:
-    return Mark(float(clock), int(run), int(step), None if text is None else printable(str(text)))
+def _mark(clock: Any, run: Any, step: Any, text: Any) -> Mark:
+    return Mark(float(clock), int(run), int(step), text and printable(str(text)))

@@ -11,6 +11,9 @@ Quantity = str
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
+SHOT = ("quantity", "log", "seconds", "theta", "ring", "line")
+"""What a shot sets of the same name."""
+
 LARGEST = 1e6
 """Larger values leave the chart, so that a method that fails leaves room for the others."""
 
@@ -56,18 +59,12 @@ class Shown(NamedTuple):
         front = cast.intersection(shot.front) or cast
         return self._replace(
             hidden=frozenset(cast - front),
-            quantity=shot.quantity,
-            log=shot.log,
-            seconds=shot.seconds,
             stretch=None,
-            theta=shot.theta,
             overview=False,
-            ring=shot.ring,
-            line=shot.line,
+            **{name: getattr(shot, name) for name in SHOT},
         )
 
     def places(self, cast: Cast) -> list[int]:
-        """Return the places in the cast of the methods that are shown."""
         return [place for place, method in enumerate(cast) if method.key not in self.hidden]
 
     def toggled(self, place: int, cast: Cast) -> "Shown":
@@ -78,9 +75,8 @@ class Shown(NamedTuple):
 
     def alone(self, place: int, cast: Cast) -> "Shown":
         """Show this method alone, or all of them if it is alone already."""
-        if self.places(cast) == [place]:
-            return self._replace(hidden=frozenset())
-        return self._replace(hidden=frozenset(each.key for each in cast if each is not cast[place]))
+        others = frozenset(method.key for method in cast) - {cast[place].key}
+        return self._replace(hidden=frozenset() if self.hidden == others else others)
 
     def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
         """Return the quantity `ahead` places after the chosen one, among those of the scene."""
@@ -101,6 +97,4 @@ class Shown(NamedTuple):
 
     def of(self, run: int) -> "Shown":
         """Leave out the zoom into another run."""
-        if self.stretch is None or self.stretch.run == run:
-            return self
-        return self._replace(stretch=None)
+        return self if self.stretch and self.stretch.run == run else self._replace(stretch=None)

@@ -13,12 +13,10 @@ from textual.reactive import var
 from textual.timer import Timer
 from textual.widget import Widget
 
-from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from recordings import library
 from tui.cli.errors import explained
-from tui.cli.time_limit import limited
 from tui.playback.common import State, doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -382,17 +380,10 @@ class SourceScreen(SizedScreen[None]):
 
     def action_describe(self) -> None:
         """Describe in words what runs and what is on screen."""
-        from tui.words.orbit import period_sentence  # with NumPy
-
         titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
         panes = "; ".join(Content.from_markup(title).plain for title in titles if title)
         view = f"On screen: {VIEWS[self.view].title}; {panes}."
-        try:
-            with limited("a period"):
-                period = period_sentence(self.source)
-        except OwnMethodError as error:
-            period = str(error)
-        self.show_text("In words", *description(self.source), period, view)
+        self.show_text("In words", *description(self.source), view)
 
     def action_screenshot(self) -> None:
         """Save the screen next to the recordings."""

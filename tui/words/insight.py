@@ -5,7 +5,7 @@ Each states only what was measured; a forecast extrapolates a measured slope.
 
 import math
 import string
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -152,25 +152,19 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     """Return all insights on the methods that are shown, the most important first; at least one."""
     ended = {at: each for at, each in endings(source).items() if each.method.key not in hidden}
-    found = list(_on_methods(source, ended, hidden))
+    first = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
+    found = [milestone_insight(each, _is_conserved(source)) for each in first]
+    if staying := bounded(source, hidden):
+        found.append(staying)
+    for index, method in enumerate(source.scene.cast):
+        own = drift(source, index)
+        if own and method.key not in hidden and (index not in ended or own.kind in IRREGULAR):
+            found.append(own)
     if not found:
         return [_so_far(source, hidden)]
     watch = _watch(source, hidden)
     is_outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
     return [*found, watch] if watch and not is_outdated else found
-
-
-def _on_methods(
-    source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]
-) -> Iterator[Insight]:
-    for milestone in sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step)):
-        yield milestone_insight(milestone, _is_conserved(source))
-    if staying := bounded(source, hidden):
-        yield staying
-    for index, method in enumerate(source.scene.cast):
-        found = drift(source, index) if method.key not in hidden else None
-        if found and (index not in ended or found.kind in IRREGULAR):
-            yield found
 
 
 def endings(source: Source) -> dict[int, Milestone]:

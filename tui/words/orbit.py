@@ -3,8 +3,7 @@
 import math
 
 from engine.methods import Method
-from engine.phase_space.section import OrbitKind, least_lyapunov, numerical_period
-from tui.playback.source import Source
+from engine.phase_space.section import OrbitKind, least_lyapunov
 from tui.words.numbers import counted
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
@@ -70,20 +69,3 @@ def sentence(method: Method, kind: OrbitKind) -> str:
     if spirals:
         return f"It {words}, {near}"
     return f"Regular: {near}" if method.symplectic else f"A slow spiral: {near}"
-
-
-def period_sentence(source: Source) -> str:
-    """Return how long each method's swing takes, beside the exact one; empty if unknown."""
-    scene = source.scene
-    exact = source.exact.period
-    if exact is None or scene.why_not_mapped:
-        return ""
-    start = scene.theta, scene.omega
-    taken = []
-    for method, h in zip(scene.cast, source.stepping.own, strict=True):
-        if period := numerical_period(method, scene.equations, abs(h), start):
-            taken.append(f"{method.label} {period:.6g} s")
-    if not taken:
-        return ""
-    periods = ", ".join(taken)
-    return f"From this start, a period takes {periods}; the exact one is {exact:.6g} s."

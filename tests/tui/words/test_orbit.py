@@ -7,9 +7,7 @@ import pytest
 
 from engine.methods import RK4, VELOCITY_VERLET
 from engine.phase_space.section import OrbitKind
-from engine.scenes import Scene
-from tui.playback.live import Live
-from tui.words.orbit import cells, period_sentence, sentence
+from tui.words.orbit import cells, sentence
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
@@ -40,10 +38,3 @@ def test_numbers_that_there_are_not_are_a_hyphen():
     assert cells(VELOCITY_VERLET, LOST) == ("undecided", "-", "-", "-", "0 within 0.006")
     still = replace(REGULAR, rotation=0.0, lyapunov=float("inf"))
     assert cells(VELOCITY_VERLET, still)[1:] == ("0.0000000", "-", "1:6", "-")
-
-
-def test_the_period_of_each_method_stands_beside_the_exact_one():
-    sentence = period_sentence(Live(Scene(theta=0.1, h=0.1)))
-    periods = ("Symplectic Euler 1.9991 s", "Velocity Verlet 1.99907 s", "RK4 2.00746 s")
-    assert all(period in sentence for period in (*periods, "2.00732 s"))
-    assert period_sentence(Live(Scene(theta=0.0))) == ""
