@@ -11,6 +11,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Entry, Event, noticed
 from recordings.recorder import FLUSH_EVERY, Recorder
+from recordings.recording import Recording
 
 SCENE = Scene("test", theta=2.0, h=0.1)
 
@@ -20,28 +21,28 @@ def start(run: int = 1, scene: Scene = SCENE) -> Event:
 
 
 def two_runs() -> list[Entry]:
-    """Everything that a recording can hold: two runs, of which the second continues from the first, and all events."""
+    """Two runs, of which the second continues from the first, and all events."""
     entries = []
 
     def note(clock: float, value: Sample | Event) -> None:
         entries.append(Entry(clock, value))
 
+    def advance(lockstep: Lockstep, steps: int, *clocks: float) -> None:
+        for clock in clocks:
+            lockstep.advance(steps)
+            note(clock, lockstep.sample())
+
     first = Lockstep(SCENE, run=1)
     note(0.0, start())
     note(0.0, first.sample())
-    for clock in (0.5, 1.0, 1.5):
-        first.advance(3)
-        note(clock, first.sample())
+    advance(first, 3, 0.5, 1.0, 1.5)
     note(1.5, Event("set_h", 1, 9, first.t, h=0.05))
     first.set_stepping(Stepping(0.05))
     note(1.5, Event("speed", 1, 9, first.t, speed=2.0))
-    for clock in (2.0, 2.5):
-        first.advance(3)
-        note(clock, first.sample())
+    advance(first, 3, 2.0, 2.5)
     note(2.5, Event("pause", 1, 15, first.t))
     note(2.5, Event("mark", 1, 15, first.t, text="what is this?"))
-    first.advance(1)
-    note(2.5, first.sample())  # a step while paused: the clock stands
+    advance(first, 1, 2.5)  # a step while paused: the clock stands
     note(2.5, Event("resume", 1, 16, first.t))
     second = Lockstep(SCENE, run=2)
     second.advance(9)
@@ -52,10 +53,12 @@ def two_runs() -> list[Entry]:
     note(2.75, Event("set_h", 2, 12, second.t, h=-0.1, equal_cost=True))
     second.set_stepping(Stepping(-0.1, equal_cost=True))
     note(2.75, second.sample())
-    for clock in (3.5, 4.0):
-        second.advance(2)
-        note(clock, second.sample())
+    advance(second, 2, 3.5, 4.0)
     return entries
+
+
+def samples_of(recording: Recording) -> list[Entry]:
+    return [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
 
 
 def record(path: Path, entries: list[Entry], wall=None) -> Path:

@@ -32,10 +32,7 @@ def write(path: Path, entries: Iterator[list[Part]], chunk_size: int = 1 << 20) 
     """Write entries as a finished file."""
     with path.open("wb") as stream:
         writer = Writer(
-            stream,
-            chunk_size=chunk_size,
-            compression=CompressionType.ZSTD,
-            enable_data_crcs=True,
+            stream, chunk_size=chunk_size, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
         writer.start("pendu", "forger")
         schema = writer.register_schema("x", "jsonschema", b'{"type": "object"}')

@@ -40,20 +40,19 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monk
 
 
 def test_a_new_recording_has_a_free_name_with_the_time(folder):
-    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00.mcap"
     folder.mkdir()
-    (folder / "2026-11-20T12-00-00.mcap.part").touch()
-    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00-2.mcap"
-    (folder / "2026-11-20T12-00-00-2.mcap").touch()
-    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00-3.mcap"
+    for name, taken in (("", ".mcap.part"), ("-2", ".mcap"), ("-3", ".mcap")):
+        free = folder / f"2026-11-20T12-00-00{name}.mcap"
+        assert new_path(now=NOON) == free
+        free.with_suffix(taken).touch()
 
 
 def test_a_name_that_ends_in_a_number_keeps_it(folder):
     folder.mkdir()
-    (folder / "lesson-1.mcap").touch()
-    assert free_path(folder / "lesson-1.mcap") == folder / "lesson-1-2.mcap"
-    (folder / "lesson-1-2.mcap").touch()
-    assert free_path(folder / "lesson-1.mcap") == folder / "lesson-1-3.mcap"
+    for name in ("lesson-1-2.mcap", "lesson-1-3.mcap"):
+        (folder / "lesson-1.mcap").touch()
+        assert free_path(folder / "lesson-1.mcap") == folder / name
+        (folder / name).touch()
 
 
 def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
@@ -66,12 +65,16 @@ def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
     assert listing()[0].bytes == new.stat().st_size
 
 
-def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(folder, tmp_path):
+def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
+    folder, tmp_path, monkeypatch
+):
     old, new = fill(folder, old=100, new=1)
     elsewhere = tiny(tmp_path / "elsewhere.mcap")
     assert resolve(str(elsewhere)) == elsewhere
     assert resolve("latest") == new
     assert resolve("old") == resolve("old.mcap") == old
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drift").mkdir()  # a folder hides no file
     assert resolve("drift") == GOLDEN / "drift.mcap"
 
 
@@ -121,7 +124,3 @@ def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, mon
     assert list(folder.iterdir()) == [stubborn]
 
 
-def test_a_folder_does_not_hide_a_bundled_recording_of_the_same_name(folder, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "drift").mkdir()
-    assert resolve("drift") == GOLDEN / "drift.mcap"

@@ -8,18 +8,8 @@ import pytest
 from mcap.reader import make_reader
 
 from recordings import events
+from tests.recordings.killed import HEUN
 from tests.tui.command_line import pendu
-
-HEUN = '''
-def my_heun(force, phase, h):
-    """Heun: the mean of the slopes at the start and at an Euler step."""
-    theta, omega = phase
-    while True:
-        a = force(theta)
-        b = force(theta + h * omega)
-        theta, omega = theta + h / 2 * (2 * omega + h * a), omega + h / 2 * (a + b)
-        yield theta, omega
-'''
 
 
 @pytest.fixture
@@ -27,31 +17,19 @@ def path(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(events, "_own", {})
     Path("mine.py").write_text(HEUN)
-    made = pendu(
-        "run",
-        "--methods",
-        "rk4",
-        "--method",
-        "mine.py:my_heun",
-        "--time",
-        "20",
-        "--record",
-        "own.mcap",
-    )
+    own = "--method", "mine.py:my_heun"
+    made = pendu("run", "--methods", "rk4", *own, "--time", "20", "--record", "own.mcap")
     assert made.code == 0
     return tmp_path / "own.mcap"
 
 
-def test_it_verifies_only_with_the_same_text_given_again(path):
+def test_it_verifies_only_with_the_same_text_given_again_and_the_others_without_it(path):
+    assert pendu("verify", path, "--methods", "rk4").code == 0
     pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun", "SHA-256")
     assert pendu("verify", path, "--method", "mine.py:my_heun").code == 0
     Path("mine.py").write_text(HEUN + "# another text\n")
     events._own.clear()
     pendu("verify", path, "--method", "mine.py:my_heun").refused(3, "my_heun", "its file as it was")
-
-
-def test_the_other_methods_verify_without_it(path):
-    assert pendu("verify", path, "--methods", "rk4").code == 0
 
 
 def test_the_recording_and_its_recovery_keep_the_text_and_its_hash(path):

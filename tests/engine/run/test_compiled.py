@@ -1,6 +1,5 @@
 """Compiled loops: the plain ones' bits, or the plain ones themselves."""
 
-import importlib
 import math
 from resource import RUSAGE_SELF, getrusage
 
@@ -24,28 +23,20 @@ each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: meth
 
 @needs_numba
 @each_method
-def test_many_steps_compiled_and_plain_end_on_the_same_bits(method):
+def test_many_steps_compiled_have_the_plain_ones_bits_and_leave_no_memory_behind(method):
     fast, slow = compiled.compiled(method, PENDULUM), PlainLoops(method, PENDULUM)
     assert fast is not slow
-    start = ((2.5, 0.3), 0.05, 200_000)
+    start = ((2.5, 0.3), 0.05, 20_000)
     assert fast.advance(*start, math.inf) == slow.advance(*start, math.inf)
 
+    def faults(runs):
+        before = getrusage(RUSAGE_SELF).ru_minflt
+        for _ in range(runs):
+            fast.travel((1.0, 0.0), 0.01, 2)
+        return getrusage(RUSAGE_SELF).ru_minflt - before
 
-@needs_numba
-@each_method
-def test_runs_of_compiled_loops_leave_no_memory_behind(method):
-    loops = compiled.compiled(method, PENDULUM)
-
-    def run(times):
-        for _ in range(times):
-            loops.travel((1.0, 0.0), 0.01, 2)
-
-    run(1000)
-    before = getrusage(RUSAGE_SELF).ru_minflt
-    run(20_000)
-    assert (
-        getrusage(RUSAGE_SELF).ru_minflt - before < 200
-    )  # pages; a list of BM4's in each run would fill 1000
+    faults(1000)
+    assert faults(20_000) < 200  # pages; a list of BM4's in each run would fill 1000
 
 
 @needs_numba
@@ -53,15 +44,14 @@ def test_runs_of_compiled_loops_leave_no_memory_behind(method):
 @pytest.mark.parametrize(
     "model", [kind(98.1) for kind in MODELS.values() if not kind.without_force], ids=str
 )
-def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model):
+@pytest.mark.parametrize("h", [0.001, -0.02, 0.7, 3.0])
+def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
+    start = ((math.radians(179.9), -0.2), h, 2_000)
     fast, slow = compiled.compiled(method, model), PlainLoops(method, model)
-    for h in (0.001, -0.02, 0.7, 3.0):
-        start = ((math.radians(179.9), -0.2), h, 2_000)
-        assert repr(fast.advance(*start, 1e9)) == repr(
-            slow.advance(*start, 1e9)
-        )  # repr: nan where no step was taken
-        if fast.advance(*start, 1e9)[0] == 2_000:
-            assert fast.travel(*start) == slow.travel(*start)
+    found = fast.advance(*start, 1e9)
+    assert repr(found) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
+    if found[0] == 2_000:
+        assert fast.travel(*start) == slow.travel(*start)
 
 
 @needs_numba
@@ -90,13 +80,14 @@ def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_afte
     method, ahead, monkeypatch
 ):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
-    loops = compiled.TieredLoops(method, PENDULUM, expected_steps=ahead)
+    loops, plain = (
+        compiled.TieredLoops(method, PENDULUM, expected_steps=ahead),
+        PlainLoops(method, PENDULUM),
+    )
     for n in (1_000, 1_000, 2_000, 500):
         start = ((2.0, 0.0), 0.05, n)
-        assert loops.travel(*start) == PlainLoops(method, PENDULUM).travel(*start)
-        assert loops.advance(*start, math.inf) == PlainLoops(method, PENDULUM).advance(
-            *start, math.inf
-        )
+        assert loops.travel(*start) == plain.travel(*start)
+        assert loops.advance(*start, math.inf) == plain.advance(*start, math.inf)
 
 
 @needs_numba
@@ -129,22 +120,20 @@ TieredLoops(scene.cast[0], scene.equations).travel((1.0, 0.0), 0.05, 10_000)
 
 
 @needs_numba
-def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used():
+def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used(monkeypatch):
     class OtherSine:
         """Numba where one sine in two thousand is a bit off."""
 
         @staticmethod
         def njit(function):
-            return lambda x: (
-                math.nextafter(function(x), 2.0) if round(1000 * x) % 2000 == 7 else function(x)
-            )
+            def sine(x):
+                right = function(x)
+                return math.nextafter(right, 2.0) if round(1000 * x) % 2000 == 7 else right
 
-    assert not compiled._same_sine.__wrapped__(OtherSine)
-    assert compiled._same_sine.__wrapped__(importlib.import_module("numba"))
+            return sine
 
-
-def test_the_check_of_the_sine_decides(monkeypatch):
-    monkeypatch.setattr(compiled, "import_module", lambda name: None)
-    monkeypatch.setattr(compiled, "_same_sine", lambda numba: False)
+    monkeypatch.setattr(compiled, "_same_sine", compiled._same_sine.__wrapped__)
     monkeypatch.setattr(compiled, "_compiled", compiled._compiled.__wrapped__)
+    assert not isinstance(compiled.compiled(GENERAL[0], PENDULUM), PlainLoops)
+    monkeypatch.setattr(compiled, "import_module", lambda name: OtherSine)
     assert isinstance(compiled.compiled(GENERAL[0], PENDULUM), PlainLoops)

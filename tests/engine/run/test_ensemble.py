@@ -30,9 +30,8 @@ def watched(band=math.inf, which=slice(None)):
 def path(method, h, steps, fast, which=slice(None)):
     """The phases after each step: (steps, 2, swings).  A band below 0 stops at each."""
     start = THETA[which], OMEGA[which]
-    stops = (compiled if fast else plain)(method, PENDULUM)(
-        start, np.full(len(start[0]), h), watched(-1.0, which), steps
-    )
+    watch = (compiled if fast else plain)(method, PENDULUM)
+    stops = watch(start, np.full(len(start[0]), h), watched(-1.0, which), steps)
     return np.array([np.array(phase) for _, phase in stops])
 
 
@@ -45,58 +44,49 @@ def test_no_swing_depends_on_the_others(fast):
 
 @needs_numba
 def test_compiled_steps_are_freed():
-    """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
-    many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
-    seen = Watched(
-        many[0], *(np.full(1024, math.inf) for _ in range(2)), *(np.zeros(1024) for _ in range(3))
-    )
+    """Numba 0.68 keeps all that a compiled generator yields: 4 pages a step of these."""
+    start, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
+    numbers = [np.full(1024, value) for value in (0.5, math.inf, math.inf, 0.0, 0.0, 0.0)]
     watch = compiled(VELOCITY_VERLET, PENDULUM)
-    next(watch(many, h, seen, 1000))
+    next(watch(start, h, Watched(*numbers), 1000))
     before = getrusage(RUSAGE_SELF).ru_minflt
-    next(watch(many, h, seen, 4000))
+    next(watch(start, h, Watched(*numbers), 4000))
     assert getrusage(RUSAGE_SELF).ru_minflt - before < 4000
 
 
 @each_way
 def test_a_swing_without_limits_does_not_stop_the_others(fast):
-    seen, h = watched(), np.full(37, 0.2)
-    stops = []
-    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM)(
-        (THETA, OMEGA), h, seen, 100
-    ):
+    seen, stops = watched(), []
+    watch = (compiled if fast else plain)(GENERAL[0], PENDULUM)
+    for done, (theta, _) in watch((THETA, OMEGA), np.full(37, 0.2), seen, 100):
         stops.append(done)
-        seen.top[np.abs(phase[0]) > seen.top] = math.inf
-    points = path(GENERAL[0], 0.2, 100, fast)
-    over = np.abs(points[:, 0]) > math.pi
+        seen.top[np.abs(theta) > seen.top] = math.inf
+    over = np.abs(path(GENERAL[0], 0.2, 100, fast)[:, 0]) > math.pi
     assert stops == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
 
 
 @each_way
 @each_method
 def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(method, fast):
-    h = np.full(37, 0.2)
-    seen = watched()
+    seen, points = watched(), path(method, 0.2, 10, fast)
     expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.2), 10)
-    points = path(method, 0.2, 10, fast)
     assert points == pytest.approx(np.array([*expected]), rel=0, abs=1e-13)  # rounding
-    ((done, phase),) = (compiled if fast else plain)(method, PENDULUM)((THETA, OMEGA), h, seen, 10)
+    watch = (compiled if fast else plain)(method, PENDULUM)
+    ((done, phase),) = watch((THETA, OMEGA), np.full(37, 0.2), seen, 10)
     assert done == 10
-    assert np.array(phase) == pytest.approx(points[-1], rel=0, abs=1e-14)
     off = PENDULUM.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
-    assert seen.off == pytest.approx(off[-1], rel=0, abs=1e-14)
-    assert seen.worst == pytest.approx(np.abs(off).max(axis=0), rel=0, abs=1e-14)
     width = np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0))
-    assert seen.width == pytest.approx(width, rel=0, abs=1e-14)
+    found = np.array([*phase, seen.off, seen.worst, seen.width])
+    last = [*points[-1], off[-1], np.abs(off).max(axis=0), width]
+    assert found == pytest.approx(np.array(last), rel=0, abs=1e-14)
 
 
 @each_way
 def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast):
-    watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM), np.full(37, 0.2)
-    points = path(GENERAL[0], 0.2, 100, fast)
-    over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1
-    done, _ = next(watch((THETA, OMEGA), h, watched(), 1000))
-    assert done == over
-    seen = watched(0.1)
-    done, _ = next(watch((THETA, OMEGA), h, seen, 1000))
+    watch, seen = (compiled if fast else plain)(GENERAL[0], PENDULUM), watched(0.1)
+    beyond = np.abs(path(GENERAL[0], 0.2, 100, fast)[:, 0]) > math.pi
+    over, _ = next(watch((THETA, OMEGA), np.full(37, 0.2), watched(), 1000))
+    assert over == np.flatnonzero(beyond.any(axis=1))[0] + 1
+    done, _ = next(watch((THETA, OMEGA), np.full(37, 0.2), seen, 1000))
     assert 0 < done < over
     assert (seen.worst > 0.1).any()

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from itertools import islice
+from itertools import islice, takewhile
 
 import pytest
 from hypothesis import given
@@ -38,9 +38,8 @@ OVERFLOWING = replace(GENERAL[0], key="overflowing", phases=overflowing)
 @each_model
 @given(theta=angles, omega=angles, h=steps, n=st.integers(1, 40))
 def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h, n):
-    n = math.ceil(
-        n / method.force_evaluations
-    )  # the linear oscillator overflows after some 60 evaluations
+    # the linear oscillator overflows after some 60 evaluations
+    n = math.ceil(n / method.force_evaluations)
     phase, path = (theta, omega), []
     for _ in range(n):
         path.append(phase := method.step(model.force(), phase, h))
@@ -52,21 +51,17 @@ def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h,
 
 @given(theta=st.floats(1.01, 1e6), n=st.integers(1, 60))
 def test_a_method_that_overflows_is_carried_to_its_last_finite_step(theta, n):
-    path = []
-    for phase in islice(
-        overflowing(
-            lambda x: -9.81 * math.sin(x) if math.isfinite(x) else math.nan, (theta, 0.0), 0.1
-        ),
-        n,
-    ):
-        if not all(map(math.isfinite, phase)) or not energy(9.81, *phase) < math.inf:
-            break
-        path.append(phase)
+    def force(x):
+        return -9.81 * math.sin(x) if math.isfinite(x) else math.nan
+
+    def within(phase):
+        return all(map(math.isfinite, phase)) and energy(9.81, *phase) < math.inf
+
+    path = list(takewhile(within, islice(overflowing(force, (theta, 0.0), 0.1), n)))
     energies = [energy(9.81, *point) for point in path]
-    done, last, value, low, high = PlainLoops(OVERFLOWING, PENDULUM).advance(
-        (theta, 0.0), 0.1, n, math.inf
-    )
-    assert (done, last) == (len(path), path[-1] if path else (theta, 0.0))
+    loops = PlainLoops(OVERFLOWING, PENDULUM)
+    done, last, value, low, high = loops.advance((theta, 0.0), 0.1, n, math.inf)
+    assert (done, last) == (len(path), [(theta, 0.0), *path][-1])
     assert (low, high) == (min(energies, default=math.inf), max(energies, default=-math.inf))
     assert value == energies[-1] if path else math.isnan(value)
 
