@@ -9,7 +9,6 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from engine.run.lockstep import Sample
 from recordings.errors import RecordingError
 from recordings.events import Event
 from recordings.fields import without_extremes
@@ -17,7 +16,7 @@ from recordings.reader import read_contents
 from recordings.recording import Recording
 from recordings.recovery import recover
 from recordings.verification import verify
-from tests.recordings.examples import record, tiny, two_runs
+from tests.recordings.examples import record, samples_of, tiny, two_runs
 from tests.tui.command_line import pendu
 from tui.playback.replay import Replay
 
@@ -34,11 +33,10 @@ class Damaged:
         self.path.write_bytes(self.data)
         with Recording.open(self.path) as recording:
             self.entries = list(recording.entries())
+            self.samples = [value for _, value in samples_of(recording)]
             self.runs = [run.scene for run in recording.runs]
         with self.path.open("rb") as stream:
             self.chunks = read_contents(stream, check=True, progress=None).places
-        self.samples = sum(isinstance(value, Sample) for _, value in self.entries)
-        self._verified = verify(self.path).samples
 
     def cut(self, length: int) -> None:
         """Check that a file of this length reads as far as it goes."""
@@ -84,21 +82,16 @@ class Damaged:
         answer = pendu("export", self.path)
         numbers = {
             (sample.step, reading.theta, reading.energy_error)
-            for _, sample in self.entries
-            if isinstance(sample, Sample)
+            for sample in self.samples
             for reading in sample.readings
         }
         for row in csv.DictReader(answer.out.splitlines()):
-            assert (
-                int(row["step"]),
-                float(row["theta_rad"]),
-                float(row["energy_error"]),
-            ) in numbers
+            found = int(row["step"]), float(row["theta_rad"]), float(row["energy_error"])
+            assert found in numbers
         return bool(answer.err)
 
     def is_noticed_by_replay(self) -> bool:
         """Return whether a replay names a problem, and check every sample that it shows."""
-        samples = [value for _, value in self.entries if isinstance(value, Sample)]
         try:
             with Recording.open(self.path) as recording:
                 if recording.at(0.0) is None:
@@ -106,7 +99,7 @@ class Damaged:
                 replay = Replay(recording, clock=lambda: 0.0)
                 for tenth in range(11):
                     replay.seek(recording.length * tenth / 10)
-                    assert replay.sample in samples
+                    assert replay.sample in self.samples
                 return bool(recording.reason)
         except RecordingError:
             return True
@@ -117,21 +110,15 @@ class Damaged:
         end = begin + chance.randrange(1, 5_000)
         noise = chance.randbytes(min(end, len(self.data)) - begin)
         self.path.write_bytes(self.data[:begin] + noise + self.data[end:])
-        intact = [
-            place.offset
-            for place, following in self._with_ends()
-            if following <= begin or place.offset >= end
-        ]
+        begins = [place.offset for place in self.chunks]
+        ends = [*begins[1:], len(self.data)]
+        intact = {a for a, b in zip(begins, ends, strict=True) if b <= begin or a >= end}
         with self.path.open("rb") as stream:
-            contents = read_contents(stream, check=True, progress=None)
-            found = [place.offset for place in contents.places]
-        assert set(intact) <= set(found)
+            places = read_contents(stream, check=True, progress=None).places
+        found = {place.offset for place in places}
+        assert intact <= found
         self._check_recovered()
         return len(self.chunks) - len(found)
-
-    def _with_ends(self):
-        ends = [place.offset for place in self.chunks[1:]] + [len(self.data)]
-        return zip(self.chunks, ends, strict=True)
 
     def _check_recovered(self) -> None:
         """Check that what is saved is what was recorded."""
@@ -145,12 +132,7 @@ class Damaged:
                 if isinstance(value, Event):
                     assert (clock, value) in self.entries or value.kind == "stop"
                 else:
-                    was = [each for time, each in self.entries if time == clock]
-                    assert value in was or value in map(without_extremes, filter(_is_sample, was))
-
-
-def _is_sample(value: object) -> bool:
-    return isinstance(value, Sample)
+                    assert value in self.samples or value in map(without_extremes, self.samples)
 
 
 READERS = {

@@ -122,5 +122,3 @@ def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, mon
     monkeypatch.setattr(Path, "unlink", refuse)
     assert [item.path for item in listing() if delete(item)] == [other]
     assert list(folder.iterdir()) == [stubborn]
-
-

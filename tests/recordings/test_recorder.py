@@ -1,6 +1,7 @@
 """The recorder: valid files, written in time, even if the disk fails."""
 
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import jsonschema
@@ -9,10 +10,10 @@ from mcap.reader import make_reader
 from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
 from mcap.stream_reader import StreamReader
 
-from engine.run.lockstep import Lockstep
+from engine.run.lockstep import Lockstep, Sample
 from recordings.errors import DiskError
-from recordings.events import Event
-from recordings.format import decode_event
+from recordings.events import Entry, Event
+from recordings.format import EVENTS, decode_event
 from recordings.headless import simulate
 from recordings.library import free_path, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
@@ -46,106 +47,82 @@ def play(recorder, seconds, begin=0.0):
         recorder.sample(lockstep.sample(), frame * FRAME)
 
 
+def stepped(steps):
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(steps)
+    return lockstep.sample()
+
+
 def test_a_recording_is_valid_to_mcaps_strict_reader(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000)
-    with path.open("rb") as file:
-        records = list(StreamReader(file, validate_crcs=True).records)
-    assert next(record for record in records if isinstance(record, DataEnd)).data_section_crc
-    assert isinstance(records[-1], Footer)
-    assert records[-1].summary_crc
-    with path.open("rb") as file:
-        chunks = [
-            record
-            for record in StreamReader(file, emit_chunks=True).records
-            if isinstance(record, Chunk)
-        ]
+
+    def read(kind, **options):
+        with path.open("rb") as file:
+            records = list(StreamReader(file, **options).records)
+        return [record for record in records if isinstance(record, kind)]
+
+    chunks, messages = read(Chunk, emit_chunks=True), read(Message, validate_crcs=True)
+    (end,), (footer,), (statistics,) = map(read, (DataEnd, Footer, Statistics))
+    assert end.data_section_crc
+    assert footer.summary_crc
     assert all(chunk.uncompressed_crc and chunk.compression == "zstd" for chunk in chunks)
-    statistics = next(record for record in records if isinstance(record, Statistics))
-    messages = [record for record in records if isinstance(record, Message)]
-    assert (
-        statistics.message_count == len(messages) == sum(statistics.channel_message_counts.values())
-    )
     assert statistics.chunk_count == len(chunks) > 3
-    assert (statistics.message_start_time, statistics.message_end_time) == (
-        1_000_000_000,
-        5_000_000_000,
-    )
+    assert statistics.message_count == len(messages)
+    assert sum(statistics.channel_message_counts.values()) == len(messages)
+    times = statistics.message_start_time, statistics.message_end_time
+    assert times == (1_000_000_000, 5_000_000_000)
 
 
 def test_every_message_is_valid_against_its_schema_and_found_through_the_index(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs())
-    entries = two_runs()
     with path.open("rb") as file:
         reader = make_reader(file, validate_crcs=True)
-        count = 0
-        for schema, channel, message in reader.iter_messages():
-            assert schema.encoding == "jsonschema"
-            name = "pendu.Event" if channel.topic == "/pendu/events" else "pendu.Sample"
-            assert schema.name == name
-            jsonschema.validate(json.loads(message.data), json.loads(schema.data))
-            count += 1
-        assert count == reader.get_summary().statistics.message_count
-        theta = [
-            json.loads(message.data)["theta"]
-            for _, _, message in reader.iter_messages("/pendu/rk4")
-        ]
-        events = [
-            decode_event(message.data) for _, _, message in reader.iter_messages("/pendu/events")
-        ]
-        window = list(
-            reader.iter_messages(
-                "/pendu/rk4", starting_at=2_500_000_000, ending_before=3_500_000_000
-            )
-        )
-    assert theta == [
-        entry.value.readings[3].theta for entry in entries if not isinstance(entry.value, Event)
-    ]
-    assert [event._replace(arithmetic=None) for event in events[:-1]] == [
-        entry.value for entry in entries if isinstance(entry.value, Event)
-    ]
-    assert events[-1].kind == "stop"
-    assert [json.loads(message.data)["step"] for _, _, message in window] == [
-        9,
-        12,
-    ]  # at 1.5 and 2.0 s
+        messages = list(reader.iter_messages())
+        assert len(messages) == reader.get_summary().statistics.message_count
+        window = {"starting_at": 2_500_000_000, "ending_before": 3_500_000_000}
+        found = list(reader.iter_messages("/pendu/rk4", **window))
+    assert [json.loads(message.data)["step"] for *_, message in found] == [9, 12]  # 1.5 and 2.0 s
+    data = {}
+    for schema, channel, message in messages:
+        assert schema.encoding == "jsonschema"
+        assert schema.name == ("pendu.Event" if channel.topic == EVENTS else "pendu.Sample")
+        jsonschema.validate(json.loads(message.data), json.loads(schema.data))
+        data.setdefault(channel.topic, []).append(message.data)
+    values = [entry.value for entry in two_runs()]
+    theta = [value.readings[3].theta for value in values if isinstance(value, Sample)]
+    assert [json.loads(each)["theta"] for each in data["/pendu/rk4"]] == theta
+    *events, stop = (decode_event(each)._replace(arithmetic=None) for each in data[EVENTS])
+    assert events == [value for value in values if isinstance(value, Event)]
+    assert stop.kind == "stop"
 
 
 def test_a_repeated_sample_is_not_written(recorder):
-    lockstep = Lockstep(SCENE)
-    recorder.sample(lockstep.sample(), 0.1)
-    assert recorder.samples == 1
-    lockstep.advance(1)
-    recorder.sample(lockstep.sample(), 0.2)
-    assert recorder.samples == 2
+    for step, count in ((0, 1), (1, 2)):
+        recorder.sample(stepped(step), 0.1 + step)
+        assert recorder.samples == count
 
 
 def test_the_first_sample_of_a_run_has_no_extremes(tmp_path):
-    lockstep = Lockstep(SCENE, run=2)
-    lockstep.advance(7)
-    sample = lockstep.sample()
-    assert sample.readings[0].energy_error_low < sample.readings[0].energy_error
-    with Recorder(tmp_path / "a.mcap") as recorder:
-        recorder.event(start(2), 0.0)
-        recorder.sample(sample, 0.0)
+    sample = stepped(7)._replace(run=2)
+    first = sample.readings[0]
+    assert first.energy_error_low < first.energy_error
+    record(tmp_path / "a.mcap", [Entry(0.0, start(2)), Entry(0.0, sample)])
     with Recording.open(tmp_path / "a.mcap") as recording:
         reading = recording.sample(recording.at(0.0)).value.readings[0]
-    assert reading == sample.readings[0]._replace(energy_error_low=reading.energy_error)
+    assert reading == first._replace(energy_error_low=first.energy_error)
 
 
 @pytest.mark.parametrize(
     "write",
     [
-        lambda recorder, sample: recorder.sample(sample, float("nan")),
-        lambda recorder, sample: recorder.event(Event("mark", 1, 0, float("inf")), 0.0),
+        lambda recorder: recorder.sample(stepped(1), float("nan")),
+        lambda recorder: recorder.event(Event("mark", 1, 0, float("inf")), 0.0),
     ],
 )
 def test_invalid_input_is_refused_before_it_spoils_a_chunk(recorder, write):
-    lockstep = Lockstep(SCENE)
-    lockstep.advance(1)
-    sample = lockstep.sample()
     with pytest.raises(ValueError):  # noqa: PT011
-        write(recorder, sample)
-    recorder.sample(sample, 0.5)
+        write(recorder)
+    recorder.sample(stepped(1), 0.5)
     recorder.close()
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
@@ -171,12 +148,9 @@ def test_at_most_a_second_is_lost_when_the_process_dies(recorder):
 
 def test_a_single_step_while_paused_is_on_disk_at_once(recorder):
     play(recorder, 1.0)
-    lockstep = Lockstep(SCENE)
-    lockstep.advance(30)
-    recorder.event(Event("pause", 1, 30, lockstep.t), 1.0)
+    recorder.event(Event("pause", 1, 30, stepped(30).t), 1.0)
     for step in range(31, 40):
-        lockstep.advance(1)
-        recorder.sample(lockstep.sample(), 1.0)
+        recorder.sample(stepped(step), 1.0)
         assert left_by(recorder)[-1].value.step == step
 
 
@@ -188,9 +162,11 @@ def test_a_recording_is_overwritten_only_on_request(tmp_path):
     assert path.read_bytes() == before
     with Recorder(path, overwrite=True) as recorder:
         recorder.event(start(), 0.0)
-        recorder.sample(Lockstep(SCENE).sample(), 0.0)
+        recorder.sample(stepped(0), 0.0)
         assert path.read_bytes() == before  # until the new one is finished
     assert path.read_bytes() != before
+    with pytest.raises(DiskError, match="a recording needs a file"):
+        Recorder(Path("/dev/null"), overwrite=True)
 
 
 def test_two_labs_never_write_to_the_same_file(tmp_path, recorder):
@@ -213,32 +189,19 @@ def test_the_recorder_notices_a_removed_or_replaced_file_within_a_second(recorde
 
 def test_an_interrupted_run_leaves_a_complete_recording(tmp_path):
     path = tmp_path / "a.mcap"
-
-    def interrupted_run():
-        with Recorder(path, wall=None) as recorder:
-            for sample in simulate(SCENE, 100.0, recorder):
-                if sample.step == 50:
-                    raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted_run()
+    with suppress(KeyboardInterrupt), Recorder(path, wall=None) as recorder:
+        for sample in simulate(SCENE, 100.0, recorder):
+            if sample.step == 50:
+                raise KeyboardInterrupt
     verification = verify(path)
     assert verification.complete
     assert verification.samples == 51
 
 
-def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path):
-    recorder = Recorder(tmp_path / "a.mcap")
-    recorder.event(start(), 0.0)
-    recorder.sample(Lockstep(SCENE).sample(), 0.0)
-    (tmp_path / "a.mcap").write_text("precious")
-    with pytest.raises(DiskError, match=r"saved as a-2\.mcap"):
+def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path, recorder):
+    (tmp_path / "live.mcap").write_text("precious")
+    with pytest.raises(DiskError, match=r"saved as live-2\.mcap"):
         recorder.close()
-    assert (tmp_path / "a.mcap").read_text() == "precious"
-    assert verify(tmp_path / "a-2.mcap").complete
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a-2.mcap", "a.mcap"]
-
-
-def test_a_device_is_never_replaced_by_a_recording():
-    with pytest.raises(DiskError, match="a recording needs a file"):
-        Recorder(Path("/dev/null"), overwrite=True)
+    assert (tmp_path / "live.mcap").read_text() == "precious"
+    assert verify(tmp_path / "live-2.mcap").complete
+    assert {path.name for path in tmp_path.iterdir()} == {"live.mcap", "live-2.mcap"}
