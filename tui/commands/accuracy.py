@@ -37,6 +37,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
     wish = "find each method's cheapest h for this error; without --methods, try all of them"
     add("--target", metavar="ERROR", type=positive, help=wish)
+    margin = "reach a target FACTOR times as small, for other starts and longer times (1)"
+    add("--safety", metavar="FACTOR", type=positive, default=1.0, help=margin)
     limit = "limit of force evaluations; alone: find the least error within it"
     add("--budget", metavar="N", type=budget, help=limit)
     add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
@@ -74,6 +76,8 @@ def run(options: argparse.Namespace) -> int:
             "seconds are measured in this process, where others would disturb them; use workers "
             "with --cost evaluations."
         )
+    if options.safety < 1:
+        raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
     is_figure = figures.check_output(options)
     scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:

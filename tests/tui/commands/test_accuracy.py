@@ -52,6 +52,9 @@ def test_as_json_it_holds_points_orders_and_recommendation():
         again = study.run(method_of(row["method"]), round(5.0 / row["h"]), 10_000)
         assert (again.h, again.z) == (row["h"], row["z"])
         assert again.theta_error == row["error"] or row["why_not"]
+    cautious = pendu(*QUICK, "--target", "1e-4", "--safety", "2", "--json").json["recommendation"]
+    assert cautious["error"] <= 5e-5
+    assert cautious["force_evaluations"] > advice["force_evaluations"]
 
 
 def test_the_numbers_are_the_same_without_numba_and_in_other_processes():
@@ -105,6 +108,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
         (["--h-values", "1e9:0.1:3"], ["not a usable step"]),
         (["--time", "1e9"], ["take hours", "--h-values"]),
+        (["--safety", "0.5"], ["less than 1"]),
         (["--budget", "1.1e9"], ["out of range", "1e+09"]),
         (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
         (["--theta", "0"], ["at rest", "no error to measure"]),

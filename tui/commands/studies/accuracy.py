@@ -120,7 +120,7 @@ def measure(found: Findings) -> None:
             if options.target is None:
                 advice = least_error(wider, options.error, options.budget, show_share)
             else:
-                wish = (options.error, options.target, options.budget)
+                wish = (options.error, options.target / options.safety, options.budget)
                 advice = least_cost(wider, *wish, show_share, clock, timed_loops)
             found.advice.append(advice)
 
@@ -264,6 +264,8 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
     wish = f"smallest {kind} error"
     if options.target is not None:
         wish = f"{kind} error up to {options.target:g}"
+        if options.safety > 1:
+            wish += f" with a margin of {options.safety:g}"
     if options.budget is not None:
         wish += f" within {options.budget} force evaluations"
     point = advice.point
@@ -315,7 +317,7 @@ def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
 
 def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
     attempts = [_attempt_fields(found, attempt) for attempt in advice.attempts]
-    options = fields_of(found.options, "target", "budget")
+    options = fields_of(found.options, "target", "budget", "safety")
     best = attempts[0] if advice.point else dict.fromkeys(attempts[0])
     reason = None if advice.point else "no method gets there"
     return {"time": advice.time, **options, **best, "why_not": reason, "attempts": attempts}
