@@ -147,8 +147,11 @@ def time_chart(
         label_width = y_axis.label_width
     columns = width - 1 - ROOM - label_width
     x_axis = _time_axis(window, shown, columns, log_time)
-    places_of_edges = np.linspace(x_axis.low, x_axis.high, columns + 1)
-    edges = 10.0**places_of_edges if log_time else places_of_edges
+    half_columns = np.linspace(x_axis.low, x_axis.high, 2 * columns + 1)
+    if log_time:
+        half_columns = 10.0**half_columns
+    edges = half_columns[::2]
+    times = half_columns[1::2]
     if shown.log:
         largest = [run.largest(edges, log_time) for run in runs]
         y_axis = _log_y_axis(np.hstack(largest), [*levels.values()], rows)
@@ -161,9 +164,6 @@ def time_chart(
     for run, (lowest, highest) in zip(reversed(runs), reversed(sides), strict=True):
         plot.draw_curves(run, lowest, highest)
     low, high = sides[0]
-    times = x_axis.low + (np.arange(columns) + 0.5) / columns * (x_axis.high - x_axis.low)
-    if log_time:
-        times = 10.0**times
     if shown.log:
         values = 10.0**high
         for column, value in _crossings(high, times, window.repeats):
@@ -178,19 +178,19 @@ def time_chart(
 def _runs(window: Window, cast: Cast, shown: Shown, marks: Marks) -> list[_Run]:
     """Return the curves of the run, and those of the ghost's same methods."""
 
-    def extremes(window: Window, places: list[int]) -> tuple[Floats, Floats]:
-        return window.low[shown.quantity][:, places], window.high[shown.quantity][:, places]
+    def run(window: Window, cast: Cast, places: list[int], letters: str = "") -> _Run:
+        low = window.low[shown.quantity][:, places]
+        high = window.high[shown.quantity][:, places]
+        return _Run(window, [inks(cast)[place] for place in places], letters, low, high)
 
-    places = shown.places(cast)
-    own = [inks(cast)[place] for place in places]
-    letters = "".join(cast[place].letter for place in places)
-    runs = [_Run(window, own, letters, *extremes(window, places))]
+    methods = [cast[place] for place in shown.places(cast)]
+    letters = "".join(method.letter for method in methods)
+    runs = [run(window, cast, shown.places(cast), letters)]
     if marks.ghost is not None:
-        past, methods = marks.ghost
-        keys = {cast[place].key for place in places}
-        behind = [place for place, method in enumerate(methods) if method.key in keys]
-        ghosts = [faint(inks(methods)[place]) for place in behind]
-        runs.append(_Run(past, ghosts, "", *extremes(past, behind)))
+        keys = {method.key for method in methods}
+        behind = [place for place, method in enumerate(marks.ghost[1]) if method.key in keys]
+        ghost = run(*marks.ghost, behind)
+        runs.append(ghost._replace(inks=[faint(ink) for ink in ghost.inks]))
     return runs
 
 
@@ -266,8 +266,8 @@ class _Plot:
             known = np.flatnonzero(~np.isnan(high[:, place]))
             if not run.letters or not len(known):
                 continue
-            text = run.letters[place]
             at = int(known[-1])
+            text = run.letters[place]
             if beyond[at, place]:
                 at = int(np.flatnonzero(beyond[:, place] & ~gone[:, place])[-1])
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
