@@ -77,13 +77,11 @@ def steps(text: str) -> list[float]:
 
 
 def _check(options: argparse.Namespace) -> None:
-    if len(options.files) > 1 and not options.steps:
-        raise UserError("several files are judged together with --steps, for example --steps 1,2.")
-    if options.steps and not 1 < len(set(options.steps)) <= len(options.steps) == len(
-        options.files
-    ):
+    steps = options.steps
+    are_fit = len(set(steps)) > 1 and len(steps) == len(options.files)
+    if (steps or len(options.files) > 1) and not are_fit:
         raise UserError(
-            "--steps takes a step size for each of two or more files, for example --steps 1,2."
+            "several files take --steps, a step size for each, for example --steps 1,2."
         )
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")

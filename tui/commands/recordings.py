@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from recordings.library import Item
     from recordings.recording import Recording
 
-MAX_RUNS_SHOWN = 1000
-
 EXAMPLES = """\
 examples:
   pendu-tui recordings
@@ -126,7 +124,7 @@ def _show(options: argparse.Namespace) -> Report:
 
 
 def _contents(recording: "Recording") -> Report:
-    runs = [
+    runs: list[dict[str, Any]] = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
         | {"seconds": run.end - run.begin, "inputs": run.inputs}
         | {"numerics": run.arithmetic.numerics}
@@ -141,32 +139,26 @@ def _contents(recording: "Recording") -> Report:
         "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
         "methods": ", ".join(cast),
     }
-    notes: list[Any] = [Table(RUN_COLUMNS, runs[:MAX_RUNS_SHOWN])]
-    if len(runs) > MAX_RUNS_SHOWN:
-        notes.append(f"... and {len(runs) - MAX_RUNS_SHOWN} more runs; --json lists all.")
     fields = {"file": facts["file"], "runs": runs, "seconds": recording.length, "methods": cast}
     return Report(
         name="recordings-show",
         columns=(Column("", "name"), Column("", "value")),
         rows=[{"name": name, "value": value} for name, value in facts.items()],
         fields=fields | fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
-        notes=notes,
+        notes=[Table(RUN_COLUMNS, [run["scene"] | run for run in runs])],
     )
 
 
-def _number_of_scene(head: str) -> Column:
-    name = head.partition(" ")[0]
-    return Column(head, lambda run: run["scene"][name], "g")
-
-
 RUN_COLUMNS = (
-    Column("run", "run", right=True),
-    Column("scene", lambda run: run["scene"]["name"]),
-    *(_number_of_scene(head) for head in ("theta [rad]", "omega [rad/s]", "h [s]")),
-    Column("steps", "steps", right=True),
+    Column("run", "run", "d"),
+    Column("scene", "name"),
+    Column("theta [rad]", "theta", "g"),
+    Column("omega [rad/s]", "omega", "g"),
+    Column("h [s]", "h", "g"),
+    Column("steps", "steps", "d"),
     Column("simulated s", "time", "g"),
     Column("recorded s", "seconds", ".2f"),
-    Column("inputs", "inputs", right=True),
+    Column("inputs", "inputs", "d"),
 )
 
 

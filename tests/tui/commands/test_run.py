@@ -163,18 +163,6 @@ def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
     assert outcome.json["methods"][0]["max_energy_error"] > 1
 
 
-@pytest.mark.parametrize(
-    ("time", "expression", "code"),
-    [
-        (100, "rk4.verdict == loses", 1),
-        (100, "velocity_verlet.verdict != bounded", 0),
-        (1, "rk4.verdict == 'too early'", 1),
-    ],
-)
-def test_a_gate_may_ask_for_the_verdict(time, expression, code):
-    assert pendu("run", "--time", time, "--fail-if", expression).code == code
-
-
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
     monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)

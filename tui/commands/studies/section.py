@@ -32,15 +32,13 @@ from tui.views.phase.picture import Section, starts
 from tui.views.phase.viewport import Viewport
 from tui.words.orbit import HEADS, cells, fraction, sentence
 
-LIMITS = {"starts": 10_000, "steps": 100_000}
+MAX_POINTS = 10**8  # 1.6 GB in memory
 
 
 def run(scene: Scene, options: argparse.Namespace, is_figure: bool) -> None:
     """Draw the portrait of the first method, and describe the start's orbit under each method."""
-    for name, limit in LIMITS.items():
-        value = getattr(options, name)
-        if value > limit:
-            raise UserError(f"--{name} {value} is too many; use at most {limit}.")
+    if options.starts * options.steps > MAX_POINTS:
+        raise UserError(f"--starts times --steps is too large; use at most {MAX_POINTS:g} points.")
     method = scene.cast[0]
     if options.methods is None and VELOCITY_VERLET in scene.cast:
         method = VELOCITY_VERLET

@@ -37,13 +37,11 @@ def grids_of(scene: Scene, options: Namespace, is_map: bool) -> list[Grid]:
 
     Raises UserError for what is not about this scene, or out of range.
     """
-    asked = {"--map": options.map, "--csv": options.csv, "-o": options.output}
-    asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
-    given = next((name for name, value in asked.items() if value), None)
-    if given and not scene.equations.turns:
+    lists = options.theta_values or options.z_values
+    if not scene.equations.turns and (options.map or options.csv or options.output or lists):
         raise UserError(
-            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; "
-            "leave it out."
+            "limits of the linear oscillator hold everywhere; leave out --map, --csv, -o, "
+            "--theta-values and --z-values."
         )
     _check("amplitude", options.theta_values or (), (0, math.pi))
     _check("z", options.z_values or (), Z_LIMITS)
