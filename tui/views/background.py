@@ -19,8 +19,7 @@ async def computed(
 ) -> AsyncIterator[Any]:
     """Yield what function(*arguments) yields, as another process computes it.
 
-    The function must be importable, and all values picklable.  The process is killed when this task
-    is cancelled, and ends when this process does, even if that is killed.
+    That is killed when this task is cancelled, and ends when this process does.
     """
     os.environ["PYTHONSAFEPATH"] = "1"  # no module of the current folder is imported
     context = multiprocessing.get_context("spawn")

@@ -65,10 +65,7 @@ class Box(Container):
 
 
 class View(Box):
-    """A view gets source and shown from the screen with data_bind, and passes them on to its panes.
-
-    Samples come directly: data_bind would take longer than drawing.
-    """
+    """Passes source and settings on to its panes; and samples, directly: data_bind would be slow."""
 
     source: var[Source] = var(UNBOUND)
     shown: var[Shown] = var(Shown())
@@ -92,10 +89,7 @@ class View(Box):
         self._follow()
 
     def follow(self, sample: Sample, read: bool = True) -> None:
-        """Show a sample in the panes that move and, if it is time to `read`, in all of them.
-
-        It may be the same sample again, for what else has changed.
-        """
+        """Show a sample in the panes that move and, if it is time to `read`, in all of them."""
         has_moved = sample != self._sample
         self._sample = sample
         if read or has_moved:
@@ -164,7 +158,7 @@ class Pane(CellWidget):
         raise NotImplementedError
 
     def start_at(self, theta: float, omega: float, h: float | None = None) -> None:
-        """Ask for a run from here [rad, rad/s], usually with the step size in force."""
+        """Ask for a run from here [rad, rad/s]; without h [s], with the step size in force."""
         h = h or self.source.stepping.smallest
         try:
             scene = self.source.scene.altered(theta=theta, omega=omega, h=h)
@@ -203,9 +197,9 @@ class Pane(CellWidget):
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
-    """A pane with a cursor that chooses how the lab goes on.  It describes one method.
+    """A pane with a cursor that chooses how the lab goes on, and words about one method.
 
-    In a replay there is nothing to choose: the arrows, enter and esc are the replay's.
+    In a replay the arrows, enter and esc are the replay's.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -226,7 +220,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     @property
     def index(self) -> int:
-        """The index of the described method, one of those shown if there are any."""
+        """The place of the described method, which is shown if any is."""
         shown = self.places or range(len(self.cast))
         described = (place for place in shown if self.cast[place].key == self.described)
         return next(described, shown[0])

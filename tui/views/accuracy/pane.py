@@ -33,10 +33,7 @@ NEXT: dict[str, Chart] = {"time": "theta", "theta": "energy", "energy": "time"}
 
 
 class AccuracyPane(Chooser[Point]):
-    """Draws the points computed so far, marks each method's h, and describes one point.
-
-    Another start or pendulum needs all points anew, another h some more.
-    """
+    """Draws the points computed so far, marks each method's h, and describes one point."""
 
     BINDING_GROUP_TITLE = "Accuracy"
     HELP = "A click uses that point's h; the pointer reads points out."

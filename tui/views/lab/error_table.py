@@ -100,10 +100,7 @@ def _chosen(columns: list[Column], room: int) -> list[Column]:
 
 
 def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[float], str]:
-    """Return the largest energy errors and the theta errors at the last change of h, and a head.
-
-    Of the whole run, and zero, unless h has changed.
-    """
+    """Return the largest energy errors since h changed, the theta errors then, and a head."""
     change = change_before(source.changes, sample.step)
     if change.step and (errors := source.history.since(change)):
         return *errors, f"since h {change.stepping.h:.4g} s"

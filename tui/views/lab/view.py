@@ -25,10 +25,9 @@ THREE_ROWS = 45  # rows from which on there are two charts
 
 
 def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[str, Region]]:
-    """Return the regions of the methods' own pendulums, and of other panes by their names.
+    """Return the regions of the methods' pendulums, unless they share one, and of other panes.
 
-    Pendulums and events are to the left, charts and phase space to the right.  Pendulums share an
-    overlay where there is no room for each.
+    Pendulums and events are to the left, charts and phase space to the right.
     """
     events = max(5, -(-rows // 5)) if rows >= TWO_ROWS else 0
     bottom = rows - events

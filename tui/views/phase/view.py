@@ -1,7 +1,7 @@
-"""PhaseView: phase space over the whole screen, with a table of what the methods do to area."""
+"""PhaseView: phase space over the whole screen, with a table of areas."""
 
 from functools import lru_cache
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -16,22 +16,12 @@ from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.picture import Section, fact_rows, starts
-from tui.views.phase.viewport import Viewport
 from tui.views.view import Pane, StudyView
 from tui.words.orbit import sentence
 
 MIN_ROWS = 18  # of the screen, with the table
 STARTS = 300  # of a section
 ORBIT_STEPS = 2000  # some ms
-
-
-class SectionKey(NamedTuple):
-    """What a section depends on."""
-
-    method: Method
-    model: Model
-    h: float  # s
-    viewport: Viewport
 
 
 class SectionPane(PhasePane):
@@ -45,7 +35,7 @@ class SectionPane(PhasePane):
 
     def __init__(self) -> None:
         super().__init__()
-        self._drawn_for: SectionKey | None = None
+        self._drawn_for: object = None
         self._section: Section | None = None
         self._orbits = 0  # of the section
 
@@ -72,22 +62,21 @@ class SectionPane(PhasePane):
         h = abs(source.stepping.own[self.index])
         model = source.scene.equations
         viewport = self.viewport
-        key = SectionKey(method, model, h, viewport)
+        key = (method, model, h, viewport)
         if key != self._drawn_for or self._section is None:
             self._drawn_for = key
             self._section = Section(viewport, model, method, inks(self.cast)[self.index])
             self._orbits = 0
             self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
-        done = ""
+        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
         if self._orbits < STARTS:
-            done = f", computing {10 * self._orbits // STARTS / 10:.0%}"
-        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
+            title += f", computing {10 * self._orbits // STARTS / 10:.0%}"
         self.write_titles(title, "wheel: zoom, tab: next method, x: back")
         start = self.cursor or State(source.scene.theta, source.scene.omega)
         plot = self._section.picture(_orbit(method, model, h, start)[0], start, self.cursor)
         _, kind = _orbit(method, model, h, self.aim or start)
         where = f"{self.aim.theta:g}, {self.aim.omega:g}" if self.aim else "start"
-        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
+        return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
 
     def add(self, result: Points) -> None:
         assert self._section is not None

@@ -69,10 +69,7 @@ class Viewport(NamedTuple):
         return self.omega - (y - self.middle[1]) * self.omega_per_dot
 
     def at(self, x: float, y: float) -> State:
-        """Return the roundest state within half a dot of (x, y), in [-pi, pi] if wrapped.
-
-        No angle is rounder than a multiple of pi, so the equilibria can be reached.
-        """
+        """Return the roundest state within half a dot of (x, y); best of all an equilibrium."""
         theta = self._turned(self.theta_at(x))
         omega = roundest(self.omega_at(y), self.omega_per_dot / 2)
         equilibrium = math.pi * round(theta / math.pi)

@@ -64,10 +64,9 @@ def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: fl
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
-    """Draws what is known of the map.  A click, or enter at the cursor, starts a run at rest.
+    """Draws the map as it is computed; another scene only moves the mark and the axis.
 
-    Places on the map are indices of z and theta.  The map depends only on z and amplitude: another
-    scene moves the mark and the axis.
+    Places on the map are indices of z and theta.
     """
 
     BINDING_GROUP_TITLE = "Stability"

@@ -1,8 +1,4 @@
-"""The map of stability -> coloured half-blocks, or characters that need no colour.
-
-A panel a method: z across, amplitude up.  A pixel that covers several cells shows the worst of
-them, so that no failure vanishes.
-"""
+"""The map of stability -> coloured half-blocks, or characters: z across, amplitude up."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -53,7 +49,7 @@ def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> 
 
 
 def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:
-    """Put panels of one size next to each other, `across` of them in a line."""
+    """Put panels of one size next to each other."""
     rows: list[Row] = []
     for first in range(0, len(panels), across):
         for left, *others in zip(*panels[first : first + across], strict=True):
@@ -160,9 +156,8 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
     """Yield theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
 
-    Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet
-    half a kick earlier. Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q,
-    and is stable where 0 < z² cos q < 4.
+    Greene's threshold is the standard map's, which symplectic Euler is, and velocity Verlet half a
+    kick earlier. Verlet's catching orbit jumps between q and -q, z² sin q = 4 q.
     """
     count = len(grid.theta)
     middles = (np.arange(rows)[::-1] + 0.5) / rows * count - 0.5
@@ -176,7 +171,7 @@ def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float
 
 
 def worst(values: Scores, columns: int, rows: int) -> Scores:
-    """Return the lowest of the values (z, theta) under each pixel (row from the top, column)."""
+    """Return the lowest value (z, theta) under each pixel (row, column): no failure vanishes."""
     lefts = np.arange(columns) * len(values) // columns
     bottoms = np.arange(rows) * values.shape[1] // rows
     across = np.minimum.reduceat(values, lefts, axis=0)
