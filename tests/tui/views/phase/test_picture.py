@@ -47,19 +47,16 @@ PICTURE = """\
 
 
 @pytest.mark.parametrize(("theta", "omega"), [(0.0, 0.0), (-3.0, -5.0), (1.0 + math.tau, 2.0)])
-def test_a_point_is_drawn_where_its_state_is_with_its_letter_beside_it(theta, omega):
-    picture = phase_picture(PORTRAIT, [PhasePoint(theta, omega, 2, "v")])
+def test_points_are_drawn_where_their_state_is_with_their_letters_beside_it(theta, omega):
+    points = [PhasePoint(theta, omega, i, each.letter) for i, each in enumerate(USUAL_CAST)]
+    shown = cells(phase_picture(PORTRAIT, points)).values()
+    assert {(point.letter, point.ink) for point in points} <= set(shown)
+    picture = phase_picture(PORTRAIT, [points[2]])
     column, row = int(SMALL.x(theta)) // 2, int(SMALL.y(omega)) // 4
     mine = dots(picture, 2)
     assert (column, row) in mine
     assert cells(picture)[row, column + 2][0] == "v"
     assert all(abs(c - column) <= 2 and abs(r - row) <= 1 for c, r in mine)
-
-
-def test_every_method_has_its_letter_where_several_coincide():
-    points = [PhasePoint(1.0, 2.0, i, method.letter) for i, method in enumerate(USUAL_CAST)]
-    shown = cells(phase_picture(PORTRAIT, points)).values()
-    assert {(point.letter, point.ink) for point in points} <= set(shown)
 
 
 def test_a_trail_is_faint_and_where_the_method_was():

@@ -32,14 +32,6 @@ def section(model=MODEL) -> Section:
     return Section(VIEWPORT, model, VELOCITY_VERLET, MINE)
 
 
-def test_the_starts_are_all_over_the_viewport():
-    theta, omega = starts(VIEWPORT, 200)
-    x, y = VIEWPORT.x(theta), VIEWPORT.y(omega)
-    counts, _, _ = np.histogram2d(x, y, bins=4, range=[(0, 140), (0, 96)])
-    assert counts.sum() == 200
-    assert counts.min() >= 9  # of 12.5
-
-
 def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
     drawing = section()
     points = iterate(VELOCITY_VERLET, MODEL, H, (np.array([0.0]), np.array([7.0])), 500)

@@ -44,10 +44,13 @@ async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen
         assert "Velocity Verlet at h 0.0539 s, 58.1°: held" in pane.text
 
 
-async def test_enter_starts_with_the_cursors_amplitude_and_step():
+async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_it():
     async with stability_view() as (pilot, pane, live):
         z, theta = pane.aim(VERLET)
-        await pilot.press(*["right"] * 7, "up", "enter")
+        for _ in range(50):
+            pane.action_move(-1, -1)
+        assert pane.cursor == (0, 0)  # it stays on the map
+        await pilot.press("escape", *["right"] * 7, "up", "enter")
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
         assert (live.scene.theta, live.scene.omega) == (pane.grid.theta[theta + 1], 0)
         assert pane.cursor is None
@@ -64,16 +67,6 @@ async def test_a_click_starts_with_what_was_clicked_on():
         assert live.scene.z == pytest.approx(1.5, abs=0.1)
         assert live.scene.theta == pytest.approx(math.pi / 2, abs=0.4)
         assert "RK4 at h" in pane.text
-
-
-async def test_the_cursor_stays_on_the_map_and_esc_leaves_it():
-    async with stability_view() as (pilot, pane, _):
-        before = pane.aim(VERLET)
-        for _ in range(50):
-            pane.action_move(-1, -1)
-        assert pane.cursor == (0, 0)
-        await pilot.press("escape")
-        assert (pane.cursor, pane.aim(VERLET)) == (None, before)
 
 
 async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_to_the_others():
