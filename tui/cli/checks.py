@@ -164,20 +164,22 @@ def _found(
     reading = values.get(method, {})
     ours = reading.get(field)
     diverged_at = reading.get("diverged_at")
-    name = f"{method}.{field}" if method else field
+    name = f"{method}.{field}".removeprefix(".")
     if field == "diverged_at":
-        return f"{name} is {ours:g}" if ours is not None and compare(ours, limit) else ""
+        if ours is None or not compare(ours, limit):
+            return ""
+        return f"{name} is {ours:g}"
     if diverged_at is not None:
         return f"{method or 'the energy'} diverged at {diverged_at:g}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return f"{name} is not known"
     if not compare(ours, limit):
         return ""
-    text = ours if isinstance(ours, str) else format(ours, ".3g")
-    progress = reading.get("progress")
-    if field == "verdict" and isinstance(progress, Mapping):
-        text += f": {Progress(**progress)}"
-    return f"{name} is {text}"
+    if isinstance(ours, str):
+        progress = reading.get("progress")
+        why = f": {Progress(**progress)}" if isinstance(progress, Mapping) else ""
+        return f"{name} is {ours}{why}"
+    return f"{name} is {ours:.3g}"
 
 
 def _quoted(text: str) -> str:

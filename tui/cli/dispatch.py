@@ -138,7 +138,7 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
 
     A scene or a file as the first word stands for a command.
     """
-    first = arguments[0] if arguments else "-"
+    first = next(iter(arguments), "-")
     if first in COMMANDS or first in RENAMED:
         return first, arguments[1:]
     if first.endswith((".mcap", ".mcap.part")):
@@ -147,7 +147,9 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
         return "live", arguments
     from engine.scenes import SCENES
 
-    return ("live", arguments) if first in SCENES else (first, [])
+    if first in SCENES:
+        return "live", arguments
+    return first, []
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:

@@ -64,15 +64,10 @@ def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -
     parser.add_argument(*names, **settings).complete = "file"  # type: ignore[attr-defined]
 
 
-def add_recording(
-    parser: argparse.ArgumentParser,
-    name: str = "file",
-    metavar: str = "FILE",
-    help: str = "a file, latest, or a name such as drift",
-    **settings: Any,
-) -> None:
+def add_recording(parser: argparse.ArgumentParser, name: str = "file", **settings: Any) -> None:
     """Add an argument for `resolve`."""
-    add_file(parser, name, metavar=metavar, help=help, **settings)
+    usual = {"metavar": "FILE", "help": "a file, latest, or a name such as drift"}
+    add_file(parser, name, **(usual | settings))
 
 
 def resolve(name: str) -> Path:

@@ -15,7 +15,7 @@ import signal
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from importlib import import_module
 from itertools import islice
@@ -122,9 +122,11 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
 
     Ctrl+C, SIGTERM and SIGHUP interrupt this process alone, which ends its workers.
     """
-    with interruptible(), _client(options.dask) if options.dask else nullcontext() as client:
-        start: Callable[[], Executor] | None = None
-        if client is not None:
+    start: Callable[[], Executor] | None = None
+    with ExitStack() as stack:
+        stack.enter_context(interruptible())
+        if options.dask:
+            client = stack.enter_context(_client(options.dask))
             start = partial(client.get_executor, pure=False)
         elif options.executor:
             start = partial(_made_by, options.executor)
@@ -134,10 +136,10 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
         try:
             yield workers
         except BaseException:
-            is_local = options.workers > 1
-            for child in active_children() if is_local else ():
-                child.terminate()
-            workers.close(wait=is_local)
+            if options.workers > 1:
+                for child in active_children():
+                    child.terminate()
+            workers.close(wait=options.workers > 1)
             raise
         workers.close()
 

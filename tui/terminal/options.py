@@ -58,8 +58,9 @@ def add_picture_options(
 
 def cells(text: str) -> tuple[int, int]:
     """A size in columns and rows as `120x40`."""
-    match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text)
-    columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
+    match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text) or ("", 0, 0)
+    columns = int(match[1])
+    rows = int(match[2])
     if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
         limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
         raise argparse.ArgumentTypeError(
