@@ -269,13 +269,9 @@ class SourceScreen(SizedScreen[None]):
         self.show_now()
 
     def action_speed(self, doublings: int) -> None:
-        self.action_set_speed(doubled(self.source.playhead.speed, doublings))
-
-    def action_set_speed(self, speed: float) -> None:
-        if speed != self.source.playhead.speed:
-            self.keep(self.state)
-            self.source.set_speed(speed)
-            self.show_now()
+        self.keep(self.state)
+        self.source.set_speed(doubled(self.source.playhead.speed, doublings))
+        self.show_now()
 
     # Settings
 

@@ -246,12 +246,10 @@ class StartForm(Form[Scene | None]):
         Binding("up", "app.focus_previous"),
     ]
 
-    def __init__(self, scene: Scene, backwards: bool = False) -> None:
-        """`backwards`: time runs backwards now; a new run begins forwards."""
+    def __init__(self, scene: Scene) -> None:
         super().__init__()
         self._before = scene
         self._scene: Scene | None = scene
-        self._note = "; time will run forwards" if backwards else ""
 
     def compose(self) -> ComposeResult:
         with Container(id="form") as form:
@@ -281,7 +279,7 @@ class StartForm(Form[Scene | None]):
         except ValueError as error:
             verdict.update(str(error))
         else:
-            verdict.update(f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}{self._note}")
+            verdict.update(f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}")
         verdict.set_class(self._scene is None, "-wrong")
 
     @on(Input.Submitted)

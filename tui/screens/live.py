@@ -198,8 +198,7 @@ class LiveScreen(SourceScreen):
     async def action_start_values(self) -> None:
         from tui.screens.dialogs import StartForm
 
-        backwards = self.live.stepping.h < 0
-        if scene := await self.app.push_screen_wait(StartForm(self._scene_now(), backwards)):
+        if scene := await self.app.push_screen_wait(StartForm(self._scene_now())):
             self.start(scene)
 
     @work(group="form")
