@@ -38,6 +38,11 @@ def test_help_and_version_load_nothing_heavy(arguments):
     assert loaded_after(work, *HEAVY) == []
 
 
+def test_the_first_paint_of_the_lab_does_not_wait_for_numpy_and_the_recorder():
+    work = "import tui.screens.app, tui.screens.launch, tui.screens.live"
+    assert loaded_after(work, "numpy", "mcap", "plotext", "numba") == []
+
+
 def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
     modules = [
         module.name for module in pkgutil.walk_packages(tui.commands.__path__, "tui.commands.")

@@ -11,11 +11,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from numbers import Complex, Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from engine.methods.measure import Measured
 from engine.methods.method import Method, Phases
 from engine.models.model import Force, Phase
+
+if TYPE_CHECKING:  # NumPy, which it brings, can wait for the lab's first paint
+    from engine.methods.measure import Measured
 
 LONGEST_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
 
@@ -42,7 +44,7 @@ class UserCode:
 class OwnMethod(Method):
     """A user's method.  The fields that other methods claim are measured."""
 
-    measured: Measured
+    measured: "Measured"
     source: str  # the whole text of the file
     file: str  # its name, for sentences
 
@@ -55,7 +57,7 @@ class OwnMethod(Method):
 
 
 @cache
-def own_method(source: str, key: str, letter: str, file: str, measured: Measured) -> OwnMethod:
+def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
     """The method of a text that has been measured; one text gives one method in a process."""
     phases = own_phases(source, key, file)
     name = key.replace("_", " ").strip()
