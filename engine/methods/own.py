@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from engine.methods.method import Method, Phases
 from engine.models.model import Force, Phase
 
-if TYPE_CHECKING:  # NumPy, which it brings, can wait for the lab's first paint
+if TYPE_CHECKING:  # it brings NumPy
     from engine.methods.measure import Measured
 
 LONGEST_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
@@ -34,7 +34,7 @@ class TooLongError(BaseException):
 
 
 class UserCode:
-    """Where a user's code is, for whoever watches the time."""
+    """Where a user's code is, for the time limit."""
 
     is_running = False
     steps = 0  # begun; 0 while the file itself runs
@@ -58,7 +58,7 @@ class OwnMethod(Method):
 
 @cache
 def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
-    """The method of a text that has been measured; one text gives one method in a process."""
+    """Return the method of a measured text, the same one for the same text."""
     phases = own_phases(source, key, file)
     name = key.replace("_", " ").strip()
     return OwnMethod(
@@ -81,7 +81,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: "Measure
     )
 
 
-# To another process it goes as its text: a function that was executed has no module to be found in.
+# To another process it goes as its text: an executed function has no module.
 copyreg.pickle(
     OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured))
 )
