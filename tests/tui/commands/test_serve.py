@@ -104,31 +104,19 @@ def serving(*arguments: str, **environment: str):
         process.communicate(timeout=PATIENCE)
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    """An empty folder."""
-    return tmp_path_factory.mktemp("library")
-
-
-@pytest.fixture(scope="module")
-def server(library):
-    """A server whose library is empty.  Each test waits until its labs have ended."""
-    with serving(PENDU_RECORDINGS=str(library)) as running:
+@pytest.fixture
+async def server(tmp_path):
+    """A server whose library is empty, and all of whose labs have ended at last."""
+    with serving(PENDU_RECORDINGS=str(tmp_path)) as running:
         yield running
-
-
-@pytest.fixture(autouse=True)
-async def no_labs_left(request):
-    yield
-    if "server" in request.fixturenames:
-        await request.getfixturevalue("server").until_labs(0)
+        await running.until_labs(0)
 
 
 def files(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*") if path.is_file())
 
 
-async def test_a_tab_shows_the_lab_in_its_size_takes_keys_and_ends_with_it(server, library):
+async def test_a_tab_shows_the_lab_in_its_size_takes_keys_and_ends_with_it(server, tmp_path):
     async with server.tab() as first:
         async with server.tab() as second:
             await asyncio.gather(first.shows("LIVE"), second.shows("LIVE"))
@@ -146,7 +134,7 @@ async def test_a_tab_shows_the_lab_in_its_size_takes_keys_and_ends_with_it(serve
         await first.press("q")
         assert await first.closed()
     await server.until_labs(0)
-    assert files(library) == []
+    assert files(tmp_path) == []
 
 
 async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
@@ -178,39 +166,36 @@ async def test_recording_is_off_unless_asked_for_and_then_in_its_folder(tmp_path
         assert result.identical
 
 
-@pytest.mark.parametrize(
-    ("headers", "status"),
-    [
-        ({"Origin": "http://elsewhere.example"}, 403),
-        ({"Origin": "http://[::1"}, 403),
-        ({"Origin": "chrome-extension://{host}"}, 403),
-        ({"Origin": "null"}, 403),
-        ({"Host": "rebound.example:8000", "Origin": "http://rebound.example:8000"}, 421),
-        ({"Host": "[::1"}, 421),
-        ({"Host": "localhost:1", "Origin": "http://localhost:1"}, 101),
-        ({"Origin": "http://{host}"}, 101),
-        ({}, 101),
-    ],
-)
-async def test_only_pages_of_this_computer_get_a_lab(server, headers, status):
+REFUSED = [
+    ({"Origin": "http://elsewhere.example"}, "403"),
+    ({"Origin": "http://[::1"}, "403"),
+    ({"Origin": "chrome-extension://{host}"}, "403"),
+    ({"Origin": "null"}, "403"),
+    ({"Host": "rebound.example:8000", "Origin": "http://rebound.example:8000"}, "421"),
+    ({"Host": "[::1"}, "421"),
+]
+WELCOME = [{"Host": "localhost:1", "Origin": "http://localhost:1"}, {"Origin": "http://{host}"}, {}]
+
+
+async def test_only_pages_of_this_computer_get_a_lab_and_no_page_frames_it(server):
     host = server.address.removeprefix("http://")
-    headers = {name: value.replace("{host}", host) for name, value in headers.items()}
+
+    def connected(headers: dict[str, str]):
+        filled = {name: value.replace("{host}", host) for name, value in headers.items()}
+        return session.ws_connect(f"{server.address}/ws", headers=filled)
+
     async with aiohttp.ClientSession() as session:
-        if status == 101:
-            async with session.ws_connect(f"{server.address}/ws", headers=headers) as socket:
+        for headers, status in REFUSED:
+            with pytest.raises(aiohttp.WSServerHandshakeError, match=status):
+                await connected(headers)
+        for headers in WELCOME:
+            async with connected(headers) as socket:
                 await Tab(socket, (80, 24)).shows("LIVE")
-        else:
-            with pytest.raises(aiohttp.WSServerHandshakeError, match=str(status)):
-                await session.ws_connect(f"{server.address}/ws", headers=headers)
-
-
-async def test_no_page_frames_the_lab_and_the_lab_loads_nothing_from_elsewhere(server):
-    async with aiohttp.ClientSession() as session:
         for path in ("", "/no-such", "/static/js/textual.js"):
             async with session.get(server.address + path) as page:
                 policy = page.headers["Content-Security-Policy"]
                 assert "frame-ancestors 'none'" in policy
-                assert "http" not in policy
+                assert "http" not in policy  # nothing is loaded from elsewhere
 
 
 async def test_half_requests_neither_stay_nor_keep_others_out():
@@ -294,9 +279,10 @@ def test_only_another_address_says_what_is_exposed():
         assert server.process.communicate(timeout=PATIENCE)[1] == ""
 
 
-def test_what_cannot_be_served_is_one_sentence(server, tmp_path, monkeypatch):
-    taken = server.address.rpartition(":")[2]
-    assert pendu("serve", "--port", taken).refused(2, "cannot listen", taken, "--port")
+def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
+    with serving() as server:
+        taken = server.address.rpartition(":")[2]
+        assert pendu("serve", "--port", taken).refused(2, "cannot listen", taken, "--port")
     assert pendu("serve", "--host", "no.such.host.invalid").refused(2, "cannot listen", "--host")
     assert pendu("serve", "--port", "70000").refused(2, "cannot listen", "0-65535")
     assert pendu("serve", "--at-most", "0").refused(2, "count")
