@@ -10,12 +10,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from rich.filesize import decimal as file_size
-
 from tui.cli.errors import Exit, UserError
 from tui.cli.install import install_advice
 from tui.cli.report import Column, Report, add_report_options, publish
 from tui.terminal.options import SMALLEST, colours, is_utf8
+from tui.words.numbers import file_size
 
 EXAMPLES = """\
 examples:

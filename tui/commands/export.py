@@ -7,14 +7,13 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.filesize import decimal as file_size
-
 from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file, whole_file
 from tui.cli.install import install_advice
 from tui.cli.options import add_file, add_recording, resolve
 from tui.cli.report import progress, warn, write_csv
+from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from recordings.recording import Recording

@@ -6,14 +6,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.filesize import decimal as file_size
-
 from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import check_free
 from tui.cli.options import add_file, add_recording, count, resolve
 from tui.cli.report import Column, Report, Table, add_report_options, fields_of, form_of, progress
-from tui.words.numbers import counted, seconds
+from tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.library import Item

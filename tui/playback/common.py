@@ -1,7 +1,8 @@
 """What a lab and a replay share."""
 
 import math
-from collections.abc import Iterable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from engine.models.model import ExactMotion
@@ -59,7 +60,7 @@ class State(NamedTuple):
     run: RunState | None  # None: a replay has no other
 
 
-class Playback:
+class Playback(ABC):
     """One Sample a frame, and what is known around it.  Times of the clock are passed in, in s."""
 
     playhead: Playhead
@@ -89,9 +90,21 @@ class Playback:
         """How the run steps, in order; in a recording including what is still to come."""
         return self.history.changes
 
-    def has_mark(self, events: Iterable[Event]) -> bool:
-        """Return whether the sample on screen has a mark among these events."""
+    @property
+    @abstractmethod
+    def events(self) -> Sequence[Event]:
+        """What was done up to the playhead."""
+
+    @property
+    def later_marks(self) -> Sequence[Event]:
+        """Marks up to the playhead that are not in the recording."""
+        return ()
+
+    @property
+    def is_marked(self) -> bool:
+        """Whether the sample on screen has a mark."""
         here = ("mark", self.sample.run, self.sample.step)
+        events = (*self.events, *self.later_marks)
         return any((event.kind, event.run, event.step) == here for event in events)
 
 

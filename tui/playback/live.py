@@ -33,7 +33,6 @@ class Live(Playback):
 
     kind: Literal["LIVE"] = "LIVE"
     knows_past = True
-    later_marks = ()
     _run: RewindableRun
     _left: "Ghost | None" = None  # the run before the restart with another step
 
@@ -89,12 +88,7 @@ class Live(Playback):
         return ahead / abs(self.playhead.speed)
 
     @property
-    def is_marked(self) -> bool:
-        return self.has_mark(self.events)
-
-    @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the sample."""
         run = self._run
         if not run.in_past:
             return self._events

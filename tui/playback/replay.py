@@ -54,12 +54,7 @@ class Replay(Playback):
     # What is known at the playhead
 
     @property
-    def is_marked(self) -> bool:
-        return self.has_mark([*self.events, *self.later_marks])
-
-    @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead."""
         return [event for clock, event in self.recording.events if clock <= self.playhead.position]
 
     @property
@@ -85,7 +80,6 @@ class Replay(Playback):
 
     @property
     def later_marks(self) -> Sequence[Event]:
-        """Marks up to the playhead that are not in the recording."""
         return [self._event(mark) for mark in self.marks if mark.clock <= self.playhead.position]
 
     def _event(self, mark: Mark) -> Event:

@@ -5,13 +5,14 @@ Each states only what was measured; a forecast extrapolates a measured slope.
 
 import math
 import string
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from engine.methods import USUAL_CAST, Method
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
+from engine.run.stepping import SteppingChange
 from engine.scenes import Scene
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
@@ -20,6 +21,7 @@ SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0; angle and speed off by {misses} rad.",
     "watch": "{text}",
+    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s with {ratio:two} times {unit}.",
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
@@ -116,12 +118,20 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
         return Insight("watch", values={"text": shot.sentence})
     if source.history.returned is not None and t < WATCH:
         return _returned(source.scene, source.history.returned, hidden)
-    if found := _news(source, step - FRESH * pace / h, hidden):
+    since = step - FRESH * pace / h
+    if source.kind == "LIVE" and _is_new_step(source.changes, since):
+        return Insight("new step", values={"h": source.stepping.h})
+    if found := _news(source, since, hidden):
         return found
     if t < WATCH * pace and (watch := _watch(source, hidden)):
         return watch
     known = lasting(source, hidden)
     return known[int(step * h / (TURN * pace)) % len(known)]
+
+
+def _is_new_step(changes: Sequence[SteppingChange], since: float) -> bool:
+    sizes = [abs(change.stepping.h) for change in changes[-2:]]
+    return changes[-1].step > since and sizes[0] != sizes[-1]
 
 
 def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:

@@ -81,6 +81,13 @@ def two_digits(value: float) -> str:
     return f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
 
 
+def file_size(count: int) -> str:
+    """Bytes as "640 bytes", "96.4 kB", "1.2 MB"."""
+    from rich.filesize import decimal  # --help does without rich
+
+    return decimal(count)
+
+
 def factor(value: float) -> str:
     """A factor in full: "4", "262144", "0.125"."""
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"

@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 
 import pytest
-from rich.filesize import decimal as file_size
 
 from engine.methods import USUAL_CAST
 from engine.methods.adaptive import HALVING_VERLET
@@ -25,7 +24,7 @@ from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.cli.checks import FIELDS
 from tui.commands.studies.lists import partial_of
-from tui.words.numbers import about
+from tui.words.numbers import about, file_size
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:

@@ -207,7 +207,9 @@ def test_what_to_watch_comes_first_and_only_with_its_own_step():
     live = after(SCENES["crossover"], 1)
     assert insight(live).kind == "watch"
     live.set_stepping(Stepping(0.1))
-    assert insight(live).kind == "so far"
+    assert (insight(live).kind, insight(live).values) == ("new step", {"h": 0.1})
+    live.step(70)
+    assert insight(live).kind not in ("watch", "new step")
 
 
 def test_of_hidden_methods_it_says_nothing():

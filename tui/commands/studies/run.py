@@ -8,8 +8,6 @@ from contextlib import nullcontext
 from functools import partial
 from typing import Any
 
-from rich.filesize import decimal as file_size
-
 from engine.run import compiled, loops
 from engine.run.judgement import Judgement, Progress
 from engine.run.lockstep import Lockstep, Sample
@@ -33,7 +31,7 @@ from tui.cli.report import (
 )
 from tui.commands.studies import figures
 from tui.words.insight import irregular, milestone_insight, sentence
-from tui.words.numbers import z_text
+from tui.words.numbers import file_size, z_text
 
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # of a figure, from which it takes the largest
