@@ -92,7 +92,7 @@ class DampedPendulum(Pendulum):
             return value
 
         start = super().reference(theta, omega)
-        least = 1e-24 * min(self.w0_squared, start.scale)  # of an amplitude of 1e-12 rad
+        least = max(1e-24 * min(self.w0_squared, start.scale), 1e-300)  # of 1e-12 rad
         return start._replace(true=true, least=least)
 
     def area_share(self, t: float) -> float:
