@@ -137,7 +137,6 @@ def time_chart(
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     rows = height - 2
-    places = shown.places(cast)
     runs = _runs(window, cast, shown, marks)
     levels = _levels(marks, shown.log)
     log_time = _has_log_time(window, shown)
@@ -147,11 +146,7 @@ def time_chart(
         label_width = y_axis.label_width
     columns = width - 1 - ROOM - label_width
     x_axis = _time_axis(window, shown, columns, log_time)
-    half_columns = np.linspace(x_axis.low, x_axis.high, 2 * columns + 1)
-    if log_time:
-        half_columns = 10.0**half_columns
-    edges = half_columns[::2]
-    times = half_columns[1::2]
+    edges, times = _moments(x_axis, columns, log_time)
     if shown.log:
         largest = [run.largest(edges, log_time) for run in runs]
         y_axis = _log_y_axis(np.hstack(largest), [*levels.values()], rows)
@@ -161,17 +156,17 @@ def time_chart(
     plot = _Plot(Canvas(width, height), x_axis, y_axis, columns, rows, shown.log)
     plot.draw_axes()
     plot.draw_marks(marks.changes, levels, log_time)
-    for run, (lowest, highest) in zip(reversed(runs), reversed(sides), strict=True):
-        plot.draw_curves(run, lowest, highest)
+    for run, side in zip(reversed(runs), reversed(sides), strict=True):
+        plot.draw_curves(run, *side)
     low, high = sides[0]
+    values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
         for column, value in _crossings(high, times, window.repeats):
             plot.canvas.label(plot.left + column, plot.row(value), CROSSING, TEXT)
-    else:
-        values = np.where(abs(low) > abs(high), low, high)
-    picture = plot.canvas.picture()
     ends = (x_axis.low, x_axis.high)
+    picture = plot.canvas.picture()
+    places = shown.places(cast)
     return TimePlot(picture, places, plot.left, times.tolist(), values, ends, log_time)
 
 
@@ -328,6 +323,14 @@ def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Ax
         begin, end = time_span(window.x, shown.seconds, columns)
     make = log_time_axis if log_time else time_axis
     return make(begin, end, columns, " run" if window.turned else "")
+
+
+def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
+    """Return the moments [s] at the edges and in the middle of all columns."""
+    half_columns = np.linspace(axis.low, axis.high, 2 * columns + 1)
+    if log_time:
+        half_columns = 10.0**half_columns
+    return half_columns[::2], half_columns[1::2]
 
 
 def _crossings(largest: Floats, times: Floats, repeats: float) -> list[tuple[int, float]]:
