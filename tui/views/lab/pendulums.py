@@ -1,7 +1,7 @@
 """Pendulum: one method's pendulum, or all on one pivot, in braille, whose dots are square."""
 
 from collections.abc import Sequence
-from math import atan2, cos, isfinite, pi, sin
+from math import atan2, cos, isfinite, pi, remainder, sin, tau
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -97,8 +97,8 @@ class Pendulum(Pane):
 
     MOVES = True
 
-    def __init__(self, drag: list[float], place: int | None = None) -> None:
-        """`place` in the cast; None: all.  `drag`: angles [rad] of the pointer, for all panes."""
+    def __init__(self, drag: list[tuple[float, float]], place: int | None = None) -> None:
+        """`place` in the cast; None: all.  `drag`: s and rad of the pointer, for all panes."""
         super().__init__()
         self._drag = drag
         self._place = place
@@ -123,8 +123,9 @@ class Pendulum(Pane):
         x, y = event.get_content_offset_capture(self)
         right = 2 * x + 1 - self.room.width  # from a pivot in the middle
         down = 4 * y + 2 - 2 * self.room.height
-        self._drag.append(round(atan2(right, down), 3))
-        self.post_message(Held(self._drag[-1]))
+        theta = round(atan2(right, down), 3)
+        self._drag.append((event.time, theta))
+        self.post_message(Held(theta))
 
     async def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._down is None:
@@ -133,9 +134,18 @@ class Pendulum(Pane):
         self._let_go()
         if drag:
             self.post_message(Held(None))
-            self.start_at(drag[-1], 0.0)
+            self._throw(drag, event.time)
         elif self._place is not None:
             await self.run_action(f"screen.show_alone({self._place})")
+
+    def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
+        """Ask for a run from the last angle, at the speed of the pointer's last 0.1 s."""
+        recent = [each for each in drag if now - each[0] < 0.1] or drag[-1:]
+        seconds = (recent[-1][0] - recent[0][0]) * abs(self.source.playhead.speed)
+        omega = 0.0
+        if seconds > 0:
+            omega = round(remainder(recent[-1][1] - recent[0][1], tau) / seconds, 2)
+        self.start_at(drag[-1][1], omega)
 
     def _let_go(self) -> None:
         self.release_mouse()

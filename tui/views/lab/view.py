@@ -122,7 +122,7 @@ class LabView(View):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self._arranged_for: object = None
-        drag: list[float] = []
+        drag: list[tuple[float, float]] = []
         self.pendulums = [Pendulum(drag, place) for place in range(MOST_METHODS)]
         self._others: dict[str, Pane] = {
             "overlay": Pendulum(drag),

@@ -125,6 +125,15 @@ async def test_a_bob_is_dragged_and_starts_at_rest_where_it_is_let_go_as_one_ste
         assert theatre.source.sample.step == before.step
 
 
+async def test_a_thrown_bob_has_the_speed_of_the_pointer():
+    async with lab() as theatre:
+        theatre.source.set_speed(2.0)
+        theatre.stage.query(Pendulum).first()._throw([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        await theatre.pilot.pause()
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
+
+
 async def test_less_than_three_columns_is_a_click_that_shows_the_method_alone():
     async with lab() as theatre:
         await grabbed(theatre, (13, 9), (14, 9))

@@ -50,7 +50,7 @@ async def test_a_click_in_the_lab_starts_all_there_with_the_step_in_force_and_u_
         assert theatre.source.scene == DRIFT.altered(h=0.05)
 
 
-async def test_the_pointer_is_described_and_shows_its_orbit_and_a_drag_outside_chooses_nothing():
+async def test_the_pointer_is_described_with_its_orbit_and_letting_go_inside_starts_there():
     async with phase_view() as (theatre, pane):
         plain = plot(pane)
         assert "exact period 2.13914 s" in pane.text
@@ -65,6 +65,16 @@ async def test_the_pointer_is_described_and_shows_its_orbit_and_a_drag_outside_c
         await theatre.pilot.mouse_up(offset=(0, 0))
         assert plot(pane) == plain
         assert theatre.source.scene == DRIFT
+        expected = pane.viewport.at_cell(33, 6)
+        x, y = pane.content_region.offset
+        for kind, at in (
+            (events.MouseDown, (x + 30, y + 8)),
+            (events.MouseMove, (x + 33, y + 6)),
+            (events.MouseUp, (x + 33, y + 6)),
+        ):  # as a driver sends them: Textual makes a click of the last
+            theatre.app.post_message(kind(None, *at, 0, 0, 1, False, False, False, *at))
+            await theatre.pilot.pause()
+        assert state(theatre) == tuple(expected)
 
 
 async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_leaves_it():
