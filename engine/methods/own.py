@@ -58,7 +58,7 @@ class OwnMethod(Method):
 
 @cache
 def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
-    """Return the method of a measured text, the same one for the same text."""
+    """Return the method of a measured text, one for each text."""
     phases = own_phases(source, key, file)
     name = key.replace("_", " ").strip()
     return OwnMethod(

@@ -26,11 +26,7 @@ def toggle(live: Live) -> None:
 def test_the_key_toggles_equal_cost_which_a_restart_keeps():
     live = Live(Scene(h=0.05))
     toggle(live)
-    assert (live.stepping.h, live.stepping.own, live.stepping.smallest) == (
-        0.2,
-        (0.05, 0.05, 0.05, 0.2),
-        0.05,
-    )
+    assert live.stepping.own == (0.05, 0.05, 0.05, 0.2)
     live.step(5)
     live.restart()
     assert (live.scene.h, live.stepping.own) == (0.05, (0.05, 0.05, 0.05, 0.2))
@@ -51,9 +47,8 @@ def test_a_sitting_at_equal_cost_verifies_to_the_bit(tmp_path: Path, acts):
     assert verification.complete
     assert verification.identical
     with Recording.open(path) as recording:
-        assert [event.equal_cost for _, event in recording.events if event.kind == "set_h"][:1] == [
-            True
-        ]
+        changes = [event for _, event in recording.events if event.kind == "set_h"]
+        assert changes[0].equal_cost
 
 
 @pytest.mark.parametrize(("h", "acts"), [(0.05, "n"), (1e-9, "n--r"), (100.0, "n"), (60.0, "nr")])

@@ -23,41 +23,38 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
         form = theatre.app.screen
         fields = [field.id for field in form.query("Input")]
         assert fields == ["theta", "omega", "h", "length", "gravity", "stiffness"]
-        for field, value in (("stiffness", "0.5"), ("theta", "abc"), ("theta", "")):
-            before = form.query_one(f"#{field}").value
-            form.query_one(f"#{field}").value = value
+
+        async def enter(name, value):
+            form.query_one(f"#{name}").value = value
+            await theatre.pilot.pause()
             await theatre.press("enter")
             await theatre.pilot.pause()
+
+        for name, value in (("stiffness", "0.5"), ("theta", "abc"), ("theta", "")):
+            before = form.query_one(f"#{name}").value
+            await enter(name, value)
             assert theatre.app.screen is form
             assert form.query_one("#verdict").has_class("-wrong")
-            form.query_one(f"#{field}").value = before
-        form.query_one("#stiffness").value = "400"
-        await theatre.pilot.pause()
-        await theatre.press("enter")
-        await theatre.pilot.pause()
+            form.query_one(f"#{name}").value = before
+        await enter("stiffness", "400")
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
 async def test_a_new_run_of_a_lab_whose_time_runs_backwards_runs_forwards():
     async with lab() as theatre:
-        await theatre.press("b", "i")
-        assert theatre.app.screen.query_one("#h").value == "0.05"
-        await theatre.press("enter")
+        await theatre.press("b", "i", "enter")
         await theatre.pilot.pause()
-        assert theatre.source.stepping.h == 0.05
-        assert theatre.source.sample.run == 2
+        assert (theatre.source.stepping.h, theatre.source.sample.run) == (0.05, 2)
 
 
 async def test_methods_are_taken_in_the_order_that_is_chosen():
     async with lab() as theatre:
         await theatre.press(
-            "M", "space", "down", "down", "space", "end", "up", "space", "home", "space", "enter"
+            "M", *["space", "down", "down", "space", "end", "up", "space", "home", "space", "enter"]
         )
         await theatre.pilot.pause()
         letters = [method.letter for method in theatre.source.scene.cast]
-        assert letters[:2] == ["s", "r"]
-        assert letters[-1] == "e"
-        assert len(letters) == 4
+        assert (letters[:2], letters[-1], len(letters)) == (["s", "r"], "e", 4)
 
 
 async def test_a_click_takes_a_method_and_more_than_fit_or_none_are_refused():

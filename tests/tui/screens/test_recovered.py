@@ -16,12 +16,8 @@ def left_unfinished(path: Path) -> Path:
     return path.with_name(path.name + ".part")
 
 
-def test_without_leftovers_there_is_no_sentence(tmp_path):
-    assert recover_leftovers(tmp_path) == []
-    assert recover_leftovers(tmp_path / "no such folder") == []
-
-
 def test_a_leftover_becomes_a_complete_recording_and_is_reported(tmp_path):
+    assert recover_leftovers(tmp_path / "no such folder") == recover_leftovers(tmp_path) == []
     part = left_unfinished(tmp_path / "one.mcap")
     (said,) = recover_leftovers(tmp_path)
     (whole,) = tmp_path.iterdir()
