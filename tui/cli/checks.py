@@ -92,18 +92,13 @@ class _Grammar:
         match node:
             case ast.BoolOp(op, parts):
                 return partial(_joined, [self.gate(part) for part in parts], type(op) is ast.And)
-            case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if (
-                type(sign) in _SIGNS and not self.fields
+            case ast.Compare(ast.Name() | ast.Attribute(ast.Name()) as left, [sign], [value]) if (
+                type(sign) in _SIGNS and isinstance(left, ast.Name) == bool(self.fields)
             ):
-                names = FIELDS
-            case ast.Compare(ast.Name(field), [sign], [value]) if (
-                type(sign) in _SIGNS and self.fields
-            ):
-                key = ""
-                names = tuple(self.fields)
+                key, _, field = ast.unparse(left).rpartition(".")
             case _:
                 raise self.no_comparison(ast.unparse(node))
-        _check("field", field, (*names, "verdict"))
+        _check("field", field, (*(self.fields or FIELDS), "verdict"))
         limit = _verdict(sign, value) if field == "verdict" else _number(value)
         methods = [""]
         if key in ("any", "all"):
