@@ -87,7 +87,7 @@ class SourceScreen(SizedScreen[None]):
             "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
         ),
         Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
-        Binding("q", "quit", "Quit", tooltip="finish the recording, quit"),
+        Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
     ]
 
     source: var[Source] = var(cast(Source, None))  # there is one from the start
@@ -395,9 +395,7 @@ class SourceScreen(SizedScreen[None]):
         """Copy the command for this moment, and show it: not every terminal has a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
-        is_whole = reproduces(self.source)
-        rest = "" if is_whole else " (start values only; later changes of h are in the recording)"
-        self.notify(f"Copied: {text}{rest}", timeout=15)
-
-    def action_quit(self) -> None:
-        self.app.exit()
+        notice = f"Copied: {text}"
+        if not reproduces(self.source):
+            notice += " (start values only; later changes of h are in the recording)"
+        self.notify(notice, timeout=15)
