@@ -84,7 +84,7 @@ class DampedPendulum(Pendulum):
         return ExactMotion(at, regime, accuracy=ACCURACY)
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
-        """The energy of the motion by the reference; errors are ln(E/E_true)."""
+        """The reference's energy; errors are ln(E/E_true)."""
         energy = self.energy()
 
         def true(t: float) -> float:

@@ -111,17 +111,21 @@ def runs(count: int) -> Iterator[list[Part]]:
         yield sample(first_sample(run))
 
 
-def marks(count: int) -> Iterator[list[Part]]:
+def noted(values: Iterator[Event]) -> Iterator[list[Part]]:
+    """One run, and these events in it."""
     yield from begun()
-    for number in range(count):
-        yield event(Event("mark", 1, 0, 0.0, text=unlike(number)), number * 1e-3)
+    for number, value in enumerate(values):
+        yield event(value, number * 1e-3)
+
+
+def marks(count: int) -> Iterator[list[Part]]:
+    return noted(Event("mark", 1, 0, 0.0, text=unlike(number)) for number in range(count))
 
 
 def milestones(count: int) -> Iterator[list[Part]]:
-    yield from begun()
-    for number in range(count):
-        made = Milestone("verdict", SCENE.cast[number % 4], number, number * 0.1, 1e-9, "grows")
-        yield event(noticed(1, made), number * 1e-3)
+    cast = SCENE.cast
+    made = (Milestone("verdict", cast[n % 4], n, n * 0.1, 1e-9, "grows") for n in range(count))
+    return noted(noticed(1, each) for each in made)
 
 
 def foreign(count: int) -> Iterator[list[Part]]:

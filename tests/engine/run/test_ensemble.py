@@ -7,13 +7,19 @@ from resource import RUSAGE_SELF, getrusage
 import numpy as np
 import pytest
 
-from engine.methods import GENERAL, VELOCITY_VERLET
+from engine.methods import FAMILIES, GENERAL, VELOCITY_VERLET
 from engine.models import Pendulum
 from engine.run.compiled import available
 from engine.run.ensemble import Watched, compiled, plain
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
-each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
+WAYS = [(method, False) for method in GENERAL]
+# compiling takes a second a method: one of each family
+WAYS += [
+    pytest.param(family[0], True, marks=needs_numba)
+    for family in FAMILIES.values()
+    if family[0].general
+]
 each_way = pytest.mark.parametrize(
     "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
 )
@@ -65,8 +71,7 @@ def test_a_swing_without_limits_does_not_stop_the_others(fast):
     assert stops == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
 
 
-@each_way
-@each_method
+@pytest.mark.parametrize(("method", "fast"), WAYS, ids=lambda value: getattr(value, "key", value))
 def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(method, fast):
     seen, points = watched(), path(method, 0.2, 10, fast)
     expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.2), 10)
