@@ -15,7 +15,6 @@ from engine.scenes import Scene
 
 # theta [rad] and omega [rad/s] of the neighbours
 Ring = tuple[NDArray[np.float64], NDArray[np.float64]]
-RADII = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # rad, worth looking at
 
 
 class _Carried:
