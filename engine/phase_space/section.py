@@ -24,7 +24,6 @@ Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of 
 SETTLED = 1e-4
 """An orbit whose halves' rotation numbers differ by a larger share has none."""
 LARGEST = 12  # denominator of a fraction that counts as small
-PERIODS, FEWEST_STEPS, MOST_STEPS = 30, 2_000, 25_000  # that a period is averaged over
 _CHUNK = 8  # steps between two looks at a displacement
 
 
@@ -156,21 +155,6 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
     rotation = _average(turns)
     change = _average(turns[:half]) - _average(turns[half:])
     return rotation if abs(change) <= SETTLED * abs(rotation) else None
-
-
-def numerical_period(method: Method, model: Model, h: float, start: Phase) -> float | None:
-    """Return the mean time of a swing or turn [s]: h over the rotation number of the map.
-
-    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there
-    is no rotation number, or where PERIODS take more than MOST_STEPS.
-    """
-    period = model.exact(*start).period
-    if period is None or (steps := round(PERIODS * period / h)) > MOST_STEPS:
-        return None
-    theta, omega = orbit(method, model, h, start, max(steps, FEWEST_STEPS))
-    spins = model.turns and bool(np.ptp(np.floor(theta / math.tau + 0.5)))
-    rotation = rotation_number(theta, omega, model.w0, spins)
-    return h / abs(rotation) if rotation else None
 
 
 def _average(values: Floats) -> float:

@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain, zip_longest
+from itertools import zip_longest
 from typing import Self
 
 from rich.style import Style
@@ -32,11 +32,6 @@ class Picture:
         """Return the rows that differ from those of another picture."""
         pairs = zip_longest(before.rows, self.rows)
         return [y for y, (old, new) in enumerate(pairs) if old != new]
-
-    @classmethod
-    def stacked(cls, *pictures: "Picture") -> Self:
-        """Put pictures below each other."""
-        return cls(tuple(chain.from_iterable(picture.rows for picture in pictures)))
 
     @classmethod
     def of_line(cls, text: str, ink: Ink = NOBODY) -> Self:

@@ -143,8 +143,8 @@ def test_a_text_is_wrapped_and_centred():
     assert len(Picture.of_text("too long for this", 3, 2, TEXT).rows) == 2
 
 
-def test_pictures_are_stacked_and_compared_row_by_row():
-    picture = Picture.stacked(Canvas(4, 2).picture(), Picture.of_line("ab", 1))
+def test_pictures_are_compared_row_by_row():
+    picture = Picture((*Canvas(4, 2).picture().rows, (("ab", 1),)))
     assert picture.text == "\n\nab"
     assert picture.changed_rows(Canvas(4, 2).picture()) == [2]
     assert Canvas(0, 2).picture().text == "\n"
