@@ -9,29 +9,25 @@ from hatchling.builders.wheel import WheelBuilder
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PACKAGES = ("engine", "recordings", "tui")
 DIST_INFO = f"pendu_tui-{PROJECT['version']}.dist-info"
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory) -> ZipFile:
-    (path,) = WheelBuilder(str(ROOT)).build(
-        directory=str(tmp_path_factory.mktemp("wheel")), versions=["standard"]
-    )
+def wheel(tmp_path_factory):
+    folder = str(tmp_path_factory.mktemp("wheel"))
+    (path,) = WheelBuilder(str(ROOT)).build(directory=folder, versions=["standard"])
     return ZipFile(path)
 
 
 def test_the_wheel_holds_the_three_packages_and_nothing_else(wheel):
     tops = {name.split("/")[0] for name in wheel.namelist()}
-    assert tops == {"engine", "recordings", "tui", DIST_INFO}
+    assert tops == {*PACKAGES, DIST_INFO}
 
 
 def test_everything_that_lies_beside_the_code_is_in_the_wheel(wheel):
-    beside = {
-        str(path.relative_to(ROOT))
-        for package in ("engine", "recordings", "tui")
-        for path in (ROOT / package).rglob("*")
-        if path.is_file() and path.suffix not in {".pyc", ".py"}
-    }
+    files = [p for package in PACKAGES for p in (ROOT / package).rglob("*") if p.is_file()]
+    beside = {str(p.relative_to(ROOT)) for p in files if p.suffix not in {".pyc", ".py"}}
     assert beside <= set(wheel.namelist())
     kinds = {Path(name).suffix for name in beside}
     assert {".tcss", ".mcap", ".json"} <= kinds, "styles, golden recordings and the Foxglove layout"
