@@ -34,7 +34,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
     add_file(
         parser,
         "--method",
-        metavar="FILE.py:FUNCTION",
+        metavar="FILE.py:FUNCTION[,letter=m]",
         action="append",
         default=[],
         help="add your own method: a generator function (force, phase, h), see "
@@ -105,12 +105,13 @@ def find(
 
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
-    """Return the method of FILE.py:FUNCTION, with a letter that no other has."""
+    """Return the method of FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
     from engine.methods.examine import load
     from engine.methods.own import LONGEST_SOURCE
     from tui.cli.time_limit import limited
 
-    path, _, key = text.rpartition(":")
+    name, _, letter = text.partition(",letter=")
+    path, _, key = name.rpartition(":")
     if not path:
         raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION.")
     if not (key.isidentifier() and key.isascii() and len(key) <= 30):
@@ -125,7 +126,10 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
         )
     letters = {method.letter for method in taken}
     wishes = (*key.lower(), *key.upper(), *string.ascii_uppercase)
-    letter = next(each for each in wishes if each.isalpha() and each not in letters)
+    free = [each for each in wishes if each.isalpha() and each not in letters]
+    letter = letter or free[0]
+    if letter in letters or letter not in string.ascii_letters + string.digits or len(letter) > 1:
+        raise UserError(f"--method: {letter!r} is taken or no letter; use letter={free[0]}.")
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(LONGEST_SOURCE + 1)

@@ -209,13 +209,14 @@ def _lines(stream: io.BufferedReader) -> Iterator[str]:
 
 
 class _Text:
-    """The table in lines of text: a header may have a # in front."""
+    """The table in lines of text: a header may have a # in front, a row of units may follow it."""
 
     def __init__(self, wanted: Sequence[str]) -> None:
         self._wanted = wanted
         self._is_named = not all(part.isdecimal() for each in wanted for part in each.split("+"))
         self._legend: dict[int, str] = {}  # names of columns as GROMACS writes them
         self._headers: list[list[str]] = []  # the names of a header, in each way to split it
+        self._units: list[str] = []  # below a header
         self._above: list[str] = []  # other words above a row: where they return, a table begins
         self._names: list[str] = []  # to choose from
         self._places: list[int] = []  # of the rows; none before the first
@@ -275,6 +276,9 @@ class _Text:
         if headers:
             self._headers = headers
             self._names = headers[0]
+            self._units = []
+        elif not self._places and len(fields) == len(self._names):
+            self._units = [name.strip("()[]") for name in fields]
         if headers or fields == self._above != []:
             self._places = []
         elif not self._places and not is_comment and len(fields) > 1:
@@ -288,7 +292,11 @@ class _Text:
         if self._headers:
             fitting = (names for names in self._headers if len(names) == width)
             head = Head.of(next(fitting, self._headers[0]), self._wanted)
-            return head if head and max(chain(*head.places)) < width else None
+            if head is None or max(chain(*head.places)) >= width:
+                return None
+            if len(self._units) == width and not any(head.units):
+                head = Head(head.places, tuple(self._units[group[0]] for group in head.places))
+            return head
         if not self._names and width == len(self._above):
             self._names = self._above
         head = Head.of([self._legend.get(place, "") for place in range(width)], self._wanted)

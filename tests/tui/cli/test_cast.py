@@ -104,6 +104,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert (last.key, last.symplectic, last.source) == ("kick_drift", True, SOURCE)
     assert cast_from(*own, "--methods", "kick,rk4") == (last, RK4)
     assert cast_from(*own, "--methods", "rk4") == (RK4, last)
+    assert cast_from("--method", "mine.py:kick_drift,letter=Q")[-1].letter == "Q"
 
 
 @pytest.mark.parametrize(
@@ -111,6 +112,8 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     [
         ("mine.py", 2, "is not FILE.py:FUNCTION"),
         ("mine.py:kick_drift,x", 2, "cannot be a method's name"),
+        ("mine.py:kick_drift,letter=r", 2, "'r' is taken"),
+        ("mine.py:kick_drift,letter=QQ", 2, "'QQ' is taken or no letter"),
         ("mine.py:größer", 2, "cannot be a method's name"),
         (f"mine.py:{'a' * 31}", 2, "cannot be a method's name"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),

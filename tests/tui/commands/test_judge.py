@@ -112,9 +112,22 @@ RISING = [-17 + n / 8 for n in range(9)]
         (MDOUT, ("TIME(PS)", "Etot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (MDOUT, ("time", "EKtot+EPtot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (NPZ.getvalue(), ("time", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
+        ("t,E\nps,eV\n0,1\n1,1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
+        ("# t E\n# [ps] (eV)\n0 1\n1 1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
         ("t E\n0.0D0 1.5D+02\n1.0d-1 1.5d+02\n", ("t", "E"), ("", ""), [0, 0.1], [150, 150]),
     ],
-    ids=["cp2k", "cp2k sum", "cp2k blank", "json lines", "mdout", "mdout sum", "npz", "fortran"],
+    ids=[
+        "cp2k",
+        "cp2k sum",
+        "cp2k blank",
+        "json lines",
+        "mdout",
+        "mdout sum",
+        "npz",
+        "units",
+        "# units",
+        "fortran",
+    ],
 )
 def test_other_forms_are_read_and_columns_added(data, names, units, times, energies):
     found = read(data, *names)
