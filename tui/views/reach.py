@@ -26,14 +26,18 @@ def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     It is the exact motion's amplitude times a power of 1.3, so that it hardly ever changes; pi
     where that is large.  Largest errors only grow during a run, so it never jumps back and forth.
     """
-    model = scene.equations
-    half = 1.3 * amplitude(model, scene.theta, scene.omega)
+    staying = _staying(scene, stepping, sample, shown)
+    largest = max((sample.readings[place].max_energy_error for place in staying), default=0.0)
+    return _frame(scene.equations, scene.theta, scene.omega, largest)
+
+
+@lru_cache(maxsize=8)
+def _frame(model: Model, theta: float, omega: float, largest: float) -> float:
+    half = 1.3 * amplitude(model, theta, omega)
     if half < 1e-9 or not model.turns:
         return math.pi
     energy = model.energy()
-    reference = model.reference(scene.theta, scene.omega)
-    staying = _staying(scene, stepping, sample, shown)
-    largest = max((sample.readings[place].max_energy_error for place in staying), default=0.0)
+    reference = model.reference(theta, omega)
     while half < 0.8 * math.pi:  # a wider frame is all of phase space
         if reference.error(energy(model.rest_phase(half))) > largest:
             return half
@@ -44,10 +48,12 @@ def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
 def _staying(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> list[int]:
     """Return the methods that are stable at their step and have not gone over the top."""
     staying = []
+    own = stepping.own
+    fastest = scene.equations.fastest
     for place in shown:
         reading = sample.readings[place]
         limit = scene.cast[place].linear_limit
-        is_stable = limit is None or abs(stepping.own[place]) * scene.equations.fastest <= limit
+        is_stable = limit is None or abs(own[place]) * fastest <= limit
         if is_stable and reading.diverged_at is None and abs(reading.theta) < math.pi:
             staying.append(place)
     return staying
