@@ -11,7 +11,6 @@ import copy
 import re
 from collections.abc import Iterable
 from functools import lru_cache
-from itertools import product
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
@@ -130,12 +129,13 @@ class Canvas:
             return
         most = radius * radius
         least = (radius - 1) ** 2 if hollow and radius > 1 else -1.0
-        square = product(
-            range(floor(y - radius), floor(y + radius) + 2),
-            range(floor(x - radius), floor(x + radius) + 2),
-        )
-        distances = (((i, j), (i + 0.5 - x) ** 2 + (j + 0.5 - y) ** 2) for j, i in square)
-        self.points([dot for dot, distance in distances if least < distance <= most], ink)
+        dots = [
+            (i, j)
+            for j in range(floor(y - radius), floor(y + radius) + 2)
+            for i in range(floor(x - radius), floor(x + radius) + 2)
+            if least < (i + 0.5 - x) ** 2 + (j + 0.5 - y) ** 2 <= most
+        ]
+        self.points(dots, ink)
 
     def label(self, column: int, row: int, text: str, ink: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""

@@ -15,9 +15,8 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
 
     A method that is unstable at its h gets all the room at once.
     """
-    if len(_staying(scene, stepping, sample, shown)) < len(shown):
-        return math.pi
-    return frame(scene, stepping, sample, shown)
+    staying = _staying(scene, stepping, sample, shown)
+    return _frame_of(scene, sample, staying) if len(staying) == len(shown) else math.pi
 
 
 def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
@@ -26,7 +25,10 @@ def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     It is the exact motion's amplitude times a power of 1.3, so that it hardly ever changes; pi
     where that is large.  Largest errors only grow during a run, so it never jumps back and forth.
     """
-    staying = _staying(scene, stepping, sample, shown)
+    return _frame_of(scene, sample, _staying(scene, stepping, sample, shown))
+
+
+def _frame_of(scene: Scene, sample: Sample, staying: Sequence[int]) -> float:
     largest = max((sample.readings[place].max_energy_error for place in staying), default=0.0)
     return _frame(scene.equations, scene.theta, scene.omega, largest)
 

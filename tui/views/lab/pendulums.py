@@ -174,9 +174,10 @@ class Pendulum(Pane):
             widest = reach(source.scene, source.stepping, sample, self.places)
             if source.ghost is not None:
                 widest = max(widest, source.ghost.widest)
-        for at, bob in enumerate(bobs):
-            trail = [scale * theta for theta in bob.trail]
-            bobs[at] = bob._replace(theta=scale * bob.theta, trail=trail)
+        if scale > 1:
+            for at, bob in enumerate(bobs):
+                trail = [scale * theta for theta in bob.trail]
+                bobs[at] = bob._replace(theta=scale * bob.theta, trail=trail)
         return pendulum_picture(*self.room, bobs, widest)
 
     def _scale(self, source: Source, sample: Sample, places: Sequence[int]) -> int:
@@ -202,16 +203,15 @@ class Pendulum(Pane):
             bob = Bob(
                 reading.theta,
                 colours[place],
+                trail=source.history.thetas(place, 15) if model.rigid else (),  # half a second
+                letter=scene.cast[place].letter if self._place is None else "",
                 length=model.length(reading.extra),
                 diverged=reading.diverged_at is not None,
             )
-            if model.rigid:
-                bob = bob._replace(trail=source.history.thetas(place, 15))  # half a second
-            if self._place is None:
-                bob = bob._replace(letter=scene.cast[place].letter)
             bobs.append(bob)
-        theta = source.exact.at(sample.t).theta
-        if isfinite(theta) and (self.shown.exact or self._place is None):
-            length = model.exact_length(scene.theta, scene.omega, sample.t)
-            bobs.append(Bob(theta, EXACT, ghost=True, length=length))
+        if self.shown.exact or self._place is None:
+            theta = source.exact.at(sample.t).theta
+            if isfinite(theta):
+                length = model.exact_length(scene.theta, scene.omega, sample.t)
+                bobs.append(Bob(theta, EXACT, ghost=True, length=length))
         return bobs
