@@ -10,7 +10,7 @@
 - Judging: the lockstep stops at look points and shows each method to its `judge`, which uses the
   `bands` of its energy error and, by `tangent`, how fast neighbouring starts separate; `judges` are
   those of all methods, with the milestones of the run; `judgement` defines the verdicts.
-- `energies` judges the record of any program, by least squares in correlated `noise`.
+- `energies` judges the record of any program, by least squares in correlated noise.
 """
 
 NUMERICS = 2

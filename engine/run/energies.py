@@ -1,27 +1,33 @@
 """The record of any program: a verdict from times and energies alone.
 
-The means of up to 64 blocks are held against a few descriptions in correlated noise
-(engine.run.noise): a level, a line, a curve that still moves, a curve or a step that has settled.
+The means of up to 64 blocks are described by least squares in correlated noise: by a level and
+waves, and one curve beside them that still moves (a line, an exponential, a logarithm) or that has
+settled (an approach, a step).
 
-In this order: a start outside the band of the rest is left out, and so is an approach that is over
-early; what moves by no more than its last digit is `bounded`; what settles after a change of level
-is `caught`; a trend `grows` or `loses`; no trend in enough independent samples is `bounded`; what
-looks like a random walk, or fluctuates more and more, `wanders`.
+The cosine transform of stationary noise has independent terms, whose variances are the spectrum
+(Whittle, J. R. Stat. Soc. B 15 (1953) 125).  The noise may have any correlation time, from none to
+that of a random walk, and white noise on top.  Likelihoods are averaged over a grid of such spectra
+(restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of
+a slope holds for correlated values, too.
 """
 
 import math
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from engine.run import judgement as limits
 from engine.run.bands import MAX_BINS
 from engine.run.judgement import Judgement, Progress
-from engine.run.noise import Noises
 
+# correlation times, of the record: the first looks like a walk, the others like a level
+_TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])
+_WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in that of the kicks
 _RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
+_MAX_WAVES = 3
 
 
 def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
@@ -33,20 +39,18 @@ def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
         return _too_early(len(times), limits.MIN_SAMPLES, "samples")
     unit = float(np.abs(energies).max()) or 1.0
     energies = energies / unit  # squares must not overflow
+    end = np.abs(energies[-(len(energies) // 4) :]).max()
+    if absolute and end < limits.LOST * abs(energies[0]):
+        return Judgement("loses" if energies[0] > 0 else "grows")
     floor = max(_last_digit(energies), limits.ROUNDING)
     first = _outliers(energies, floor)
-    if absolute and np.abs(energies[-(len(energies) // 4) :]).max() < limits.LOST * abs(
-        energies[0]
-    ):
-        return Judgement("loses" if energies[0] > 0 else "grows")
-    first += _transient(times[first:], energies[first:], floor)
+    first += _Record(times[first:], energies[first:], floor).transient()
     at = times[first:]
     rest = energies[first:]
     judgement = _judge(at, rest, floor)
     sizes = np.abs(rest)
-    multiplied = float(sizes.max()) > limits.MULTIPLIED * float(sizes.min()) > 0
-    multiplied = multiplied and absolute and float(rest.min() * rest.max()) > 0
-    if multiplied and judgement.verdict not in ("grows", "loses"):
+    multiplied = sizes.max() > limits.MULTIPLIED * sizes.min() > 0 < rest.min() * rest.max()
+    if absolute and multiplied and judgement.verdict not in ("grows", "loses"):
         logarithms = np.sign(rest) * np.log(sizes)
         judgement = judgement._replace(verdict=_judge(at, logarithms, limits.ROUNDING).verdict)
     scale = unit / float(at[-1] - at[0])
@@ -76,115 +80,192 @@ def _outliers(energies: Any, floor: float) -> int:
     early = int(len(energies) * limits.TRANSIENT)
     at = np.arange(len(energies))
     rest = energies - np.polyval(np.polyfit(at[early:], energies[early:], 1), at)
-    low = float(rest[early:].min())
-    high = float(rest[early:].max())
-    margin = max((high - low) / 2, floor)
-    outside = np.flatnonzero((rest[:early] > high + margin) | (rest[:early] < low - margin))
+    middle = (rest[early:].min() + rest[early:].max()) / 2
+    width = float(np.ptp(rest[early:]))
+    outside = np.flatnonzero(np.abs(rest[:early] - middle) > width / 2 + max(width / 2, floor))
     return int(outside[-1]) + 1 if len(outside) else 0
-
-
-def _transient(times: Any, energies: Any, floor: float) -> int:
-    """Return how many samples belong to an approach to a level that is over early."""
-    stories = _Stories(times, energies, floor)
-    if not stories.has_settled or stories.settling > limits.TRANSIENT:
-        return 0
-    size = abs(stories.settled.amplitude) / max(math.sqrt(stories.within), floor)
-    end = stories.settling / 3 * min(max(math.log(size) + 1, 3.0), 6.0)
-    return int(np.searchsorted(stories.at, end))
 
 
 def _judge(times: Any, energies: Any, floor: float) -> Judgement:
     """Judge a record without a transient; the slope is that over the whole record."""
     if float(np.ptp(energies)) <= 2 * floor:
         return Judgement("bounded", slope=0.0, uncertainty=floor)
-    stories = _Stories(times, energies, floor)
-    judgement = stories.conclude()
+    record = _Record(times, energies, floor)
+    judgement = record.conclude()
     if judgement.verdict == "bounded":
-        wobble = np.abs(stories.rest)
-        wider = _Stories(times, wobble, floor)
-        if wider.conclude().verdict == "grows" and wider.line.amplitude > float(
-            wobble.mean()
-        ) * 2 * (limits.WIDER - 1) / (limits.WIDER + 1):
+        wobble = np.abs(record.rest)
+        wider = _Record(times, wobble, floor)
+        share = wider.line.amplitude / float(wobble.mean())
+        if wider.conclude().verdict == "grows" and share > limits.WIDENING:
             judgement = Judgement("wanders")
     return judgement._replace(
-        slope=stories.line.amplitude,
-        uncertainty=math.hypot(stories.line.deviation, stories.incomplete),
-        independent=stories.independent,
-        fluctuation=float(np.std(stories.rest)),
+        slope=record.line.amplitude,
+        uncertainty=math.hypot(record.line.deviation, record.incomplete),
+        independent=record.independent,
+        fluctuation=float(np.std(record.rest)),
     )
 
 
-class _Stories:
-    """The best description of each kind."""
+class _Fit(NamedTuple):
+    """A curve fitted beside a level and waves."""
 
-    def __init__(self, times: Any, energies: Any, floor: float) -> None:
-        """Fit them all; times count from 0 to 1 then."""
-        count = min(MAX_BINS, len(times) // 2)
-        self.at = (times - times[0]) / (times[-1] - times[0])
-        energies = energies - float(energies.mean())
-        times = _means(self.at, count)
-        means = _means(energies, count)
-        noises = Noises(count, floor)
-        base = noises.waves(times, means)
-        self.cycles = noises.cycles
-        self.level = noises.fit(base, means)
-        self.line = noises.fit([*base, times], means)
-        families = (
-            np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None],
-            np.log1p(_LOGARITHMS[:, None] * times),
-            -np.expm1(-_SETTLING[:, None] * times),
-            _steps(count),
-        )
-        best = [_best(family, base, means) for family in families]
-        curve, logarithm, approach, step = (
-            noises.fit([*base, family[index]], means)
-            for family, index in zip(families, best, strict=True)
-        )
-        self.moving = max(self.line, curve, logarithm, key=lambda fit: fit.likelihood)
-        is_step = step.likelihood > approach.likelihood
-        self.settled = step if is_step else approach
-        self.settling = 1.0 if is_step else 3 / float(_SETTLING[best[2]])  # to a 20th of the way
-        self.rest = energies - np.polyval(np.polyfit(self.at, energies, 1), self.at)
-        self.floor = floor
-        error = max(self.line.deviation, floor / len(self.at))
-        self.independent = min(len(self.at), 24 * float(np.mean(self.rest**2)) / error**2)
-        # an incomplete wobble at the end tilts a line by so much
-        self.incomplete = 12 * float(np.std(self.rest)) / len(self.at)
-        self.within = max(float(np.mean(energies**2) - np.mean(means**2)), 0.0)
+    likelihood: float  # logarithm, of the best noise
+    amplitude: float  # averaged over the noises
+    deviation: float
+    walks: float  # logarithm of the likelihood ratio of a random walk and of noise about a level
 
     @property
-    def has_settled(self) -> bool:
-        """Whether the best that has settled is better than the best that moves."""
-        return (
-            self.settled.likelihood - self.moving.likelihood > limits.SETTLED
-            and self.settled.amplitude**2 > self.within
+    def sigmas(self) -> float:
+        """The amplitude in its standard deviations."""
+        return abs(self.amplitude) / self.deviation
+
+
+@cache
+def _noises(count: int) -> tuple[Any, Any, Any]:
+    """Return cosines, correlation times and, for each noise and cosine, the root of its weight."""
+    angles = np.pi * np.arange(count) / count
+    cosines = np.cos(angles[:, None] * (np.arange(count) + 0.5)) * math.sqrt(2 / count)
+    spectra = [np.ones(count - 1)]
+    for time in _TIMES:
+        kicked = 1 / np.abs(1 - math.exp(-1 / (time * count)) * np.exp(1j * angles[1:])) ** 2
+        spectra += [kicked + share for share in _WHITE]
+    # the first cosine is the level, which any noise leaves alone
+    roots = np.insert(1 / np.sqrt(spectra), 0, 1.0, axis=1)
+    return cosines, np.array([0.0, *np.repeat(_TIMES, len(_WHITE))]), roots
+
+
+class _Record:
+    """The best curve of each kind through the means of blocks, over times from 0 to 1."""
+
+    def __init__(self, times: Any, energies: Any, floor: float) -> None:
+        self._count = count = min(MAX_BINS, len(times) // 2)
+        self._at = (times - times[0]) / (times[-1] - times[0])
+        self._floor = floor
+        energies = energies - float(energies.mean())
+        self._times = times = _means(self._at, count)
+        self._means = _means(energies, count)
+        self._base = np.ones((count, 1))
+        self._cycles = math.inf  # of the slowest wave
+        self._add_waves()
+        edge = max(2, count // 8)
+        steps = np.arange(count) - np.arange(edge, count - edge, 0.25)[:, None] + 1
+        moving = [
+            times,
+            *np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None],
+            *np.log1p(_LOGARITHMS[:, None] * times),
+        ]
+        settled = [*-np.expm1(-_SETTLING[:, None] * times), *np.clip(steps, 0, 1)]
+        fits = self._fits(moving + settled)
+        self.line = fits[0]
+        self._moving = max(fits[: len(moving)])
+        self._settled = max(fits[len(moving) :])
+        approach = fits.index(self._settled) - len(moving)
+        self._settling = 1.0  # time to a 20th of the way
+        if approach < len(_SETTLING):
+            self._settling = 3 / float(_SETTLING[approach])
+        self.rest = energies - np.polyval(np.polyfit(self._at, energies, 1), self._at)
+        error = max(self.line.deviation, floor / len(times))
+        self.independent = min(len(self._at), 24 * float(np.mean(self.rest**2)) / error**2)
+        # an incomplete wobble at the end tilts a line by so much
+        self.incomplete = 12 * float(np.std(self.rest)) / len(self._at)
+        self._within = max(float(np.mean(energies**2) - np.mean(self._means**2)), 0.0)
+
+    def _fits(self, curves: list[Any]) -> list[_Fit]:
+        """Fit each of the curves, beside the base, in every noise."""
+        cosines, noise_times, roots = _noises(self._count)
+        basis, sizes = np.linalg.qr(roots[:, :, None] * (cosines @ self._base))
+        columns = cosines @ np.column_stack([*curves, self._means])
+        explained = (roots[:, :, None] * basis).transpose(0, 2, 1) @ columns
+        products = roots**2 @ (columns * columns[:, -1:])
+        products -= (explained * explained[:, :, -1:]).sum(axis=1)
+        lengths = roots**2 @ columns**2 - (explained**2).sum(axis=1)
+        lengths = np.maximum(lengths[:, :-1], 1e-15)
+        amplitudes = products[:, :-1] / lengths
+        squares = np.maximum(products[:, -1:] - amplitudes**2 * lengths, 0)
+        # means of values that are rounded apart err by a tenth of what one value does
+        squares += self._count * self._floor**2 / 12 / 100
+        determinants = 2 * np.log(roots).sum(axis=1, keepdims=True)
+        whole = (determinants - (self._count - 1) * np.log(squares)) / 2
+        diagonals = np.abs(np.diagonal(sizes, axis1=1, axis2=2))
+        design = 2 * np.log(diagonals).sum(axis=1, keepdims=True) + np.log(lengths)
+        freedom = self._count - 1 - self._base.shape[1]
+        restricted = (determinants - design - freedom * np.log(squares)) / 2
+        weights = np.exp(restricted - restricted.max(axis=0))
+        weights /= weights.sum(axis=0)
+        walk = restricted[noise_times == _TIMES[0]].max(axis=0)
+        level = restricted[noise_times <= _TIMES[1]].max(axis=0)
+        found = (
+            whole.max(axis=0),
+            (weights * amplitudes).sum(axis=0),
+            np.exp((weights * np.log(squares / freedom / lengths)).sum(axis=0) / 2),
+            walk - level,
         )
+        return [_Fit(*map(float, each)) for each in zip(*found, strict=True)]
+
+    def _add_waves(self) -> None:
+        """Add to the base the cosines and sines that stand out of every noise."""
+        before = self._fits([self._times])[0].likelihood
+        grid = np.arange(1.25, self._count / 2, 0.25)
+        for _ in range(_MAX_WAVES):
+            best = self._best_wave(grid)
+            best = self._best_wave(best + np.linspace(-0.25, 0.25, 51))
+            angles = math.tau * best * self._times
+            base = self._base
+            self._base = np.column_stack([base, np.cos(angles), np.sin(angles)])
+            after = self._fits([self._times])[0].likelihood
+            if after - before < 1.5 * math.log(self._count) + limits.WAVE:
+                self._base = base
+                break
+            self._cycles = min(self._cycles, best)
+            before = after
+
+    def _best_wave(self, cycles: Any) -> float:
+        """Return the cycles of the wave that explains most, beside the base and a line."""
+        basis = np.linalg.qr(np.column_stack([self._base, self._times]))[0]
+        angles = math.tau * cycles[:, None] * self._times
+        waves = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        waves = np.linalg.qr(waves - basis @ (basis.T @ waves))[0]
+        rest = self._means - basis @ (basis.T @ self._means)
+        return float(cycles[np.argmax(((rest @ waves) ** 2).sum(axis=1))])
+
+    @property
+    def _has_settled(self) -> bool:
+        """Whether the best that has settled is better than the best that moves."""
+        better = self._settled.likelihood - self._moving.likelihood > limits.SETTLED
+        return better and self._settled.amplitude**2 > self._within
+
+    def transient(self) -> int:
+        """Return how many samples belong to an approach to a level that is over early."""
+        if not self._has_settled or self._settling > limits.TRANSIENT:
+            return 0
+        size = abs(self._settled.amplitude) / max(math.sqrt(self._within), self._floor)
+        end = self._settling / 3 * min(max(math.log(size) + 1, 3.0), 6.0)
+        return int(np.searchsorted(self._at, end))
 
     def conclude(self) -> Judgement:
         """Return the verdict that the descriptions allow."""
         line = self.line.sigmas
-        few = self.independent < limits.MIN_INDEPENDENT or self.cycles < limits.MIN_CYCLES
+        few = self.independent < limits.MIN_INDEPENDENT or self._cycles < limits.MIN_CYCLES
         walk_like = few or self.independent < 2 * limits.MIN_INDEPENDENT
-        if self.has_settled and self.settled.sigmas > (
-            limits.CURVE_OF_FEW if few else limits.CHANGE
-        ):
+        change = limits.CURVE_OF_FEW if few else limits.CHANGE
+        if self._has_settled and self._settled.sigmas > change:
             return Judgement("caught")
-        curved = self.moving.likelihood - self.line.likelihood > limits.CLEAR
-        clear = not curved or self.settled.likelihood - self.moving.likelihood < -limits.CLEAR
-        sure = line > limits.LINE_OF_FEW or self.moving.sigmas > limits.CURVE_OF_FEW
-        trend = sure or (not walk_like and self.moving.sigmas > limits.TREND)
-        if trend and clear:
-            if abs(self.line.amplitude) < max(2 * self.floor, self.incomplete):
+        settled = self._settled.likelihood - self._moving.likelihood
+        curved = self._moving.likelihood - self.line.likelihood > limits.CLEAR
+        sure = line > limits.LINE_OF_FEW or self._moving.sigmas > limits.CURVE_OF_FEW
+        trend = sure or (not walk_like and self._moving.sigmas > limits.TREND)
+        if trend and not (curved and settled > -limits.CLEAR):
+            if abs(self.line.amplitude) < max(2 * self._floor, self.incomplete):
                 return Judgement("bounded")
             return Judgement("grows" if self.line.amplitude > 0 else "loses")
-        level = not self.has_settled and self.settled.sigmas < limits.CHANGE
+        level = not self._has_settled and self._settled.sigmas < limits.CHANGE
         if level and line < limits.STILL and not walk_like:
             return Judgement("bounded")
-        walks = self.level.walks > limits.CLEAR and math.isinf(self.cycles)
+        walks = self.line.walks > limits.CLEAR and math.isinf(self._cycles)
         if level and line < limits.TREND and walks:
             return Judgement("wanders")
-        if self.cycles < limits.MIN_CYCLES:
-            return _too_early(self.cycles, limits.MIN_CYCLES, "cycles of its slowest wave")
+        if self._cycles < limits.MIN_CYCLES:
+            return _too_early(self._cycles, limits.MIN_CYCLES, "cycles of its slowest wave")
         need = 2 * max(limits.MIN_INDEPENDENT, self.independent)
         return _too_early(self.independent, need, "independent samples")
 
@@ -193,18 +274,3 @@ def _means(values: Any, count: int) -> Any:
     """Return the means of so many blocks of as many values."""
     ends = np.arange(count) * len(values) // count
     return np.add.reduceat(values, ends) / np.diff(ends, append=len(values))
-
-
-def _steps(count: int) -> Any:
-    """Return steps of 1 in the middle three quarters of so many blocks, and within a block."""
-    edge = max(2, count // 8)
-    places = np.arange(edge, count - edge, 0.25)
-    return np.clip(np.arange(count) - places[:, None] + 1, 0, 1)
-
-
-def _best(family: Any, base: list[Any], means: Any) -> int:
-    """Return the index of the member that explains most of the means, beside the base."""
-    basis = np.linalg.qr(np.column_stack([np.ones(len(means)), *base]))[0]
-    members = family - (family @ basis) @ basis.T
-    lengths = np.maximum((members**2).sum(axis=1), 1e-12)
-    return int(np.argmax((members @ means) ** 2 / lengths))

@@ -82,7 +82,7 @@ MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record 
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
 LOST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
-WIDER = 3.0  # times: what fluctuates so much more at its end is in no band
+WIDENING = 1.0  # of its mean: what fluctuates three times more at its end is in no band
 
 
 class LookPoint(NamedTuple):
