@@ -156,6 +156,7 @@ class _Record:
         ]
         settled = [*-np.expm1(-_SETTLING[:, None] * times), *np.clip(steps, 0, 1)]
         fits = self._fits(moving + settled)
+        self._level = self._fits([0 * times])[0]
         self.line = fits[0]
         self._moving = max(fits[: len(moving)])
         self._settled = max(fits[len(moving) :])
@@ -258,10 +259,10 @@ class _Record:
             if abs(self.line.amplitude) < max(2 * self._floor, self.incomplete):
                 return Judgement("bounded")
             return Judgement("grows" if self.line.amplitude > 0 else "loses")
-        level = not self._has_settled and self._settled.sigmas < limits.CHANGE
+        level = self._settled.sigmas < limits.CHANGE
         if level and line < limits.STILL and not walk_like:
             return Judgement("bounded")
-        walks = self.line.walks > limits.CLEAR and math.isinf(self._cycles)
+        walks = self._level.walks > limits.CLEAR and math.isinf(self._cycles)
         if level and line < limits.TREND and walks:
             return Judgement("wanders")
         if self._cycles < limits.MIN_CYCLES:

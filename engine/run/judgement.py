@@ -23,11 +23,11 @@ DEFINITIONS: dict[Verdict, str] = {
 """One definition of each verdict, for the help, the README and every judge."""
 
 FALSE_ALARMS: dict[Verdict, float] = {
-    "bounded": 1.0,
-    "grows": 1.5,
-    "loses": 0.8,
-    "caught": 0.2,
-    "wanders": 6.6,
+    "bounded": 0.6,
+    "grows": 0.9,
+    "loses": 0.2,
+    "caught": 0.6,
+    "wanders": 6.4,
 }
 """How many of 100 such verdicts on energies alone are wrong, by tests/bench/foreign.py."""
 
