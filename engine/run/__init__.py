@@ -8,8 +8,8 @@
   by it, in `loops`, which `compiled` gives to Numba, with the same bits; `rewindable` is a lockstep
   that can also go back; `ensemble` runs many swings together, as arrays.
 - Judging: the lockstep stops at look points and shows each method to its `judge`, which uses the
-  `bands` of its energy error and, by `tangent`, how fast neighbouring starts separate; `judges` are
-  those of all methods, with the milestones of the run; `judgement` defines the verdicts.
+  `bands` of its energy error and, by `tangent`, how fast neighbouring starts separate; the lockstep
+  has `Judges` of all methods, with the milestones of the run; `judgement` defines the verdicts.
 - `energies` judges the record of any program, by least squares in correlated noise.
 """
 

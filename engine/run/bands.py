@@ -5,12 +5,11 @@ So the stream is cut into bins of a swing or more, and of a bin only its band is
 of a band hardly wobbles, wherever the swing was cut.  When there are 64 bins they merge pairwise.
 """
 
-import copy
 import math
 from collections.abc import Sequence
 from itertools import pairwise
 from statistics import median
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 MAX_BINS = 64
 
@@ -26,27 +25,16 @@ class Bin(NamedTuple):
     def middle(self) -> float:
         return (self.low + self.high) / 2
 
-    @property
-    def width(self) -> float:
-        return self.high - self.low
-
 
 class Bands:
-    """The bins of one number along a run."""
+    """The bins of one number along a run, at first of `width` steps; `copy.copy` copies it."""
 
-    def __init__(self, width: int) -> None:
-        """`width`: the steps of a bin, at first."""
+    def __init__(self, width: float) -> None:
         self.bins: list[Bin] = []
-        self._width = float(width)
+        self._width = width
         self._cut = 0
         self._low = math.inf  # of the open bin
         self._high = -math.inf
-
-    def copy(self) -> Self:
-        """Return other bands that go on from here."""
-        other = copy.copy(self)
-        other.bins = self.bins.copy()
-        return other
 
     def add(self, step: int, low: float, high: float, now: float) -> bool:
         """Take in the extremes since the last call and the number now; return whether a bin is full."""
@@ -54,14 +42,12 @@ class Bands:
         self._high = max(self._high, high)
         if step - self._cut < self._width:
             return False
-        self.bins.append(Bin((self._cut + step) / 2, self._low, self._high))
+        self.bins = [*self.bins, Bin((self._cut + step) / 2, self._low, self._high)]
         self._cut = step
         self._low = self._high = now
         if len(self.bins) == MAX_BINS:
             pairs = zip(self.bins[::2], self.bins[1::2], strict=True)
-            self.bins = [
-                Bin((a.step + b.step) / 2, min(a.low, b.low), max(a.high, b.high)) for a, b in pairs
-            ]
+            self.bins = [Bin((a.step + b.step) / 2, *hull((a, b))) for a, b in pairs]
             self._width = 2 * step / MAX_BINS
         return True
 
@@ -79,48 +65,37 @@ class Line(NamedTuple):
 
 
 def line(bins: Sequence[Bin]) -> Line:
-    """Fit a line through the middles of three bins or more."""
-    return fit([each.step for each in bins], [each.middle for each in bins])
-
-
-def fit(times: Sequence[float], values: Sequence[float]) -> Line:
-    """Fit a line through three values or more.
+    """Fit a line through the middles of three bins or more.
 
     A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n
-    values that count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
+    values that count: Santer et al., J. Geophys. Res. 105 (2000) 7337.  Student's t becomes
+    standard deviations by Wallace, Ann. Math. Statist. 30 (1959) 1121, to 2 %.
     """
-    n = len(times)
-    mean_time = sum(times) / n
-    mean = sum(values) / n
-    offsets = [time - mean_time for time in times]
-    square = sum(offset * offset for offset in offsets)
-    placed = [*zip(offsets, values, strict=True)]
-    slope = sum(offset * (value - mean) for offset, value in placed) / square
-    residuals = [value - mean - slope * offset for offset, value in placed]
+    n = len(bins)
+    mean_step = sum(each.step for each in bins) / n
+    mean = sum(each.middle for each in bins) / n
+    placed = [(each.step - mean_step, each.middle) for each in bins]
+    square = sum(offset * offset for offset, _ in placed)
+    slope = sum(offset * (middle - mean) for offset, middle in placed) / square
+    residuals = [middle - mean - slope * offset for offset, middle in placed]
     total = sum(residual * residual for residual in residuals)
     if total == 0:
         return Line(slope, 0.0, math.inf if slope else 0.0)
     correlation = sum(a * b for a, b in pairwise(residuals)) / total
     # a poor estimate: neither shrink the result nor blow it up
     correlation = min(max(correlation, 0.0), 0.9)
-    uncertainty = math.sqrt(total / (n - 2) / square * (1 + correlation) / (1 - correlation))
-    return Line(slope, uncertainty, sigmas(slope / uncertainty, n - 2))
-
-
-def sigmas(ratio: float, freedom: int) -> float:
-    """Convert a value of Student's t to standard deviations of the normal distribution, to 2 %.
-
-    Wallace, Ann. Math. Statist. 30 (1959) 1121.
-    """
+    freedom = n - 2
+    uncertainty = math.sqrt(total / freedom / square * (1 + correlation) / (1 - correlation))
+    ratio = slope / uncertainty
     if not math.isfinite(ratio):
-        return 0.0
+        return Line(slope, uncertainty, 0.0)
     tail = math.sqrt(freedom * math.log1p(ratio * ratio / freedom))
-    return (8 * freedom + 1) / (8 * freedom + 3) * tail
+    return Line(slope, uncertainty, (8 * freedom + 1) / (8 * freedom + 3) * tail)
 
 
 def typical_width(bins: Sequence[Bin]) -> float:
     """Return the width of a typical bin's band."""
-    return median(each.width for each in bins)
+    return median(each.high - each.low for each in bins)
 
 
 def hull(bins: Sequence[Bin]) -> tuple[float, float]:
@@ -130,6 +105,6 @@ def hull(bins: Sequence[Bin]) -> tuple[float, float]:
 
 def one_way(bins: Sequence[Bin]) -> float:
     """Return the share of moves from bin to bin that go the commoner way: 0.5 to 1."""
-    moves = [b.middle - a.middle for a, b in pairwise(bins)]
-    rising = sum((move > 0) + (move == 0) / 2 for move in moves) / len(moves)
-    return max(rising, 1 - rising)
+    rising = sum(a.middle < b.middle for a, b in pairwise(bins))
+    falling = sum(a.middle > b.middle for a, b in pairwise(bins))
+    return 0.5 + abs(rising - falling) / (len(bins) - 1) / 2

@@ -1,4 +1,4 @@
-"""Judge: a verdict on energies, from whatever evidence there is.
+"""Judges: a verdict on energies, from whatever evidence there is, and the milestones of a run.
 
 The energies of a method arrive while it runs, at look points a fixed number of steps apart, so the
 verdict is a function of scene, stepping and step alone.
@@ -9,19 +9,25 @@ verdict is a function of scene, stepping and step alone.
   and it `wanders` if no invariant curve holds it, either.  A linear map is never chaotic.
 - Any other method is judged by the bands of its energy error: whether they have left the start,
   whether they have come to rest, and what line they follow.
-
-A record of energies alone, of any program, is read at once: `engine.run.energies` says how.
 """
 
 import copy
 import math
+from collections.abc import Sequence
 from typing import Any, Self
 
-from engine.methods import Method
+from engine.methods import Cast, Method
 from engine.models.model import Model
 from engine.run import judgement as limits
 from engine.run.bands import MAX_BINS, Bands, Bin, hull, line, one_way, typical_width
-from engine.run.judgement import Judgement, LookPoint, Progress, Verdict
+from engine.run.judgement import (
+    Judgement,
+    LookPoint,
+    Milestone,
+    MilestoneKind,
+    Progress,
+    Verdict,
+)
 from engine.run.tangent import Stretching, at_bottom
 
 
@@ -42,8 +48,8 @@ class Judge:
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
         self._period = period
-        self._first: LookPoint | None = None
         self._last: LookPoint | None = None
+        self._start = 0.0  # the error there
         self._width = max(limits.MIN_BIN_STEPS, round(period / self._h))  # steps of a bin, at first
         self._energy = Bands(self._width)
         self._relative = model.energy_error.conserved  # and not ln(E/E_true)
@@ -59,8 +65,8 @@ class Judge:
     def copy(self) -> Self:
         """Return another judge that goes on from here."""
         other = copy.copy(self)
-        other._energy = self._energy.copy()
-        other._orbit = self._orbit and self._orbit.copy()
+        other._energy = copy.copy(self._energy)
+        other._orbit = copy.copy(self._orbit)
         return other
 
     @staticmethod
@@ -76,25 +82,25 @@ class Judge:
 
     def look(self, point: LookPoint) -> None:
         """Take in the next look point."""
-        if self._first is None or self._last is None:
-            self._first = self._last = point
+        if self._last is None:
+            self._last = point
+            self._start = point.error
             return
-        if not self._relative and self._is_rounding(point):
-            return
+        if not self._relative:
+            true = point.energy * math.exp(-point.error)
+            if min(point.energy, true) < self._least:
+                return  # hardly above what rounding leaves
         if self._orbit:
             self._orbit.look(self._last, point)
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
-        start = self._first.error
-        full = self._energy.add(
-            point.step, point.low - start, point.high - start, point.error - start
-        )
+        low, high, now = (error - self._start for error in (point.low, point.high, point.error))
+        full = self._energy.add(point.step, low, high, now)
         if full and len(self._energy.bins) >= limits.MIN_BINS:
             self._judge()
         elif self.judgement.verdict == "too early":
-            self.judgement = self.judgement._replace(
-                periods=self._periods, progress=self._progress()
-            )
+            progress = self._progress()
+            self.judgement = self.judgement._replace(periods=self._periods, progress=progress)
         if self._escapes and point.error > limits.GONE:
             self.judgement = self.judgement._replace(verdict="grows", progress=None)
 
@@ -121,19 +127,17 @@ class Judge:
         walk = limits.WALK * self._epsilon * math.sqrt(self._steps)
         return walk if self._relative else max(walk, limits.REFERENCE)
 
-    def _is_rounding(self, point: LookPoint) -> bool:
-        """Return whether a damped energy, or the true one, is hardly above what rounding leaves."""
-        return min(point.energy, point.energy * math.exp(-point.error)) < self._least
-
     def _judge(self) -> None:
-        verdict = self._by_orbit(self._orbit) if self._orbit else self._by_bands()
-        chaotic = self._orbit and verdict in ("chaotic", "wanders")
-        self.judgement = self._trend(verdict)._replace(
-            verdict=verdict,
-            periods=self._periods,
-            lyapunov=self._orbit.lyapunov if self._orbit and chaotic else None,
-            progress=self._progress() if verdict == "too early" else None,
-        )
+        orbit = self._orbit
+        known = self.judgement.verdict
+        periods = self._periods
+        verdict = orbit.verdict(known, self.peak, periods) if orbit else self._by_bands(known)
+        judgement = self._trend(verdict)._replace(verdict=verdict, periods=periods)
+        if verdict == "too early":
+            judgement = judgement._replace(progress=self._progress())
+        elif orbit and orbit.steps and verdict in ("chaotic", "wanders"):
+            judgement = judgement._replace(lyapunov=orbit.log / orbit.steps / self._h)
+        self.judgement = judgement
 
     def _progress(self) -> Progress | None:
         """How far it is to the first verdict, or then to the last; None if it can come any time."""
@@ -157,7 +161,7 @@ class Judge:
             return Judgement()
         bins = self._energy.bins
         recent = self._energy.recent(0.5) if len(bins) >= MAX_BINS / 2 else bins
-        folded = [Bin(each.step, self._fold(each.low), self._fold(each.high)) for each in recent]
+        folded = [Bin(step, self._fold(low), self._fold(high)) for step, low, high in recent]
         trend = line(recent)
         logarithmic = line(folded)
         size = 1.0
@@ -180,52 +184,35 @@ class Judge:
         """Return ln(E/E0) of an error where energy was gained; small ones hardly change."""
         return math.log1p(error) if self._relative and error > 0 else error
 
-    def _by_orbit(self, orbit: "_Orbit") -> Verdict:
-        known = self.judgement.verdict
-        if orbit.is_linear and not orbit.is_regular:
-            return "grows"
-        if orbit.separates(self.peak):
-            return "wanders" if orbit.is_free else "chaotic"
-        if known in ("bounded", "chaotic", "wanders"):
-            return known
-        proved = orbit.is_regular and self._periods >= limits.MIN_PERIODS
-        return "bounded" if proved or orbit.is_long_enough else "too early"
-
-    def _by_bands(self) -> Verdict:
-        assert self._first is not None
-        known = self.judgement.verdict
+    def _by_bands(self, known: Verdict) -> Verdict:
         low, high = hull(self._energy.recent(0.25))
         gap = max(low, -high)  # from the start; below 0 inside
-        if self._relative and high + self._first.error < limits.AT_REST:
+        if self._relative and high + self._start < limits.AT_REST:
             return "loses"
-        if settled := self._settled(gap, high - low):
+        if settled := self._settled(known, gap, high - low):
             return settled
         # a band that is centred elsewhere than on the start has not come back
         away = gap > -limits.BACK * (high - low)
         if known in ("caught", "wanders") or (known in ("grows", "loses") and away):
             return known
-        if self._leaves(low, high):
+        if self._leaves(gap, self._fold(low), self._fold(high)):
             return "grows" if low > 0 else "loses"
         flat = gap < self._floor and self._is_flat
-        if self._steps >= self._many and (known == "bounded" or flat):
-            return "bounded"
-        return "too early"
+        return (
+            "bounded" if self._steps >= self._many and (known == "bounded" or flat) else "too early"
+        )
 
-    def _leaves(self, low: float, high: float) -> bool:
+    def _leaves(self, gap: float, low: float, high: float) -> bool:
         """Return whether this band is half its width away from the start, in the logarithm."""
-        gap = max(low, -high)
-        low = self._fold(low)
-        high = self._fold(high)
         if gap < self._floor or max(low, -high) < limits.AWAY * (high - low):
             return False
         bins = self._energy.bins
         straight = len(bins) >= limits.STRAIGHT_BINS and one_way(bins) >= limits.ONE_WAY
         return not self._returns or (gap >= 1 and straight)
 
-    def _settled(self, gap: float, width: float) -> Verdict | None:
+    def _settled(self, known: Verdict, gap: float, width: float) -> Verdict | None:
         """Return `caught` if the second half lies in a band elsewhere, `wanders` if in none."""
         half = self._energy.recent(0.5)
-        known = self.judgement.verdict
         early = known in ("grows", "loses") and len(half) >= MAX_BINS / 4
         if not (early or self._steps >= self._many) or line(half).sigmas > limits.STEADY:
             return None
@@ -248,70 +235,144 @@ class Judge:
         return reach < width / 2 * min(1, self._periods / limits.HORIZON)
 
 
-class _Orbit:
+class _Orbit(Stretching):
     """What shows the orbit of a symplectic method to be regular, fenced in or chaotic."""
 
     def __init__(self, method: Method, model: Model, h: float, period: float) -> None:
-        self._h = abs(h)
-        self._z = self._h * model.w0 * method.longest_substep
+        super().__init__(method, model, h)
+        self._z = abs(h) * model.w0 * method.longest_substep
         self._far = model.w0 * period
         self._low_order = method.order <= 2
-        self.is_linear = not model.turns
+        self._linear = not model.turns
         bottom = at_bottom(method, h * model.w0)
         self._stable = abs(bottom.theta_theta + bottom.omega_omega) < 2  # small swings, on ellipses
-        self._neighbours = Stretching(method, model, h)
-        self._omegas = (math.inf, -math.inf)  # rad/s
-
-    def copy(self) -> Self:
-        other = copy.copy(self)
-        other._neighbours = copy.copy(self._neighbours)
-        return other
+        self._slowest = math.inf  # rad/s
+        self._fastest = -math.inf
 
     def look(self, before: LookPoint, point: LookPoint) -> None:
         """Take in a look point."""
-        self._omegas = (min(self._omegas[0], point.omega), max(self._omegas[1], point.omega))
-        needed = self._z > limits.QUIET and not self.is_linear
+        self._slowest = min(self._slowest, point.omega)
+        self._fastest = max(self._fastest, point.omega)
+        needed = self._z > limits.QUIET and not self._linear
         if needed and self.steps < limits.LYAPUNOV_STEPS:
-            self._neighbours.carry((before.theta, before.omega), point.step - before.step)
-
-    @property
-    def steps(self) -> int:
-        """Over how many steps neighbours were followed."""
-        return self._neighbours.steps
+            self.carry((before.theta, before.omega), point.step - before.step)
 
     @property
     def is_regular(self) -> bool:
         """Whether a theorem keeps the orbit from chaos."""
-        if self.is_linear:
+        if self._linear:
             return self._stable
-        fastest = max(-self._omegas[0], self._omegas[1]) * self._h
+        fastest = max(-self._slowest, self._fastest) * abs(self._h)
         if not self._low_order and fastest >= math.pi:
             return False  # only the map of order 1 and 2 is periodic in h·omega
         fenced = self._z <= limits.FENCED and self._far < limits.NEAR_TOP
         return fenced or self._z <= limits.QUIET
 
-    def separates(self, peak: float) -> bool:
-        """Return whether neighbours separate exponentially, and faster than the orbit itself grows.
+    def verdict(self, known: Verdict, peak: float, periods: float) -> Verdict:
+        """Return the verdict after another; `peak` is the largest |energy error| so far.
 
-        Regular ones separate in proportion to time, and by 1/k'² or so in the first swing past
-        upright.
+        Neighbours of regular orbits separate in proportion to time, and by 1/k'² or so in the first
+        swing past upright; what the orbit itself grows by is instability, not chaos.
         """
+        if self._linear and not self.is_regular:
+            return "grows"
+        regular = math.log(max(self.steps, 1))
         growth = math.log1p(peak) / 2  # the energy goes as the square of the orbit
-        regular = math.log(max(self.steps, 1)) + self._far / 2
-        return self._neighbours.log - growth > regular + limits.APART
+        if self.log - growth > regular + self._far / 2 + limits.APART:
+            # beyond 2 pi of h·omega there is no fence
+            free = (self._fastest - self._slowest) * abs(self._h) > math.tau
+            return "wanders" if free else "chaotic"
+        if known != "too early":
+            return known
+        proved = self.is_regular and periods >= limits.MIN_PERIODS
+        seen = self.steps >= limits.LONG and self.log < regular + limits.TOGETHER
+        return "bounded" if proved or seen else "too early"
+
+
+class Judges:
+    """One judge a method, since the last change of the stepping, and the milestones of the whole run.
+
+    Errors cross where the largest error so far of a method that gains or loses energy passes that
+    of a bounded one: for good, as it does not with other pairs.
+    """
+
+    def __init__(self, cast: Cast, model: Model, period: float) -> None:
+        """`period` [s] is the exact motion's, or 2 pi/w0 if it has none."""
+        self.milestones: list[Milestone] = []
+        self._cast = cast
+        self._model = model
+        self._period = period
+        self._judges: list[Judge] = []
+        # pairs of a method that leaves and a bounded one that it was below, and has passed
+        self._below: frozenset[tuple[int, int]] = frozenset()
+        self._passed: frozenset[tuple[int, int]] = frozenset()
 
     @property
-    def is_free(self) -> bool:
-        """Whether h·omega has moved by more than 2 pi, so that there is no fence."""
-        return (self._omegas[1] - self._omegas[0]) * self._h > math.tau
+    def judgements(self) -> list[Judgement]:
+        """The verdicts since the last change of the stepping, in the order of the cast."""
+        return [judge.judgement for judge in self._judges]
 
-    @property
-    def is_long_enough(self) -> bool:
-        """Whether neighbours have shown for long that they do not separate exponentially."""
-        regular = math.log(max(self.steps, 1)) + limits.TOGETHER
-        return self.steps >= limits.LONG and self._neighbours.log < regular
+    def copy(self) -> Self:
+        """Return other judges that go on from here."""
+        other = copy.copy(self)
+        other.milestones = self.milestones.copy()
+        other._judges = [judge.copy() for judge in self._judges]
+        return other
 
-    @property
-    def lyapunov(self) -> float | None:
-        """1/s."""
-        return self._neighbours.log / self.steps / self._h if self.steps else None
+    def restart(self, steps: Sequence[float], points: Sequence[LookPoint | None]) -> None:
+        """Judge anew from these look points on, each method with its own step size [s]."""
+        self._below = self._passed = frozenset()
+        self._judges = [
+            Judge(h=h, period=self._period, method=method, model=self._model)
+            for method, h in zip(self._cast, steps, strict=True)
+        ]
+        for judge, point in zip(self._judges, points, strict=True):
+            if point is None:
+                judge.fail(0)
+            else:
+                judge.look(point)
+
+    def look(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
+        """Show each judge its method at a step of the lockstep; None: its numbers have ended."""
+        for index, (judge, point) in enumerate(zip(self._judges, points, strict=True)):
+            if point is None:
+                continue
+            before = judge.judgement.verdict
+            judge.look(point)
+            now = judge.judgement
+            if now.verdict != before:
+                verdict = Milestone("verdict", self._cast[index], step, t, point.error, now.verdict)
+                self.milestones.append(verdict._replace(trend=now.slope, lyapunov=now.lyapunov))
+        for index, other in self._crossings():
+            if point := points[index]:
+                crossing = Milestone("errors cross", self._cast[index], step, t, point.error)
+                self.milestones.append(crossing._replace(other=self._cast[other]))
+
+    def note(self, kind: MilestoneKind, index: int, step: int, t: float, error: float) -> None:
+        """Note what happens to a method once in a run."""
+        if not self.has(kind, index):
+            self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
+
+    def has(self, kind: MilestoneKind, index: int) -> bool:
+        """Return whether this has happened to a method."""
+        return (kind, self._cast[index]) in ((each.kind, each.method) for each in self.milestones)
+
+    def fail(self, index: int, steps: int) -> None:
+        """Note that a method's numbers have ended, so many of its steps after the restart."""
+        self._judges[index].fail(steps)
+
+    def _crossings(self) -> list[tuple[int, int]]:
+        """Return the pairs (passing, passed) that are new since the last look."""
+        pairs = [
+            (index, other, leaving.peak > bounded.peak)
+            for index, leaving in enumerate(self._judges)
+            for other, bounded in enumerate(self._judges)
+            if leaving.judgement.verdict in ("grows", "loses")
+            and bounded.judgement.verdict == "bounded"
+            and bounded.peak > limits.ROUNDING
+        ]
+        self._below |= {(index, other) for index, other, above in pairs if not above}
+        above = self._below & {(index, other) for index, other, above in pairs if above}
+        new = above - self._passed
+        self._passed |= new  # once is enough
+        return sorted(new)

@@ -7,9 +7,8 @@ from functools import partial
 from typing import NamedTuple
 
 from engine.models.model import NO_EXTRA, Phase
-from engine.run.judge import stride
+from engine.run.judge import Judges, stride
 from engine.run.judgement import Judgement, LookPoint, Milestone
-from engine.run.judges import Judges
 from engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
