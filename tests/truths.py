@@ -19,75 +19,26 @@ STARTS = {  # theta [rad], omega [rad/s]
     "theta=pi-1e-5": (math.pi - 1e-5, 0.0),
     **{f"omega={omega:g}": (0.0, omega) for omega in (6.3, 6.5, 8, 10, 31.4, 200)},
 }
-Z = (
-    *(
-        0.003,
-        0.005,
-        0.01,
-        0.02,
-        0.03,
-        0.05,
-        0.07,
-        0.1,
-        0.13,
-        0.16,
-        0.2,
-        0.25,
-        0.3,
-        0.35,
-        0.4,
-        0.45,
-        0.5,
-        0.56,
-        0.63,
-    ),
-    *(
-        0.7,
-        0.8,
-        0.9,
-        1.0,
-        1.04,
-        1.09,
-        1.125,
-        1.16,
-        1.2,
-        1.3,
-        1.4142,
-        1.44,
-        1.7,
-        1.98,
-        2.02,
-        2.05,
-        2.1,
-    ),
-)
+_Z = """
+0.003 0.005 0.01 0.02 0.03 0.05 0.07 0.1 0.13 0.16 0.2 0.25 0.3 0.35 0.4 0.45 0.5 0.56
+0.63 0.7 0.8 0.9 1 1.04 1.09 1.125 1.16 1.2 1.3 1.4142 1.44 1.7 1.98 2.02 2.05 2.1
+"""
+Z = tuple(map(float, _Z.split()))
 
-ALLOWED: dict[str, tuple[tuple[str, ...], ...]] = {
-    # the courses that verdicts may take; "too early" may stand before any of them, and in place of it
-    "b": (("bounded",),),
-    "s": (
-        ("bounded",),
-        ("bounded", "chaotic"),
-        ("chaotic",),
-        ("chaotic", "wanders"),
-    ),  # chaos shows late, or not
-    "c": (("chaotic",),),  # and fenced in
-    "w": (("chaotic",), ("chaotic", "wanders"), ("wanders",)),
-    "g": (("grows",),),
-    "d": (("loses",),),
-    "k": (("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)),
-    "K": (
-        ("bounded",),
-        ("grows", "caught"),
-        ("loses", "caught"),
-        ("caught",),
-    ),  # in a band that holds the start
-    "B": (
-        ("bounded",),
-        ("loses",),
-        ("grows",),
-        ("caught",),
-    ),  # moves by less than 1e-10, or hardly beside its wobble
+ALLOWED: dict[str, set[tuple[str, ...]]] = {
+    # the courses that verdicts may take; "too early" may stand before or in place of any
+    "b": {("bounded",)},
+    # chaos shows late, or not
+    "s": {("bounded",), ("bounded", "chaotic"), ("chaotic",), ("chaotic", "wanders")},
+    "c": {("chaotic",)},  # and fenced in
+    "w": {("chaotic",), ("chaotic", "wanders"), ("wanders",)},
+    "g": {("grows",)},
+    "d": {("loses",)},
+    "k": {("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
+    # in a band that holds the start
+    "K": {("bounded",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
+    # moves by less than 1e-10, or hardly beside its wobble
+    "B": {("bounded",), ("loses",), ("grows",), ("caught",)},
 }
 
 

@@ -53,9 +53,7 @@ def test_the_verdict_is_the_truth(name):
     assert Judge.read(T, 1000 + energies).verdict == truth
 
 
-@pytest.mark.parametrize(
-    "name", sorted(set(MAKES) - {"last digits", "five steps of the last digit"})
-)
+@pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a step"])
 def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
     energies, truth = MAKES[name]
     assert Judge.read(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).verdict == truth

@@ -19,6 +19,14 @@ from engine.scenes import SCENES, Scene
 DRIFT = SCENES["drift"]
 
 
+def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
+    lockstep = Lockstep(scene, loops=loops, judged=True)
+    for gap in gaps:
+        lockstep.advance(gap)
+        lockstep.sample()
+    return lockstep
+
+
 def watched(scene: Scene, seconds: float, every: int = 1) -> Lockstep:
     lockstep = Lockstep(scene, judged=True)
     while lockstep.t < seconds:
@@ -120,14 +128,6 @@ def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
     assert failed
     for method, judgement in zip(USUAL_CAST, lockstep.judgements, strict=True):
         assert (judgement.verdict == "failed") == (method.key in failed)
-
-
-def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
-    lockstep = Lockstep(scene, loops=loops, judged=True)
-    for gap in gaps:
-        lockstep.advance(gap)
-        lockstep.sample()
-    return lockstep
 
 
 @pytest.mark.parametrize(
