@@ -9,6 +9,7 @@ from rich.cells import cell_len
 from textual.widget import Widget
 
 from engine.scenes import Scene
+from tui.drawing.cells import CellWidget
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
@@ -40,9 +41,12 @@ async def still(
 
 async def settled(app: PenduApp) -> None:
     """Wait until every pane shows the newest data."""
+    panes = app.source_screen.query("#views *").results
     async with asyncio.timeout(30):
-        while not all(map(_is_settled, app.source_screen.query("#views *").results(Widget))):
+        while not all(map(_is_settled, panes(Widget))):
             await asyncio.sleep(0.01)
+    for pane in panes(CellWidget):
+        pane.draw()
 
 
 def _is_settled(pane: Widget) -> bool:

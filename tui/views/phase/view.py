@@ -82,7 +82,6 @@ class SectionPane(PhasePane):
         assert self._section is not None
         self._section.add(result)
         self._orbits += result[0].shape[1]
-        self.draw()
 
     def action_section(self) -> None:
         self.shows_section = not self.shows_section

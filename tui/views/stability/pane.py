@@ -81,6 +81,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.cells: Cells = self.grid.unknown()
         self._is_begun = False
         self._title = ""
+        self._state = ""
         self.cursor = self.pointer = None
 
     @property
@@ -92,12 +93,10 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def add(self, result: Piece) -> None:
         self.cells[result.z, result.method] = result.cells
         self._is_begun = True
-        # in tenths, as each new title repaints the pane
-        state = f", computing {int(10 * result.done) * 10} %"
+        self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]"
+        self._state = f"Computing {100 * result.done:.0f} %. "  # a title would repaint the pane
         if result.done == 1 and result.steps == PASSES[-1]:
-            state = ""
-        self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]{state}"
-        self.draw()
+            self._state = ""
 
     def here(self, index: int) -> tuple[float, float] | None:
         """Return the (z, amplitude) of a method on screen, if it swings."""
@@ -130,7 +129,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if self.places and (aim := self.aim(self.index)):
             words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
         blank: Row = [("", TEXT)]
-        below = [*self.words(words), blank, blank][:2]
+        below = [*self.words(f"{self._state}{words}"), blank, blank][:2]
         return Picture([*side_by_side(panels, 2), *below, *self._legend])
 
     def _panel(self, index: int, columns: int, rows: int) -> list[Row]:

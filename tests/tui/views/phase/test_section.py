@@ -82,6 +82,7 @@ async def section_of(theatre, *keys: str) -> SectionPane:
     await theatre.run(0.2)
     pane = theatre.stage.query_one(SectionPane)
     await until(theatre.pilot, lambda: pane.shows_section and pane.settled)
+    pane.draw()
     return pane
 
 
