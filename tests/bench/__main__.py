@@ -18,8 +18,8 @@ from multiprocessing import get_context
 from typing import Any
 
 BENCHES = (
-    *("command_lines", "damage", "hostile", "kill", "memory", "monkey", "peers", "recording"),
-    *("signals", "yardstick"),
+    *("command_lines", "damage", "foreign", "hostile", "judging", "kill", "memory", "monkey"),
+    *("peers", "recording", "signals", "yardstick"),
 )
 
 

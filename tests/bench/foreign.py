@@ -1,27 +1,20 @@
-"""`judge` on series of known truth: wrong verdicts and too many `too early` of each kind, as JSON.
-
-    python tests/bench/foreign.py [TRIALS]
+"""`judge` on series of known truth: wrong verdicts and too many `too early` of each kind.
 
 A kind is made with 100 to 6000 samples, at a random scale and zero of energy and time.  `too
 early` is never wrong; it is counted where the effect has five standard deviations or more and the
 record at least 50 independent samples.
 """
 
-import json
 import math
-import sys
-import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 from engine.run.judge import Judge
 
+LIMITS = {"wrong_percent": 1.0, "too_early_percent": 5.0}
 SIZES = (100, 200, 500, 2000, 6000)
 SEED = 1
 CLEAR = math.inf  # an effect, or samples, that no verdict may miss
@@ -225,49 +218,40 @@ def single(energies: Any) -> Any:
     return rounded - rounded[0]
 
 
-def main(trials: int) -> None:
+def measure(share: float) -> dict[str, Any]:
     random = np.random.default_rng(SEED)
     kinds: defaultdict[str, Counter[str]] = defaultdict(Counter)
     given: Counter[str] = Counter()
     false: Counter[str] = Counter()
-    began = time.process_time()
-    for count in SIZES:
-        for _ in range(trials):
-            for series in Maker(count, random).all():
-                length = len(series.energies)
-                times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length
-                zero = round(10 ** random.uniform(1, 4)) * random.choice([-1, 1])
-                scale = 10.0 ** random.integers(-3, 3)
-                energies = np.round((zero + series.energies) * scale, 8)
-                kept = np.isfinite(energies)
-                verdict = Judge.read(times[kept], energies[kept]).verdict
-                found = kinds[series.kind]
-                found[verdict] += 1
-                early = verdict == "too early"
-                wrong = not early and verdict not in series.truth
-                found["wrong"] += wrong
-                given[verdict] += 1
-                false[verdict] += wrong
-                clear = series.sigmas >= 5 and series.independent >= 50
-                found["clear"] += clear
-                found["clear, too early"] += early and clear
-    total = sum(kinds.values(), Counter())
-    verdicts = sum(found.total() for found in kinds.values())
-    verdicts -= total["wrong"] + total["clear"] + total["clear, too early"]
-    result = {
-        "series": verdicts,
-        "wrong %": round(100 * total["wrong"] / verdicts, 2),
-        "too early % of clear ones": round(100 * total["clear, too early"] / total["clear"], 2),
-        "false % of each verdict": {
+    clear = 0
+    early = 0
+    makers = (Maker(count, random) for count in SIZES for _ in range(round(22 * share)))
+    for maker in makers:
+        for series in maker.all():
+            length = len(series.energies)
+            times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length
+            zero = round(10 ** random.uniform(1, 4)) * random.choice([-1, 1])
+            scale = 10.0 ** random.integers(-3, 3)
+            energies = np.round((zero + series.energies) * scale, 8)
+            kept = np.isfinite(energies)
+            verdict = Judge.read(times[kept], energies[kept]).verdict
+            is_early = verdict == "too early"
+            wrong = not is_early and verdict not in series.truth
+            kinds[series.kind][verdict] += 1
+            kinds[series.kind]["wrong"] += wrong
+            given[verdict] += 1
+            false[verdict] += wrong
+            if series.sigmas >= 5 and series.independent >= 50:
+                clear += 1
+                early += is_early
+    return {
+        "series": given.total(),
+        "wrong_percent": round(100 * false.total() / given.total(), 2),
+        "too_early_percent": round(100 * early / clear, 2),
+        "false_percent": {
             verdict: round(100 * false[verdict] / number, 2) for verdict, number in given.items()
         },
-        "ms each": round(1000 * (time.process_time() - began) / verdicts, 1),
         "kinds": {
             kind: {name: n for name, n in found.items() if n} for kind, found in kinds.items()
         },
     }
-    print(json.dumps(result, indent=1))
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 12)

@@ -1,4 +1,4 @@
-"""The verdict against runs of a million steps: tests/truths.py has the grid, tests/bench/verdict.py judges all."""
+"""The verdict against runs of a million steps: tests/truths.py has the grid, tests/bench/judging.py judges all."""
 
 import math
 import random
