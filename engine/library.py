@@ -268,7 +268,7 @@ def recommend(
         raise ValueError("the pendulum hangs at rest; use another theta or omega.")
     if error not in ("theta", "energy", "final"):
         raise ValueError(f"error = {error!r} is none of theta, energy and final.")
-    wanted = _number("target", target) / _number("safety", safety)
+    wanted = _number("target", target) / max(_number("safety", safety), 1e-300)
     seconds = usual(chosen)[0] if time is None else _number("time", time)
     if not 0 < wanted <= target or seconds <= 0:
         raise ValueError("target and time must be above zero, and safety 1 or more.")
@@ -281,6 +281,8 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
         if scene not in SCENES:
             raise ValueError(f"there is no scene {scene!r}; choose from {', '.join(SCENES)}.")
         scene = SCENES[scene]
+    if not isinstance(scene, Scene):
+        raise ValueError(f"scene = {scene!r} is neither a name nor a Scene.")
     changes = {name: _number(name, value) for name, value in numbers.items()}
     return scene.altered(**changes).with_cast(scene.cast if methods is None else _cast(methods))
 
@@ -295,6 +297,10 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 def _cast(given: Methods) -> Cast:
     names = given.split(",") if isinstance(given, str) else given
+    if not isinstance(names, Iterable):
+        raise ValueError(
+            f"methods = {given!r} is no list of methods; use for example 'rk4,verlet'."
+        )
     cast = tuple(dict.fromkeys(map(_method, names)))
     if not cast:
         raise ValueError("methods is empty; name one at least, for example rk4.")
@@ -317,7 +323,7 @@ def _method(name: str | Method) -> Method:
 def _number(name: str, value: Any) -> float:
     """Return a finite number.  Raises ValueError."""
     try:
-        number = math.nan if isinstance(value, str) else float(value)
+        number = math.nan if isinstance(value, str | bool) else float(value)
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number):
@@ -334,7 +340,7 @@ def _array(name: str, values: Any) -> "Floats":
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a list of numbers, or an array.") from None
     if array.ndim != 1 or not array.size:
-        raise ValueError(f"{name} must be one-dimensional; their shape is {array.shape}.")
+        raise ValueError(f"{name} must be a list of numbers; their shape is {array.shape}.")
     if not np.isfinite(array).all():
         place = int(np.argmin(np.isfinite(array)))
         raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
@@ -346,7 +352,9 @@ def _size(energies: Any, scale: float | str) -> float:
     if scale == "std":
         largest = float(abs(energies).max()) or 1.0
         return float((energies / largest).std()) * largest or largest
-    size = abs(float(energies[0])) if scale == "first" else _number("scale", scale)
+    if isinstance(scale, str) and scale != "first":
+        raise ValueError(f"scale = {scale!r} is none of std, first and a number.")
+    size = abs(float(energies[0])) if isinstance(scale, str) else _number("scale", scale)
     if size <= 0:
         raise ValueError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size

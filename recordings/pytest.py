@@ -19,6 +19,7 @@ if Path(str(engine.__file__)).resolve().parents[1] != Path(__file__).resolve().p
     )
 
 from engine import judge
+from engine.run.judgement import VERDICTS
 from recordings.errors import RecordingError
 from recordings.verification import verify
 
@@ -44,16 +45,15 @@ class EnergyDrift:
     ) -> "Judged":
         """Fail unless `engine.judge` finds this verdict, and a trend of at most `max_drift`.
 
-        The trend is that of the energies over the scale, per unit of time.  It and the verdict
-        become user properties of the test, which a JUnit report shows.
+        The trend is that of the energies over the scale, per unit of time.
         """
         __tracebackhide__ = True
-        refusal = ""
+        refusal = "" if verdict in VERDICTS else f"there is no verdict {verdict!r}"
         try:
             found = judge(times, energies, scale)
         except ValueError as error:
             refusal = str(error)
-        if refusal:  # outside, so that the report shows no other traceback
+        if refusal:  # outside: the report has no other traceback
             pytest.fail(refusal)
         self._properties += [("verdict", found.verdict), ("trend", found.trend)]
         if found.verdict != verdict:

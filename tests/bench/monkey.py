@@ -40,7 +40,7 @@ def sitting(scene: Scene, seed: int) -> Counter[str]:
         try:
             with small_studies(library):
                 runs = asyncio.run(play(scene, library, seed))
-        except Exception as error:
+        except (Exception, asyncio.CancelledError) as error:
             print_exception(error, limit=-8)
         recordings = list(library.glob("*.mcap"))
         return Counter(

@@ -23,7 +23,7 @@ SENTENCES = {
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
-    "over the top": "{0} went over the top at {t:.3g} s with {ratio:two} times {unit}.",
+    "over the top": "{0} went over the top at {t:.3g} s{energy}.",
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
     "bounded": "{names} bounded; no trend over {seconds:about}.",
     "chaotic": "{0} is chaotic: nearby starts separate {seconds:tenfold}.",
@@ -46,6 +46,7 @@ SENTENCES = {
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
 TURN = 8.0  # s of the clock until the next of the lasting sentences
+UNCHANGED = 0.05  # of an energy that is worth no factor
 MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
 MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
 PRIORITY = ("failed", "over the top", "errors cross", "verdict")
@@ -194,10 +195,15 @@ def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     if milestone.other:
         return Insight("errors cross", (milestone.method, milestone.other), values)
     if milestone.kind == "over the top":
-        values |= {"ratio": 1 + milestone.energy_error, "unit": "its initial energy"}
-        if not conserved:
-            ratio = math.exp(min(milestone.energy_error, 700.0))
-            values |= {"ratio": ratio, "unit": "the true energy"}
+        ratio = (
+            1 + milestone.energy_error
+            if conserved
+            else math.exp(min(milestone.energy_error, 700.0))
+        )
+        unit = "its initial energy" if conserved else "the true energy"
+        is_other = abs(ratio - 1) > UNCHANGED
+        energy = f" with {two_digits(ratio)} times {unit}" if is_other else ""
+        values |= {"ratio": ratio, "energy": energy}
     return Insight(milestone.kind, (milestone.method,), values)
 
 

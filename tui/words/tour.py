@@ -191,8 +191,8 @@ STEPS = (
         answers=("Yes.", "No."),
         right=1,
         truth=(
-            "At 0.48 rad a swing takes longer, so that the same step is small enough again. RK4 "
-            "lasts to z = 2.83, Explicit Euler is never stable."
+            "At 0.48 rad a swing takes longer, so that the same step is small enough again. On a "
+            "linear spring RK4 lasts to z = 2.83, Explicit Euler is never stable."
         ),
     ),
     TourStep(

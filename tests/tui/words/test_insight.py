@@ -90,6 +90,8 @@ def test_the_energy_at_the_top_is_that_of_the_milestone():
     found = milestone_insight(top)
     assert (found.values["t"], found.values["ratio"]) == (top.t, 1 + top.energy_error)
     assert milestone_insight(top, conserved=False).values["ratio"] == math.exp(top.energy_error)
+    assert "5.1" in found.values["energy"]
+    assert milestone_insight(top._replace(energy_error=0.04)).values["energy"] == ""
 
 
 @pytest.mark.parametrize(
