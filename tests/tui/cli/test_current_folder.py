@@ -87,7 +87,6 @@ def test_no_view_of_the_lab_runs_a_module_of_the_current_folder(tmp_path, hostil
             ("", "Quit"),
             ("\x1bOR", "area"),
             ("x", "Own map of Velocity Verlet"),
-            ("", "computing 10%"),  # by another process
             ("\x1bOS", "points left"),
             ("\x1b[15~", "300 steps"),  # of what another process has computed
         ):
