@@ -18,17 +18,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_081_701,
-    "characters_of_engine": 319_939,
+    "characters": 988_500,
+    "characters_of_engine": 316_000,
     "characters_of_recordings": 78_685,
-    "characters_of_tui": 683_077,
-    "characters_of_tests": 998_516,
-    "files": 219,
-    "long_lines": 18,
-    "parallel_assignments": 25,
-    "conditional_expressions_per_1000_lines": 26,
+    "characters_of_tui": 594_000,
+    "characters_of_tests": 857_500,
+    "files": 186,
+    "long_lines": 9,
+    "parallel_assignments": 22,
+    "conditional_expressions_per_1000_lines": 22,
     "long_functions": 0,
-    "numeric_constants": 313,
+    "numeric_constants": 247,
 }
 """Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
