@@ -18,17 +18,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 988_500,
+    "characters": 990_000,
     "characters_of_engine": 316_000,
     "characters_of_recordings": 78_685,
-    "characters_of_tui": 594_000,
-    "characters_of_tests": 857_500,
+    "characters_of_tui": 595_500,
+    "characters_of_tests": 858_500,
     "files": 186,
-    "long_lines": 9,
+    "long_lines": 0,
     "parallel_assignments": 22,
     "conditional_expressions_per_1000_lines": 22,
     "long_functions": 0,
-    "numeric_constants": 247,
+    "numeric_constants": 248,
 }
 """Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 

@@ -6,6 +6,7 @@ Imports only what the command needs.
 import io
 import os
 import sys
+import threading
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
@@ -71,6 +72,14 @@ examples:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code.  Nothing but a bug leaves a traceback."""
+    code = _main(arguments)
+    others = set(threading.enumerate()) - {threading.main_thread()}
+    if arguments is None and not all(thread.daemon for thread in others):
+        os._exit(code)  # the interpreter would wait for a thread that a user's method started
+    return code
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
@@ -127,9 +136,9 @@ def _dispatch(arguments: list[str]) -> int:
         return Exit.FINE
     if not getattr(options, "method", None):
         return int(command.run(options))
-    from tui.cli.time_limit import limited_steps
+    from tui.cli.time_limit import limited_calls, limited_steps
 
-    with limited_steps():
+    with limited_calls(), limited_steps():
         return int(command.run(options))
 
 

@@ -1,5 +1,9 @@
-"""Time limits for a user's own methods, where the platform can interrupt them."""
+"""Time limits for a user's own methods, where the platform can interrupt them.
 
+A call in C that does not return ends the program, by SIGPROF.
+"""
+
+import faulthandler
 import math
 import signal
 import threading
@@ -11,7 +15,21 @@ from types import FrameType
 from engine.methods.own import OwnMethodError, TooLongError, UserCode
 
 MAX_STEP_TIME = 3.0  # s
+MAX_CALL_TIME = 5.0  # s of the processor for a call in C that nothing interrupts
 LOOK_INTERVAL = 0.2  # s
+PLAIN_SCREEN = "\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
+"""Ends the alternate screen and all reports."""
+_END_STUCK = f"""exec 3>&2 2>/dev/null
+trap "" HUP INT TERM TSTP TTOU
+state=$(stty -g </dev/tty)
+read -r _ || exit
+if [ "$(stty -g </dev/tty)" != "$state" ]
+then stty "$state" </dev/tty; printf '{PLAIN_SCREEN}' >/dev/tty
+fi
+echo "pendu-tui: ended, for your method's call in C did not return; the next lab recovers\
+ the recording." >&3
+kill -KILL $PPID
+"""
 
 
 class _Watch:
@@ -25,6 +43,7 @@ class _Watch:
 
     def look(self, number: int, frame: FrameType | None) -> None:
         """Raise TooLongError in a user's code whose time is over."""
+        signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
         now = time.monotonic()
         if self._steps != UserCode.steps:
             self._steps = UserCode.steps
@@ -42,6 +61,24 @@ _watch = _Watch()
 
 
 @contextmanager
+def limited_calls() -> Iterator[None]:
+    """Let a shell end the program where a call in C keeps Python from it."""
+    if not hasattr(signal, "SIGALRM"):
+        yield
+        return
+    import subprocess
+
+    with subprocess.Popen(["sh", "-c", _END_STUCK], stdin=subprocess.PIPE) as shell:
+        assert shell.stdin
+        faulthandler.register(signal.SIGPROF, shell.stdin, all_threads=False)
+        try:
+            yield
+        finally:
+            faulthandler.unregister(signal.SIGPROF)
+            shell.kill()
+
+
+@contextmanager
 def limited_steps() -> Iterator[None]:
     """Interrupt each step of a user's method in the block that takes too long."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "SIGALRM"):
@@ -49,11 +86,13 @@ def limited_steps() -> Iterator[None]:
         return
     handler = signal.signal(signal.SIGALRM, _watch.look)
     timer = signal.setitimer(signal.ITIMER_REAL, LOOK_INTERVAL, LOOK_INTERVAL)
+    calls = signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
     try:
         yield
     except TooLongError as error:  # raised just when the step was done
         raise OwnMethodError(f"A method of your own {error}.") from None
     finally:
+        signal.setitimer(signal.ITIMER_PROF, *calls)
         signal.setitimer(signal.ITIMER_REAL, *timer)
         signal.signal(signal.SIGALRM, handler)
 

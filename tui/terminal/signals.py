@@ -11,15 +11,13 @@ from threading import Thread
 
 from tui.cli.errors import Exit
 from tui.cli.files import ENDING
+from tui.cli.time_limit import PLAIN_SCREEN
 from tui.terminal.check import is_gone
 
 MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
 LOOK_INTERVAL = 1.0  # s between looks at the terminal
 MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
 MAX_CLOSE_TIME = 3.0  # s to finish the recording without the loop
-
-PLAIN_SCREEN = "\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
-"""Ends the alternate screen and all reports."""
 
 
 class Job:

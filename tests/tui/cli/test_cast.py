@@ -1,5 +1,7 @@
 """The options --methods and --method."""
 
+import subprocess
+
 import pytest
 
 from engine.methods import (
@@ -15,6 +17,7 @@ from engine.methods import VELOCITY_VERLET as VERLET
 from engine.methods.own import OwnMethod
 from engine.scenes import MOST_METHODS
 from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU, ROOT
 from tui.cli import cast as cast_options
 from tui.cli.errors import UserError
 from tui.cli.options import Parser
@@ -131,6 +134,15 @@ def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     monkeypatch.setattr(cast_options, "MAX_SECONDS", 0.2)
     outcome = pendu("run", "--time", "2", "--method", "mine.py:endless")
     assert outcome.refused(2, "more than 0.2 s", "while True")
+
+
+@pytest.mark.slow
+def test_a_thread_of_a_method_does_not_outlive_the_command(mine, tmp_path):
+    thread = "import threading, time\nthreading.Thread(target=time.sleep, args=(60,)).start()\n"
+    (tmp_path / "threaded.py").write_text(thread + STEP.format(name="other"))
+    command = [*PENDU, "run", "--time", "1", "--method", f"{tmp_path / 'threaded.py'}:other"]
+    ended = subprocess.run(command, capture_output=True, timeout=30, check=False, cwd=ROOT)
+    assert ended.returncode == 0, ended.stderr
 
 
 def test_more_than_six_are_too_many_for_a_stage(mine):

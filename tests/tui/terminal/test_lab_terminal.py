@@ -116,6 +116,17 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
     assert pendu("verify", recorded, "--method", f"{tmp_path / 'mine.py'}:mine").code == 0
 
 
+def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, library):
+    (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
+    own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
+    with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
+        session.wait_for("REC 1 s")
+        (tmp_path / "endless").touch()
+        assert session.end(60.0) == -signal.SIGKILL
+    assert b"1049l" in session.output
+    assert b"the next lab recovers" in session.output
+
+
 def test_an_error_ends_the_lab_with_one_sentence_and_its_recording_is_finished(library):
     with lab(library, program=program("raise ZeroDivisionError('in the lab')")) as session:
         session.wait_for(RECORDING)
