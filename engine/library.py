@@ -299,7 +299,7 @@ def _cast(given: Methods) -> Cast:
     names = given.split(",") if isinstance(given, str) else given
     if not isinstance(names, Iterable):
         raise ValueError(
-            f"methods = {given!r} is no list of methods; use for example 'rk4,verlet'."
+            f"methods = {given!r} is not a list of methods; use for example 'rk4,verlet'."
         )
     cast = tuple(dict.fromkeys(map(_method, names)))
     if not cast:

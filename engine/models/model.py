@@ -121,8 +121,8 @@ class EnergyError(NamedTuple):
     symbol: str = "dE/E0"
     name: str = "energy error"
     about: str = (
-        "the energy error over the start's energy. The exact pendulum keeps its energy: all of it is "
-        "error"
+        "the energy error over the start's energy. The exact pendulum keeps its energy, so this is "
+        "all error"
     )
 
 

@@ -37,7 +37,7 @@ class Bands:
         self._high = -math.inf
 
     def add(self, step: int, low: float, high: float, now: float) -> bool:
-        """Take in the extremes since the last call and the number now; return whether a bin is full."""
+        """Add the extremes since the last call and the number now; return whether a bin is full."""
         self._low = min(self._low, low)
         self._high = max(self._high, high)
         if step - self._cut < self._width:

@@ -1,14 +1,14 @@
 """The record of any program: a verdict from times and energies alone.
 
-The means of up to 64 blocks are described by least squares in correlated noise: by a level and
-waves, and one curve beside them that still moves (a line, an exponential, a logarithm) or that has
-settled (an approach, a step).
+A least-squares fit in correlated noise describes the means of up to 64 blocks by a level, waves and
+one more curve, which still moves (a line, an exponential, a logarithm) or has settled (an approach,
+a step).
 
-The cosine transform of stationary noise has independent terms, whose variances are the spectrum
-(Whittle, J. R. Stat. Soc. B 15 (1953) 125).  The noise may have any correlation time, from none to
-that of a random walk, and white noise on top.  Likelihoods are averaged over a grid of such spectra
-(restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of
-a slope holds for correlated values, too.
+The terms of the cosine transform of stationary noise are independent, with the spectrum as their
+variances (Whittle, J. R. Stat. Soc. B 15 (1953) 125).  The noise may have any correlation time,
+from none to that of a random walk, and white noise on top.  Likelihoods are averaged over a grid of
+such spectra (restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the
+uncertainty of a slope holds for correlated values, too.
 """
 
 import math
@@ -107,7 +107,7 @@ def _judge(times: Any, energies: Any, floor: float) -> Judgement:
 
 
 class _Fit(NamedTuple):
-    """A curve fitted beside a level and waves."""
+    """A curve fitted together with a level and waves."""
 
     likelihood: float  # logarithm, of the best noise
     amplitude: float  # averaged over the noises
@@ -172,7 +172,7 @@ class _Record:
         self._within = max(float(np.mean(energies**2) - np.mean(self._means**2)), 0.0)
 
     def _fits(self, curves: list[Any]) -> list[_Fit]:
-        """Fit each of the curves, beside the base, in every noise."""
+        """Fit each curve together with the base, for every noise."""
         cosines, noise_times, roots = _noises(self._count)
         basis, sizes = np.linalg.qr(roots[:, :, None] * (cosines @ self._base))
         columns = cosines @ np.column_stack([*curves, self._means])
@@ -221,7 +221,7 @@ class _Record:
             before = after
 
     def _best_wave(self, cycles: Any) -> float:
-        """Return the cycles of the wave that explains most, beside the base and a line."""
+        """Return the cycles of the wave that explains most besides the base and a line."""
         basis = np.linalg.qr(np.column_stack([self._base, self._times]))[0]
         angles = math.tau * cycles[:, None] * self._times
         waves = np.stack([np.cos(angles), np.sin(angles)], axis=-1)

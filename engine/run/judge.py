@@ -290,7 +290,7 @@ class _Orbit(Stretching):
 
 
 class Judges:
-    """One judge a method, since the last change of the stepping, and the milestones of the whole run.
+    """A judge for each method since the last change of the stepping, and the run's milestones.
 
     Errors cross where the largest error so far of a method that gains or loses energy passes that
     of a bounded one: for good, as it does not with other pairs.

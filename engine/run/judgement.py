@@ -1,4 +1,4 @@
-"""Verdicts with their definitions, the table of thresholds, what a judge is fed, and its judgement."""
+"""Verdicts and their definitions, the table of thresholds, a judge's input and its judgement."""
 
 import math
 from typing import Literal, NamedTuple, get_args

@@ -1,4 +1,4 @@
-"""The derivative of a step, by complex step; stability, chaos, area and symplecticity follow from it.
+"""The derivative of a step, by complex step: it gives stability, chaos, area and symplecticity.
 
 step(x + i·tiny·v) = step(x) + i·tiny·J v + O(tiny²).  Squire & Trapp, SIAM Review 40 (1998) 110.
 """

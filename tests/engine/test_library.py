@@ -99,7 +99,7 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="last"), "'last' is none of std"),
         (lambda: simulate(5, time=1), "neither a name nor a Scene"),
-        (lambda: simulate(time=1, methods=3), "no list of methods"),
+        (lambda: simulate(time=1, methods=3), "not a list of methods"),
         (lambda: simulate(time=1, h=True), "h = True is not"),
         (lambda: recommend(1e-3, safety=0), "safety 1 or more"),
         (lambda: simulate("swing", time=1), "no scene 'swing'; choose from drift"),

@@ -377,9 +377,9 @@ class SourceScreen(SizedScreen[None]):
     def action_describe(self) -> None:
         """Describe in words what runs and what is on screen."""
         titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
-        panes = "; ".join(Content.from_markup(title).plain for title in titles if title)
-        view = f"On screen: {VIEWS[self.view].title}; {panes}."
-        self.show_text("In words", *description(self.source), view)
+        panes = [Content.from_markup(title).plain for title in titles if title]
+        on_screen = "; ".join([VIEWS[self.view].title, *panes])
+        self.show_text("In words", *description(self.source), f"On screen: {on_screen}.")
 
     def action_screenshot(self) -> None:
         """Save the screen next to the recordings."""

@@ -1,4 +1,4 @@
-"""What lies over the lab until it is closed: texts, the help, which is made from BINDINGS, forms."""
+"""What lies over the lab until it is closed: texts, forms, and the help, made from BINDINGS."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -65,7 +65,7 @@ class Box(Container):
 
 
 class View(Box):
-    """Passes source and settings on to its panes; and samples, directly: data_bind would be slow."""
+    """Passes source and settings on to its panes, and samples directly: data_bind would be slow."""
 
     source: var[Source] = var(UNBOUND)
     shown: var[Shown] = var(Shown())

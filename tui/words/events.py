@@ -1,13 +1,12 @@
 """The list of events: the user's inputs and the methods' milestones, with their simulated times."""
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from engine.methods import Method
 from engine.run.judgement import Milestone, Verdict
 from tui.playback.source import Source
-from tui.words.insight import short_name
+from tui.words.insight import energy_ratio, short_name
 from tui.words.numbers import start, two_digits
 
 VERDICTS: dict[Verdict, str] = {
@@ -79,11 +78,10 @@ def _inputs(source: Source) -> Iterator[EventLine]:
 
 def _milestone(milestone: Milestone, conserved: bool) -> str:
     name = short_name(milestone.method)
-    error = milestone.energy_error
     if milestone.other:
         return f"{name}'s error > {short_name(milestone.other)}'s"
     if milestone.kind != "over the top":
         return f"{name} {VERDICTS['failed' if milestone.kind == 'failed' else milestone.verdict]}"
-    if conserved:
-        return f"{name} over the top, {two_digits(1 + error)} E0"
-    return f"{name} over the top, {two_digits(math.exp(min(error, 700.0)))} E(t)"
+    ratio = energy_ratio(milestone, conserved)
+    unit = "E0" if conserved else "E(t)"
+    return f"{name} over the top{f', {two_digits(ratio)} {unit}' if ratio else ''}"

@@ -189,20 +189,22 @@ def _is_conserved(source: Source) -> bool:
     return source.scene.equations.energy_error.conserved
 
 
+def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
+    """Return a method's energy over the right one; None where they hardly differ."""
+    error = milestone.energy_error
+    ratio = 1 + error if conserved else math.exp(min(error, 700.0))
+    return ratio if abs(ratio - 1) > UNCHANGED else None
+
+
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
     values: dict[str, Any] = {"t": milestone.t}
     if milestone.other:
         return Insight("errors cross", (milestone.method, milestone.other), values)
     if milestone.kind == "over the top":
-        ratio = (
-            1 + milestone.energy_error
-            if conserved
-            else math.exp(min(milestone.energy_error, 700.0))
-        )
+        ratio = energy_ratio(milestone, conserved)
         unit = "its initial energy" if conserved else "the true energy"
-        is_other = abs(ratio - 1) > UNCHANGED
-        energy = f" with {two_digits(ratio)} times {unit}" if is_other else ""
+        energy = f" with {two_digits(ratio)} times {unit}" if ratio else ""
         values |= {"ratio": ratio, "energy": energy}
     return Insight(milestone.kind, (milestone.method,), values)
 

@@ -182,7 +182,7 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    yield "\nPendulum: the z from which a swing is lost in so many steps; with more steps, it is lower."
+    yield "\nPendulum: the z from which a swing is lost in so many steps; more steps lower it."
     yield (
         "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
         "without a symplectic method also if its energy leaves the linear oscillator's band by "

@@ -32,7 +32,7 @@ class EventList(Pane):
         return TEXT if line.kind == "mark" else QUIET
 
     def _fitted(self, text: str, line: EventLine) -> str:
-        """Return a text; too long, methods go by their letters, or it ends in …."""
+        """Return a text that fits: with letters for methods, or cut off with … at the end."""
         width = self.room.width
         if line.method and len(text) > width:
             for method in self.cast:

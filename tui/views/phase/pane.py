@@ -104,7 +104,7 @@ class PhasePane(Chooser[State]):
         except OwnMethodError as error:
             self._ringless = scene
             self.neighbours = self.ring = None
-            self.notify(str(error), severity="warning", markup=False)
+            self.notify(str(error), severity="warning")
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action == "cancel" and self.zoomed is not None:
