@@ -185,7 +185,7 @@ def _words(scene: Scene) -> Iterator[str]:
     yield "\nPendulum: the z from which a swing is lost in so many steps; more steps lower it."
     yield (
         "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
-        "without a symplectic method also if its energy leaves the linear oscillator's band by "
+        "with a method that is not symplectic also if its energy leaves the oscillator's band by "
         f"{100 * BAND:.0f} %."
     )
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
