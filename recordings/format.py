@@ -13,7 +13,7 @@ from typing import Any, get_args
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.run.judgement import VERDICTS, Milestone, MilestoneKind
 from engine.run.lockstep import Reading, Sample
-from engine.scenes import MOST_METHODS, Scene, SceneError
+from engine.scenes import MAX_METHODS, Scene, SceneError
 from recordings.arithmetic import Arithmetic, arithmetic_here
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, EventKind, method_named, name_of, noticed
@@ -126,8 +126,8 @@ def _scene(fields: dict[str, Any]) -> Scene:
     if fields["model"] not in MODELS:
         raise RecordingError(f"this version has no model {fields['model']}")
     cast = tuple(method_named(printable(name)) for name in fields["methods"])
-    if not 0 < len({method.key for method in cast}) == len(cast) <= MOST_METHODS:
-        raise RecordingError(f"a start names no methods, one twice, or more than {MOST_METHODS}")
+    if not 0 < len({method.key for method in cast}) == len(cast) <= MAX_METHODS:
+        raise RecordingError(f"a start names no methods, one twice, or more than {MAX_METHODS}")
     names = ("theta", "omega", "length", "gravity", "h", "model")
     return Scene(
         fields["scene"],

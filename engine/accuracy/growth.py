@@ -15,7 +15,7 @@ from engine.scenes import Scene
 
 PERIODS = 100  # followed at most; fewer if the error becomes too large
 FEWEST = 10  # periods for a fit
-MOST_STEPS = 100_000
+MAX_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
 STRAIGHT = 0.05  # largest deviation of ln(error) from the fitted line
 WHOLE = 0.15  # largest deviation of the fitted power from an integer
@@ -44,7 +44,7 @@ def duration(scene: Scene) -> float | None:
     None: the motion is not periodic, or takes too many steps.
     """
     period = scene.exact().period
-    if period is None or PERIODS * period / scene.h > MOST_STEPS or period < 4 * scene.h:
+    if period is None or PERIODS * period / scene.h > MAX_STEPS or period < 4 * scene.h:
         return None
     return PERIODS * period
 

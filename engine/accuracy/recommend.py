@@ -12,7 +12,7 @@ from engine.methods import Method
 from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Z_LIMITS
 
-MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
+MAX_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 MAX_TIMES = 300  # the force evaluations of the cheapest method, beyond which none is searched
 PREDICTED = 2.0  # times the affordable steps: a method that needs more by its order is given up
 TOLERANCE = 0.02  # to which the fewest steps are found
@@ -64,7 +64,7 @@ def least_cost(
     `show` is given the share of methods tried.
     """
     attempts: list[Attempt] = []
-    for attempt in reach(study, kind, target, budget or MOST_EVALUATIONS):
+    for attempt in reach(study, kind, target, budget or MAX_EVALUATIONS):
         if clock and attempt.point and attempt.succeeded:
             attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
         attempts.append(attempt)
@@ -102,7 +102,7 @@ def least_error(
 
 
 def reach(
-    study: Study, kind: ErrorKind, target: float, most: int = MOST_EVALUATIONS
+    study: Study, kind: ErrorKind, target: float, most: int = MAX_EVALUATIONS
 ) -> Iterator[Attempt]:
     """For each method, from the highest order down, its cheapest run with an error up to `target`.
 

@@ -14,7 +14,7 @@ from engine.methods.verlet import velocity_verlet
 from engine.models.model import Force, Phase
 
 # of a step: where nothing looks accurate, as at 1e9 rad/s, it ends with 1024 parts
-MOST_HALVINGS = 10
+MAX_HALVINGS = 10
 TOLERANCE = 0.1  # rad and rad/s, of a step
 
 
@@ -38,7 +38,7 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
     def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         """Steps divided in halves as often as they need it."""
         while True:
-            phase = step(force, phase, h, MOST_HALVINGS)
+            phase = step(force, phase, h, MAX_HALVINGS)
             yield phase
 
     return halved

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.methods.measure import PENDULUM, START, after, evaluations, measured
 from engine.methods.method import Phases
-from engine.methods.own import LONGEST_SOURCE, OwnMethod, OwnMethodError, own_method, own_phases
+from engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method, own_phases
 from engine.models.model import Phase
 
 H = 0.05  # s
@@ -22,9 +22,9 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
 
     Raises OwnMethodError, whose text is a sentence for the user.
     """
-    if len(source) > LONGEST_SOURCE:
+    if len(source) > MAX_SOURCE:
         raise OwnMethodError(
-            f"{file} is too long; use a file of at most {LONGEST_SOURCE:,} characters."
+            f"{file} is too long; use a file of at most {MAX_SOURCE:,} characters."
         )
     phases = own_phases(source, key, file)
     try:

@@ -19,7 +19,7 @@ from engine.models.model import Force, Phase
 if TYPE_CHECKING:  # it brings NumPy
     from engine.methods.measure import Measured
 
-LONGEST_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
+MAX_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
 
 
 class OwnMethodError(Exception):

@@ -4,7 +4,7 @@ from engine.scenes.listed import DEFAULT_SCENE as DEFAULT_SCENE
 from engine.scenes.listed import GROUPS as GROUPS
 from engine.scenes.listed import SCENES as SCENES
 from engine.scenes.scene import LIMITS as LIMITS
-from engine.scenes.scene import MOST_METHODS as MOST_METHODS
+from engine.scenes.scene import MAX_METHODS as MAX_METHODS
 from engine.scenes.scene import QUANTITIES as QUANTITIES
 from engine.scenes.scene import UNITS as UNITS
 from engine.scenes.scene import Z_LIMITS as Z_LIMITS

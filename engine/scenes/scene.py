@@ -25,7 +25,7 @@ UNITS = {
     **{name: parameter.unit for name, parameter in PARAMETERS.items()},
 }
 QUANTITIES = ("energy_error", "theta_error", "shadow_error", "energy")
-MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
+MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.methods import METHODS, Cast, Method, matching, simplified
-from engine.scenes import MOST_METHODS
+from engine.scenes import MAX_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import Suggestions, add_file
 
@@ -28,7 +28,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         "--methods",
         metavar="KEY,KEY",
         choices=Suggestions(KEYS),
-        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {default}); the start "
+        help=f"these methods, 1 to {MAX_METHODS}, in this order (default: {default}); the start "
         "of a name is enough",
     )
     add_file(
@@ -45,7 +45,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
 def cast_of(
     options: argparse.Namespace,
     default: Cast,
-    most: int | None = MOST_METHODS,
+    most: int | None = MAX_METHODS,
     model: str | None = None,
 ) -> Cast:
     """Return the methods that the options choose, `default` without --methods.
@@ -107,7 +107,7 @@ def find(
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     """Return the method of FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
     from engine.methods.examine import load
-    from engine.methods.own import LONGEST_SOURCE
+    from engine.methods.own import MAX_SOURCE
     from tui.cli.time_limit import limited
 
     name, _, letter = text.partition(",letter=")
@@ -132,7 +132,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
         raise UserError(f"--method: {letter!r} is taken or no letter; use letter={free[0]}.")
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
-            source = file.read(LONGEST_SOURCE + 1)
+            source = file.read(MAX_SOURCE + 1)
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None

@@ -20,7 +20,7 @@ from engine.methods import METHODS, Cast, Method
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.scenes import (
     DEFAULT_SCENE,
-    MOST_METHODS,
+    MAX_METHODS,
     QUANTITIES,
     SCENES,
     Line,
@@ -255,7 +255,7 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
     model = found.get("model", DEFAULT_MODEL)
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
     suited = tuple(method for method in METHODS if model in method.models)
-    cast = found.pop("methods", None) or next(casts, suited[:MOST_METHODS])
+    cast = found.pop("methods", None) or next(casts, suited[:MAX_METHODS])
     parameters = {name: found.pop(name) for name in PARAMETERS if name in found}
     try:
         scene = Scene(cast=cast, parameters=parameters, **found)

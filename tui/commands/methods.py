@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from engine.methods import FAMILIES, METHODS, Method
-from engine.scenes import DEFAULT_SCENE, MOST_METHODS
+from engine.scenes import DEFAULT_SCENE, MAX_METHODS
 from tui.cli.cast import KEYS, add_cast_options, cast_of
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
@@ -99,7 +99,7 @@ def _row(method: Method, order: float | None) -> Row:
 
 def _by_family(rows: list[Row]) -> Iterator[Any]:
     """Yield the methods, those of a family below its name; your own come last."""
-    if len(rows) <= MOST_METHODS:
+    if len(rows) <= MAX_METHODS:
         yield from rows
         return
     left = {row["key"]: row for row in rows}

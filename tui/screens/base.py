@@ -14,7 +14,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
-from engine.scenes import MOST_METHODS
+from engine.scenes import MAX_METHODS
 from recordings import library
 from tui.cli.errors import explained
 from tui.playback.common import State, doubled
@@ -64,9 +64,9 @@ class SourceScreen(SizedScreen[None]):
         Binding("m", "mark", "mark this moment", show=False),
         *(
             Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
-            for n in range(1, MOST_METHODS + 1)
+            for n in range(1, MAX_METHODS + 1)
         ),
-        Binding(f"{MOST_METHODS + 1}", f"show({MOST_METHODS})", "the exact motion", show=False),
+        Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
         Binding("y", "switch('log')", "chart: log or linear", show=False),
         Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),

@@ -20,7 +20,7 @@ from textual.widgets.option_list import Option
 
 from engine.methods import METHODS, Cast, Method
 from engine.models import PARAMETERS
-from engine.scenes import GROUPS, MOST_METHODS, SCENES, Scene
+from engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
 from tui.cli.options import angle, number
 from tui.playback.source import Source
 from tui.screens.lines import SizedScreen, key_text
@@ -179,7 +179,7 @@ class CastForm(Form[Cast | None]):
         super().__init__()
         known = dict.fromkeys((*METHODS, *scene.cast))
         self._methods = [each for each in known if scene.model in each.models]
-        self._title = f"Methods for the model {scene.model}, one to {MOST_METHODS}"
+        self._title = f"Methods for the model {scene.model}, one to {MAX_METHODS}"
         self.cast = scene.cast
 
     def compose(self) -> ComposeResult:
@@ -208,10 +208,10 @@ class CastForm(Form[Cast | None]):
         method = self._methods[index]
         if method in self.cast:
             self.cast = tuple(each for each in self.cast if each is not method)
-        elif len(self.cast) < MOST_METHODS:
+        elif len(self.cast) < MAX_METHODS:
             self.cast = (*self.cast, method)
         else:
-            self.notify(f"No more than {MOST_METHODS} methods fit: leave one out first.")
+            self.notify(f"No more than {MAX_METHODS} methods fit: leave one out first.")
         listed = self.query_one(OptionList)
         for at, each in enumerate(self._methods):
             listed.replace_option_prompt_at_index(at, self._line(each))

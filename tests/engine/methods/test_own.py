@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine.methods import VELOCITY_VERLET
 from engine.methods.examine import load
-from engine.methods.own import LONGEST_SOURCE, OwnMethodError
+from engine.methods.own import MAX_SOURCE, OwnMethodError
 from engine.models.pendulum import Pendulum
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
@@ -138,7 +138,7 @@ WRONG = {
     "a zero byte": ("\0", "source code string cannot contain null bytes."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
     "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
-    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000 characters."),
+    "too much text": ("#" * (MAX_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
 

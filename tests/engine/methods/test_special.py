@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
-from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MOST_HALVINGS, halving
+from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MAX_HALVINGS, halving
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from engine.methods.implicit import IMPLICIT_MIDPOINT
 from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
@@ -117,7 +117,7 @@ def test_where_nothing_looks_accurate_a_step_still_ends(method, theta, omega, h)
         return FORCE(theta)
 
     assert all(map(math.isfinite, method.step(counted, (theta, omega), h)))
-    assert count <= 6 * (2 ** (MOST_HALVINGS + 1) - 1)
+    assert count <= 6 * (2 ** (MAX_HALVINGS + 1) - 1)
 
 
 def test_in_ten_minutes_it_changes_the_energy_and_verlet_at_the_same_cost_does_not():

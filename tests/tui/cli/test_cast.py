@@ -15,7 +15,7 @@ from engine.methods import (
 )
 from engine.methods import VELOCITY_VERLET as VERLET
 from engine.methods.own import OwnMethod
-from engine.scenes import MOST_METHODS
+from engine.scenes import MAX_METHODS
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU, ROOT
 from tui.cli import cast as cast_options
@@ -41,7 +41,7 @@ def endless(force, phase, h):
             pass
     yield phase
 """
-NAMES = [f"m{n}" for n in range(MOST_METHODS)]
+NAMES = [f"m{n}" for n in range(MAX_METHODS)]
 SOURCE = "".join(STEP.format(name=name) for name in ("kick_drift", "rk4", *NAMES)) + ENDLESS
 
 

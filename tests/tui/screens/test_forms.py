@@ -3,7 +3,7 @@
 import math
 
 from engine.methods import METHODS, USUAL_CAST
-from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES
+from engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
 from tests.tui.harness import lab
 
 
@@ -64,7 +64,7 @@ async def test_a_click_takes_a_method_and_more_than_fit_or_none_are_refused():
         for row in range(4, 9):
             await theatre.pilot.click("#cast", offset=(10, row + 1))
             await theatre.pilot.pause()
-        assert len(form.cast) == MOST_METHODS
+        assert len(form.cast) == MAX_METHODS
         for row, method in enumerate(METHODS[:10]):
             if method in form.cast:
                 await theatre.pilot.click("#cast", offset=(10, row + 1))

@@ -9,7 +9,7 @@ from textual.layout import ArrangeResult, Layout, WidgetPlacement
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
-from engine.scenes import MOST_METHODS
+from engine.scenes import MAX_METHODS
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.pendulums import Pendulum
@@ -123,7 +123,7 @@ class LabView(View):
         super().__init__(id)
         self._arranged_for: object = None
         drag: list[tuple[float, float]] = []
-        self.pendulums = [Pendulum(drag, place) for place in range(MOST_METHODS)]
+        self.pendulums = [Pendulum(drag, place) for place in range(MAX_METHODS)]
         self._others: dict[str, Pane] = {
             "overlay": Pendulum(drag),
             "phase": PhasePane(),
