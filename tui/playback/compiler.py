@@ -10,7 +10,7 @@ from engine.run.compiled import TieredLoops, compiled
 from engine.run.loops import Loops
 
 
-def patient(method: Method, model: Model) -> Loops:
+def compiled_in_background(method: Method, model: Model) -> Loops:
     """A method's loops: plain until a thread has compiled them; the bits are the same."""
     return TieredLoops(method, model, _ready)
 

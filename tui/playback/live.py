@@ -16,7 +16,7 @@ from engine.scenes import Scene
 from recordings.events import Event, EventKind, noticed
 from tui.cli.time_limit import limited
 from tui.playback.common import Playback, Playhead, RecordingStatus, RunState
-from tui.playback.compiler import patient
+from tui.playback.compiler import compiled_in_background
 from tui.playback.history import History
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Live(Playback):
         self._clocked = 0.0  # s, of what was recorded last
         self._noticed_step = 0  # up to which the milestones of the run are events
         self._runs = 1
-        run = RewindableRun(scene, 1, patient)
+        run = RewindableRun(scene, 1, compiled_in_background)
         if history is not None:
             with _limited(scene):
                 run.repeat(changes, history.step)
@@ -200,7 +200,7 @@ class Live(Playback):
         stepping.check(scene.w0)
         self._runs += 1
         with _limited(scene):
-            run = RewindableRun(scene, self._runs, patient)
+            run = RewindableRun(scene, self._runs, compiled_in_background)
         self.failure = None
         self._left = None
         self._enter(run, History(scene, run.changes))

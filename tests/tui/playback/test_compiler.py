@@ -28,7 +28,7 @@ def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 10)
     monkeypatch.setattr(compiler, "compiled", slowly)
     monkeypatch.setattr(compiler, "_compiling", functools.cache(compiler._compiling.__wrapped__))
-    loops, start = compiler.patient(method, model), ((1.0, 0.0), 0.05, 20, math.inf)
+    loops, start = compiler.compiled_in_background(method, model), ((1.0, 0.0), 0.05, 20, math.inf)
     expected = slow.advance(*start)
     assert loops.advance(*start) == expected  # at once: `slowly` has not been let go
     assert not used
