@@ -210,11 +210,11 @@ class Study:
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
     """The same point with its seconds: the same steps again, without comparisons and energies."""
-    travel = loops(point.method, scene.equations).travel
+    propagate = loops(point.method, scene.equations).propagate
     start = (scene.theta, scene.omega)
-    travel(start, point.h, 1)  # may have to be compiled
+    propagate(start, point.h, 1)  # may have to be compiled
     runs = max(1, TIMED_STEPS // point.steps)
-    seconds, spread = shortest(lambda: travel(start, point.h, point.steps), runs, clock)
+    seconds, spread = shortest(lambda: propagate(start, point.h, point.steps), runs, clock)
     return replace(point, seconds=seconds, spread=spread)
 
 

@@ -31,7 +31,7 @@ def available() -> bool:
 class CompiledLoops(NamedTuple):
     """Loops in machine code, which several runs may share."""
 
-    travel: Callable[[Phase, float, int], Phase]
+    propagate: Callable[[Phase, float, int], Phase]
     advance: Callable[[Phase, float, int, float], Advanced]
 
 
@@ -60,11 +60,11 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     phases = inner(compilable(method.phases))
     force = inner(model.force())
     energy = inner(model.energy())
-    travel = inner(_travel)
+    propagate = inner(_propagate)
     advance = inner(loops.advance)
 
     def travelling(phase: Phase, h: float, n: int) -> Any:
-        return travel(phases(force, phase, h), phase, n)
+        return propagate(phases(force, phase, h), phase, n)
 
     def advancing(phase: Phase, h: float, n: int, limit: float) -> Any:
         return advance(phases(force, phase, h), energy, phase, n, limit)
@@ -72,7 +72,7 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     return CompiledLoops(*(numba.njit(nogil=True)(loop) for loop in (travelling, advancing)))
 
 
-def _travel(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
+def _propagate(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
     for following in phases:
         phase = following
         n -= 1
@@ -110,9 +110,9 @@ class TieredLoops:
         self._compiled = self._compiled or self._fast(self._method, self._model)
         return self._compiled or self._plain
 
-    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+    def propagate(self, phase: Phase, h: float, n: int) -> Phase:
         """Return the phase after n >= 1 steps, and nothing else."""
-        return self._loops(n).travel(phase, h, n)
+        return self._loops(n).propagate(phase, h, n)
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
         """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""

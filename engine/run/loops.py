@@ -19,7 +19,7 @@ Advance = Callable[[Phase, float, int, float], Advanced]
 class Loops(Protocol):
     """One method's loops on one model, for one run."""
 
-    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+    def propagate(self, phase: Phase, h: float, n: int) -> Phase:
         """Return the phase after n >= 1 steps, and nothing else."""
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
@@ -86,7 +86,7 @@ class PlainLoops:
         self._h = 0.0
         self._generator: Iterator[Phase] = iter(())
 
-    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+    def propagate(self, phase: Phase, h: float, n: int) -> Phase:
         """Return the phase after n >= 1 steps, and nothing else."""
         return next(islice(self._phases(phase, h), n - 1, None))
 

@@ -78,17 +78,17 @@ def method_solvers() -> Iterator[Solver]:
     for method in GENERAL:
         if method.order == 1 or method.varies:
             continue
-        travel = compiled(method, SCENE.equations).travel
+        propagate = compiled(method, SCENE.equations).propagate
 
-        def to_the_end(steps: int, travel: Any = travel) -> Run:
-            return partial(travel, START, END / steps, steps)
+        def to_the_end(steps: int, propagate: Any = propagate) -> Run:
+            return partial(propagate, START, END / steps, steps)
 
-        def error(steps: int, travel: Any = travel) -> float:
+        def error(steps: int, propagate: Any = propagate) -> float:
             stride = steps // 400 or 1
             phase = START
             largest = 0.0
             for done in range(stride, steps + 1, stride):
-                phase = travel(phase, END / steps, stride)
+                phase = propagate(phase, END / steps, stride)
                 largest = max(largest, abs(phase[0] - MOTION.at(done * END / steps).theta))
             return largest
 

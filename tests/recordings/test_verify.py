@@ -136,7 +136,7 @@ def foreign_loops(monkeypatch, every):
             phases = method.on(model, sin)(phase, h)
             return loops.advance(phases, model.energy(sin), phase, n, limit)
 
-        return CompiledLoops(loops.PlainLoops(method, model).travel, advance)
+        return CompiledLoops(loops.PlainLoops(method, model).propagate, advance)
 
     of_another_machine(monkeypatch)
     return loops_of

@@ -98,7 +98,7 @@ def test_errors_are_the_largest_of_the_run(steps):
     exact, w0_squared, phase = DRIFT.exact(), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
     start, path = energy(w0_squared, *phase), []
     for _ in range(steps):
-        path.append(phase := PlainLoops(V, DRIFT.equations).travel(phase, 10.0 / steps, 1))
+        path.append(phase := PlainLoops(V, DRIFT.equations).propagate(phase, 10.0 / steps, 1))
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     assert point.theta_error == max(off)
     assert point.final_error == off[-1]

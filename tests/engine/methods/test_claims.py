@@ -163,12 +163,12 @@ def test_a_negative_step_undoes_a_step_where_reversible(method, theta, omega):
     ("kind", "sin"), [(lambda x: np.full(3, x), np.sin), (complex, cmath.sin), (mp.mpf, mp.sin)]
 )
 def test_one_definition_serves_floats_arrays_complex_and_mpmath(method, kind, sin):
-    def travel(kind, sin):
+    def propagate(kind, sin):
         phases = method.phases(acceleration(kind(W0_SQUARED), sin), (kind(0.8), kind(-1.1)), 0.05)
         return [complex(np.ravel(value)[0]) for value in next(islice(phases, 19, None))]
 
     # 20 steps' rounding; their sines may differ in the last bit
-    assert travel(kind, sin) == pytest.approx(travel(float, math.sin), abs=1e-13)
+    assert propagate(kind, sin) == pytest.approx(propagate(float, math.sin), abs=1e-13)
 
 
 @pytest.mark.parametrize("field", ["key", "label", "letter", "phases", "formula"])

@@ -98,8 +98,8 @@ def test_what_was_learned_holds_for_any_length_and_gravity(method):
     """In units of w0 the motion is the same: here on the Moon."""
     moon = Pendulum(1.62)
     share = PENDULUM.w0 / moon.w0
-    theta, omega = PlainLoops(method, PENDULUM).travel((1.0, 0.5 * PENDULUM.w0), 0.02, 500)
-    on_moon = PlainLoops(method, moon).travel((1.0, 0.5 * moon.w0), 0.02 * share, 500)
+    theta, omega = PlainLoops(method, PENDULUM).propagate((1.0, 0.5 * PENDULUM.w0), 0.02, 500)
+    on_moon = PlainLoops(method, moon).propagate((1.0, 0.5 * moon.w0), 0.02 * share, 500)
     assert on_moon == pytest.approx((theta, omega / share), rel=1e-9)
 
 
@@ -134,4 +134,6 @@ def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4():
 
     phase = next(islice(rk4_on_rates(rates, (1.0, 0.5), 0.05), 9, None))
     assert count == 10 * RK4_LEARNED_FIELD.force_evaluations
-    assert phase == pytest.approx(PlainLoops(RK4, PENDULUM).travel((1.0, 0.5), 0.05, 10), abs=1e-14)
+    assert phase == pytest.approx(
+        PlainLoops(RK4, PENDULUM).propagate((1.0, 0.5), 0.05, 10), abs=1e-14
+    )

@@ -48,7 +48,7 @@ def with_models(cases):
 def test_it_has_the_claimed_order(method, model):
     exact, steps, errors = model.exact(1.0, 0.0).at(1.0).theta, STEPS[method.order], []
     for n in steps:
-        phase = PlainLoops(method, model).travel(model.start(1.0, 0.0), 1.0 / n, n)
+        phase = PlainLoops(method, model).propagate(model.start(1.0, 0.0), 1.0 / n, n)
         errors.append(abs(model.observe(phase).theta - exact))
     slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(method.order, abs=0.15)
@@ -69,9 +69,9 @@ def test_a_run_evaluates_the_force_as_often_as_claimed(method, model):
 @with_models(SPECIAL + SPRUNG + RATES)
 def test_time_turned_round_leads_back_to_the_start_where_claimed(method, model):
     start = model.start(2.0, 0.3)
-    travel = PlainLoops(method, model).travel
+    propagate = PlainLoops(method, model).propagate
     turned = np.array([1, -1, 1, -1, 1])[: len(start)]
-    back = travel(tuple((travel(start, 0.2, 50) * turned).tolist()), 0.2, 50)
+    back = propagate(tuple((propagate(start, 0.2, 50) * turned).tolist()), 0.2, 50)
     assert (np.abs(back * turned - start).max() < 1e-9) == method.reversible
 
 
@@ -100,7 +100,7 @@ def energy_error(method, h):
 def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length():
     phases = halving(velocity_verlet, 0.1)
     small = next(phases(FORCE, (2.0, 0.0), 0.05))
-    assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
+    assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).propagate((2.0, 0.0), 0.025, 2)
     divided = next(phases(FORCE, (2.0, -5.0), 0.4))
     halved = next(phases(FORCE, next(phases(FORCE, (2.0, -5.0), 0.2)), 0.2))
     assert divided == halved
@@ -140,7 +140,7 @@ def log_energy_error(method, evaluations):
 @pytest.mark.parametrize(("share", "gains"), [(0.95, False), (1.05, True)])
 def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction, share, gains):
     model, h = DampedPendulum(9.81, friction), share * friction / 9.81
-    end = PlainLoops(EXPLICIT_EULER, model).travel((0.1, 0.0), h, round(200 / h))
+    end = PlainLoops(EXPLICIT_EULER, model).propagate((0.1, 0.0), h, round(200 / h))
     assert (model.energy()(end) > model.energy()((0.1, 0.0))) == gains
 
 
@@ -195,7 +195,7 @@ def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold():
 def test_in_mid_swing_the_kind_of_numbers_does_not_matter():
     """Verlet's own error, 2e-2 after 10 s, hides them."""
     kinds = (VELOCITY_VERLET, VERLET_FLOAT32, VERLET_COMPENSATED)
-    ends = [PlainLoops(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in kinds]
+    ends = [PlainLoops(each, PENDULUM).propagate((2.0, 0.0), 0.02, 500) for each in kinds]
     assert ends[0] == pytest.approx(ends[1], abs=1e-4)
     assert ends[0] == pytest.approx(ends[2], abs=1e-12)
     assert len(set(ends)) == 3
@@ -229,14 +229,14 @@ def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_on
 def test_respa_with_one_inner_step_is_verlet_but_for_rounding():
     start = STIFF.start(1.0, 0.0)
     phase = next(islice(respa(velocity_verlet, 1)(STIFF.parts(), start, 0.01), 499, None))
-    expected = PlainLoops(VELOCITY_VERLET, STIFF).travel(start, 0.01, 500)
+    expected = PlainLoops(VELOCITY_VERLET, STIFF).propagate(start, 0.01, 500)
     assert phase == pytest.approx(expected, abs=1e-11)
     assert phase != expected
 
 
 def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well():
     stiffest = Spring(9.81, 1e14)
-    z, w = PlainLoops(IMEX_EULER, stiffest).travel(stiffest.start(1.0, 0.0), 0.02, 1500)
+    z, w = PlainLoops(IMEX_EULER, stiffest).propagate(stiffest.start(1.0, 0.0), 0.02, 1500)
     assert z == pytest.approx(-1j, abs=0.02)
     assert abs(w) < 0.2
     phases = islice(IMEX_EULER.on(STIFF)(STIFF.start(1.0, 0.0), 0.02), 500)

@@ -32,7 +32,7 @@ def test_many_steps_compiled_have_the_plain_ones_bits_and_leave_no_memory_behind
     def faults(runs):
         before = getrusage(RUSAGE_SELF).ru_minflt
         for _ in range(runs):
-            fast.travel((1.0, 0.0), 0.01, 2)
+            fast.propagate((1.0, 0.0), 0.01, 2)
         return getrusage(RUSAGE_SELF).ru_minflt - before
 
     faults(1000)
@@ -51,7 +51,7 @@ def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
     found = fast.advance(*start, 1e9)
     assert repr(found) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
     if found[0] == 2_000:
-        assert fast.travel(*start) == slow.travel(*start)
+        assert fast.propagate(*start) == slow.propagate(*start)
 
 
 @needs_numba
@@ -86,7 +86,7 @@ def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_afte
     )
     for n in (1_000, 1_000, 2_000, 500):
         start = ((2.0, 0.0), 0.05, n)
-        assert loops.travel(*start) == plain.travel(*start)
+        assert loops.propagate(*start) == plain.propagate(*start)
         assert loops.advance(*start, math.inf) == plain.advance(*start, math.inf)
 
 
@@ -100,11 +100,13 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
 
     def fast(method, model):
         advance = PlainLoops(method, model).advance
-        return compiled.CompiledLoops(travel=lambda *start: used.append(start[-1]), advance=advance)
+        return compiled.CompiledLoops(
+            propagate=lambda *start: used.append(start[-1]), advance=advance
+        )
 
     loops = compiled.TieredLoops(GENERAL[0], PENDULUM, fast, ahead)
     for n in (1, 2, 4):
-        loops.travel((1.0, 0.0), 0.05, n)
+        loops.propagate((1.0, 0.0), 0.05, n)
     assert used == compiled_steps
 
 
@@ -114,7 +116,7 @@ import engine.accuracy.references
 from engine.run.compiled import TieredLoops, available
 from engine.scenes import DEFAULT_SCENE as scene
 available()
-TieredLoops(scene.cast[0], scene.equations).travel((1.0, 0.0), 0.05, 10_000)
+TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
 """
     assert loaded_after(work, "numba") == []
 

@@ -44,7 +44,7 @@ def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h,
     for _ in range(n):
         path.append(phase := method.step(model.force(), phase, h))
     energies = [model.energy()(point) for point in path]
-    assert PlainLoops(method, model).travel((theta, omega), h, n) == path[-1]
+    assert PlainLoops(method, model).propagate((theta, omega), h, n) == path[-1]
     expected = (n, path[-1], energies[-1], min(energies), max(energies))
     assert PlainLoops(method, model).advance((theta, omega), h, n, math.inf) == expected
 
@@ -74,4 +74,4 @@ def test_it_stops_before_the_step_whose_energy_reaches_the_limit(method):
     assert done < 500
     assert high < highest
     assert done == 0 or energy(9.81, *phase) == value
-    assert energy(9.81, *loops.travel(phase, 0.05, 1)) == highest
+    assert energy(9.81, *loops.propagate(phase, 0.05, 1)) == highest

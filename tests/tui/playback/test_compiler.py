@@ -22,7 +22,7 @@ def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
     def slowly(method, model):
         release.wait(10)
         return compiled.CompiledLoops(
-            slow.travel, lambda *start: used.append(start) or slow.advance(*start)
+            slow.propagate, lambda *start: used.append(start) or slow.advance(*start)
         )
 
     monkeypatch.setattr(compiled, "COMPILED_FROM", 10)
