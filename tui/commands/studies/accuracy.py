@@ -276,6 +276,8 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
         yield f"\nOver {advice.time:g} s, {wish}: {point.method.label} at h = {point.h:.5g} s ({z})"
         cost = f"{point.force_evaluations} force evaluations{_seconds(point)}"
         yield f"{cost}, {kind} error {point.error(kind):.2e}, confirmed"
+        if options.target is not None and options.safety == 1:
+            yield "Steps near it may miss the target; --safety 2 leaves a margin."
     rows = [_attempt_fields(found, attempt) for attempt in advice.attempts]
     timed = [Column("seconds", "seconds", length)]
     columns = [
