@@ -4,10 +4,11 @@ import argparse
 import difflib
 import string
 from collections.abc import Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import METHODS, Cast, Method, matching, simplified
+from engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
 from engine.scenes import MAX_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import Suggestions, add_file
@@ -71,10 +72,7 @@ def cast_of(
 
 
 def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
-    """Return the user's own methods, in the order given, examined and measured.
-
-    Raises UserError and OwnMethodError.
-    """
+    """Return the user's own methods, measured.  Raises UserError and OwnMethodError."""
     own: list[OwnMethod] = []
     for text in options.method:
         own.append(own_method_at(text, own))
@@ -98,10 +96,18 @@ def find(
     suited = [method for method in methods if model is None or model in method.models]
     known = {simplified(each): method.key for method in suited for each in method.names}
     near = difflib.get_close_matches(simplified(name), known, n=1)
-    advice = f": choose from {', '.join(method.key for method in suited)}."
+    families = groupby([method.key for method in suited], family_of)
+    listed = [f"{family}: {', '.join(keys)}" for family, keys in families]
+    advice = f": choose from {'; '.join(listed)}."
     if near:
         advice = f": did you mean {known[near[0]]}?"
     raise UserError(f"{option}: there is no method {name!r}{advice}")
+
+
+def family_of(key: str) -> str:
+    """Return a method's family."""
+    found = (name for name, some in FAMILIES.items() if key in [each.key for each in some])
+    return next(found, "your own")
 
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
@@ -110,6 +116,8 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     from engine.methods.own import MAX_SOURCE
     from tui.cli.time_limit import limited
 
+    if text.endswith(".py"):
+        text += f":{Path(text).stem}"
     name, _, letter = text.partition(",letter=")
     path, _, key = name.rpartition(":")
     if not path:

@@ -130,13 +130,17 @@ def read_table(
     """
     found: Table | None = None
     count = 0
+    rows = 0
     for count, table in enumerate(_tables(_records(stream, wanted)), 1):
+        rows += len(table.columns[0])
         if number in (None, count):
             found = table
             found.number = count
     if found is None:
         why = f"there is no table {number}; the input has {count}."
         raise _unreadable(why if count else _NO_ROW)
+    if rows == count > 1:
+        raise _unreadable("its time goes back in every row; name the column of times with --time.")
     found.count = count
     found.finish(start)
     return found
@@ -183,7 +187,6 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
 
 
 def _records(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
-    """Yield the heads and rows of any input."""
     start = stream.peek(4096)
     if not start:
         raise _unreadable("the input is empty; nothing to judge.")
@@ -239,7 +242,7 @@ class _Text:
             raise _missing(self._wanted, [*self._legend.values()] or self._names or self._above)
 
     def _plain_row(self, line: str) -> list[float] | None:
-        """Return a row like the one before it."""
+        """Return a row like the last."""
         fields = line.split(self._delimiter)
         if len(fields) != self._width or '"' in line:
             return None
@@ -249,7 +252,6 @@ class _Text:
             return None
 
     def _other(self, line: str) -> Iterator[Record]:
-        """Yield what any other line means."""
         is_comment = line.lstrip().startswith(("#", "@"))
         text = line.lstrip("#@ \t") if is_comment else line
         bare = re.sub(r'"[^"]*"', "", text)
@@ -285,7 +287,7 @@ class _Text:
             self._above = fields
 
     def _head_at(self, numbers: Sequence[float | None]) -> Head | None:
-        """Return the head of the table whose first row this is, if it is one."""
+        """Return the head of the table that begins with this row."""
         width = len(numbers)
         if self._places and (self._headers or None in numbers or width == self._width):
             return None
@@ -302,12 +304,11 @@ class _Text:
         head = Head.of([self._legend.get(place, "") for place in range(width)], self._wanted)
         if head is None or None in [numbers[place] for place in chain(*head.places)]:
             return None
-        shared = _split(self._legend.get(-1, ""))[1]
+        shared = _split(f"energy {self._legend.get(-1, '')}")[1]
         return Head(head.places, (head.units[0], *(unit or shared for unit in head.units[1:])))
 
 
 def _fields(line: str, delimiter: str) -> list[str]:
-    """Return the fields of a line, without quotes."""
     try:
         (fields,) = csv.reader([line.strip(" \r\n")], delimiter=delimiter, skipinitialspace=True)
     except csv.Error:
@@ -357,7 +358,6 @@ def _mdout(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
 
 
 def _of_arrays(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
-    """Yield the head and the rows of the arrays in an .npz."""
     import numpy as np
 
     try:

@@ -34,7 +34,6 @@ FIELDS = (
     *("energy_per_ns_per_atom", "kt_per_ns_per_atom", "samples", "skipped"),
     *("independent_samples", "fluctuation_order", "drift_order"),
 )
-"""The fields that --fail-if compares, besides the verdict."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

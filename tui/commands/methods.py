@@ -6,11 +6,12 @@ Of your own method, only measured ones are known.
 import argparse
 import math
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any
 
-from engine.methods import FAMILIES, METHODS, Method
+from engine.methods import METHODS, Method
 from engine.scenes import DEFAULT_SCENE, MAX_METHODS
-from tui.cli.cast import KEYS, add_cast_options, cast_of
+from tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
 from tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
@@ -98,15 +99,12 @@ def _row(method: Method, order: float | None) -> Row:
 
 
 def _by_family(rows: list[Row]) -> Iterator[Any]:
-    """Yield the methods, those of a family below its name; your own come last."""
     if len(rows) <= MAX_METHODS:
         yield from rows
         return
-    left = {row["key"]: row for row in rows}
-    for family, members in FAMILIES.items():
+    for family, members in groupby(rows, lambda row: family_of(row["key"])):
         yield family
-        yield from (left.pop(each.key) for each in members if each.key in left)
-    yield from ["your own", *left.values()] if left else ()
+        yield from members
 
 
 def _known(row: Row, name: str) -> Any:

@@ -291,13 +291,12 @@ def _bands(source: Source) -> list[tuple[float, Method]]:
 
 
 def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
-    """Return the largest energy errors of the best and of the worst method."""
     each = zip(source.scene.cast, source.sample.readings, strict=True)
     errors = {one: now.max_energy_error for one, now in each if one.key not in hidden}
     if not errors:
         return Insight("watch", values={"text": ""})
     best = min(errors, key=errors.__getitem__)
-    worst = max(errors, key=errors.__getitem__)
+    worst = max(reversed(errors), key=errors.__getitem__)
     values = {"least": errors[best], "most": errors[worst]}
     if len(errors) == 1:
         return Insight("so far alone", (worst,), values)

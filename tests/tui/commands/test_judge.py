@@ -44,7 +44,7 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-XVG = '# by gmx energy\n@ title "E"\n@    xaxis  label "Time (ps)"\n@TYPE xy\n@ s0 legend "Potential"\n'
+XVG = '# by gmx energy\n@ title "E"\n@    xaxis  label "Time (ps)"\n@ yaxis label "(kJ/mol)"\n@ s0 legend "Potential"\n'
 XVG += '@ s1 legend "Total Energy"\n' + lines("  {t:.6f}  -3.0  {e!r}")
 FIRST = [(t, e - 9) for t, e in ROWS[:200]]
 LOG = "LAMMPS (2 Aug 2023)\nthermo_style custom step temp etotal\n   Step   Temp   TotEng\n"
@@ -113,20 +113,9 @@ RISING = [-17 + n / 8 for n in range(9)]
         (MDOUT, ("time", "EKtot+EPtot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (NPZ.getvalue(), ("time", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
         ("t,E\nps,eV\n0,1\n1,1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
+        (XVG, ("1", "3"), ("ps", "kJ/mol"), *map(list, zip(*ROWS, strict=True))),
         ("# t E\n# [ps] (eV)\n0 1\n1 1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
         ("t E\n0.0D0 1.5D+02\n1.0d-1 1.5d+02\n", ("t", "E"), ("", ""), [0, 0.1], [150, 150]),
-    ],
-    ids=[
-        "cp2k",
-        "cp2k sum",
-        "cp2k blank",
-        "json lines",
-        "mdout",
-        "mdout sum",
-        "npz",
-        "units",
-        "# units",
-        "fortran",
     ],
 )
 def test_other_forms_are_read_and_columns_added(data, names, units, times, energies):
@@ -300,6 +289,7 @@ def test_a_value_that_is_not_known_yet_fails_the_check():
         ("1 2\n", "t E", 2, "give columns by number"),
         ("t,E\na,b\n", "t E", 3, "no row has a number in each column"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
+        ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time goes back"),
         (table(), " ", 2, "there is no column ''; choose from t, E"),
         ("words\na b c\nStep TotEng\n1 2\na | b | c | d\n", "Step E", 2, "from Step, TotEng."),
         ("\x1b[31m,\x07\n", "t E", 2, "there is no column 't'"),
