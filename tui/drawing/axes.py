@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
-Labels = dict[float, str]
 Ticks = list[tuple[float, str]]
 
 
@@ -17,7 +16,7 @@ class Axis:
 
     low: float
     high: float
-    labels: Labels
+    labels: dict[float, str]
 
     def share(self, values: ArrayLike) -> Floats:
         """Positions of values along the axis, from 0 to 1, clipped."""
@@ -56,11 +55,10 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
     size = next(size for size in _DECADES if round(high / size) - round(low / size) < rows)
     bottom = (round(high / size) + 0.5 - rows) * size
     top = (round(high / size) + 0.5) * size
-    step = math.ceil(2 * size)
-    inside: list[float] = [number * step for number in _multiples(bottom, top, step, slack=0)]
-    if len(inside) < 2 and size >= 1:  # a few rows: each has its label
-        inside = [round(high / size) * size - size * row for row in range(rows)][::-1]
-    return Axis(bottom, top, {value: _power(value) for value in inside})
+    values = _multiples(bottom, top, math.ceil(2 * size))
+    if len(values) < 2 and size >= 1:  # a few rows: each has its label
+        values = [top - (row + 0.5) * size for row in reversed(range(rows))]
+    return Axis(bottom, top, {value: _power(value) for value in values})
 
 
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
@@ -68,8 +66,7 @@ def log_x_axis(low: float, high: float, columns: int) -> Axis:
     first = math.floor(low)
     last = max(math.ceil(high), first + 1)
     step = math.ceil((last - first) * 8 / columns)
-    powers = [step * number for number in _multiples(first, last, step, slack=0)]
-    return Axis(first, last, {power: _power(power) for power in powers})
+    return Axis(first, last, {power: _power(power) for power in _multiples(first, last, step)})
 
 
 def _power(exponent: float) -> str:
@@ -93,12 +90,11 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
         return math.floor((rows - 1) * step / (top * step - low) + 1e-9)
 
     step = next(step for apart in (2, 1) for step in steps if rows_apart(step) >= apart)
-    top = math.ceil(high / step - 1e-9)
+    top = math.ceil(high / step - 1e-9) * step
     row = step / rows_apart(step)
-    bottom = top * step - (rows - 0.5) * row
-    numbers = range(math.ceil(bottom / step), top + 1)
-    labels = {number * step: _label(number * step, step) for number in numbers}
-    return Axis(bottom, top * step + row / 2, labels)
+    bottom = top - (rows - 0.5) * row
+    labels = {value: _label(value, step) for value in _multiples(bottom, top, step)}
+    return Axis(bottom, top + row / 2, labels)
 
 
 def _label(value: float, step: float) -> str:
@@ -116,8 +112,8 @@ def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
     units = ((3600, "h"), (60, "min"))
     size, unit = next((each for each in units if end - start >= 5 * each[0]), (1, "s"))
     step = nice((end - start) / size / max(columns / 10, 1))
-    numbers = _multiples(start / size, end / size, step, slack=1e-9)
-    labels = {number * step * size: f"{number * step:.6g}" for number in numbers}
+    values = _multiples(start / size, end / size, step)
+    labels = {value * size: f"{value:.6g}" for value in values}
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
@@ -135,7 +131,7 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     """Return an axis of log10 of seconds, labelled in s, min, h or d every 8 columns or more."""
     low = math.log10(start)
     high = math.log10(end)
-    labels: Labels = {}
+    labels: dict[float, str] = {}
     for seconds, text in _TIMES:
         place = math.log10(seconds)
         apart = 8 * (high - low) / columns
@@ -151,8 +147,8 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
 
 def number_ticks(low: float, high: float, most: int) -> Ticks:
     """Positions and labels of about `most` numbers."""
-    step = nice((high - low) / most)
-    return [(number * step, compact(number * step)) for number in _multiples(low, high, step)]
+    values = _multiples(low, high, nice((high - low) / most))
+    return [(value, compact(value)) for value in values]
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
@@ -163,18 +159,19 @@ def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
     step = nice(share)
     if 0.1 < share <= 1:
         step = next(quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share)
-    numbers = _multiples(low / math.pi, high / math.pi, step)
-    return [(number * step * math.pi, in_pi(number * step, wrap)) for number in numbers]
+    values = _multiples(low / math.pi, high / math.pi, step)
+    return [(value * math.pi, in_pi(value, wrap)) for value in values]
 
 
-def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> range:
-    return range(math.ceil(low / step - slack), math.floor(high / step + slack) + 1)
+def _multiples(low: float, high: float, step: float) -> list[float]:
+    first = math.ceil(low / step - 1e-6)
+    last = math.floor(high / step + 1e-6)
+    return [number * step for number in range(first, last + 1)]
 
 
 def compact(value: float) -> str:
     """A number in few characters: "0.5", "-2e-7"."""
-    mantissa, e, exponent = f"{value:.6g}".partition("e")
-    return mantissa + (f"e{int(exponent)}" if e else "")
+    return f"{value:.6g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
 
 
 def in_pi(turns: float, wrap: bool = False) -> str:
@@ -184,9 +181,9 @@ def in_pi(turns: float, wrap: bool = False) -> str:
     if turns == 0:
         return "0"
     for divisor, over in ((1, ""), (2, "/2"), (4, "/4")):
-        if turns * divisor == round(turns * divisor):
-            factor = {1: "", -1: "-"}.get(round(turns * divisor), f"{turns * divisor:.0f}")
-            return f"{factor}pi{over}"
+        if turns * divisor % 1 == 0:
+            count = f"{turns * divisor:.0f}"
+            return {"1": "", "-1": "-"}.get(count, count) + "pi" + over
     return f"{compact(turns)}pi"
 
 

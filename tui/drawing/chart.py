@@ -52,9 +52,12 @@ class LogLog:
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
         """Return axes that fit all points, with marks, for this many columns and rows."""
         rows = height - 4
-        marked = [points for one in series if not one.dotted and len(points := one.logs())]
-        corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
-        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+        points = np.concatenate(
+            [np.empty((0, 2)), *(one.logs() for one in series if not one.dotted)]
+        )
+        if not len(points):
+            points = np.array([(0.0, -4.0), (1.0, 0.0)])
+        (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
         y_axis = log_axis(bottom, top, rows)
         columns = width - 1 - ROOM - y_axis.label_width
         return cls(log_x_axis(left, right, columns), y_axis, columns, rows, width - columns - ROOM)
@@ -64,18 +67,18 @@ class LogLog:
         x, y = series.logs().T
         if series.dotted and len(x):
             across = np.linspace(self.x_axis.low, self.x_axis.high, self.columns)
-            x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
-            inside = (y >= self.y_axis.low) & (y <= self.y_axis.high)
-            x = x[inside]
-            y = y[inside]
-        across = self.columns * self.x_axis.share(x)
-        return across.tolist(), (self.rows * self.y_axis.share(y)).tolist()
+            up = np.interp(across, x, y, left=np.nan, right=np.nan)
+            inside = (up >= self.y_axis.low) & (up <= self.y_axis.high)
+            x = across[inside]
+            y = up[inside]
+        right = self.columns * self.x_axis.share(x)
+        return right.tolist(), (self.rows * self.y_axis.share(y)).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return column and row of the picture in which a point on the axes lies."""
-        across = self.columns * float(self.x_axis.share(math.log10(x)))
+        right = self.columns * float(self.x_axis.share(math.log10(x)))
         up = self.rows * float(self.y_axis.share(math.log10(y)))
-        return self.left + int(across), 1 + row_at(up, self.rows)
+        return self.left + int(right), 1 + row_at(up, self.rows)
 
 
 def loglog_chart(
@@ -96,14 +99,16 @@ def loglog_chart(
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         last = width - len(one.mark)
         cells = [
-            (min(axes.left + int(across), last), 1 + row_at(up, axes.rows))
-            for across, up in zip(x, y, strict=True)
+            (min(axes.left + int(right), last), 1 + row_at(up, axes.rows))
+            for right, up in zip(x, y, strict=True)
         ]
-        for column, row in cells[-1:] if one.dotted else cells:
-            near = []
-            if one.dotted:
-                rows = [at for at in (row, row - 1, row + 1) if 1 <= at <= axes.rows]
-                near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
+        if not one.dotted:
+            for column, row in cells:
+                canvas.label(column, row, one.mark, one.ink)
+        elif cells:
+            column, row = cells[-1]
+            rows = [at for at in (row, row - 1, row + 1) if 1 <= at <= axes.rows]
+            near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
             if not canvas.label_where_blank(near, one.mark, one.ink):
                 canvas.label(column, row, one.mark, one.ink)
     return canvas.picture()

@@ -1,7 +1,7 @@
 """A quantity of all methods over time, as a chart that can be read out at each column."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -73,27 +73,15 @@ class TimePlot:
         low, high = self.ends
         share = 0.5
         if column is not None:
-            share = min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
+            share = min(max((column - self.left + 0.5) / len(self.times), 0.0), 1.0)
         length = factor * (high - low)
         begin = low + share * (high - low - length)
-        first, last = _whole_span(whole, self.log_time)
-        if self.log_time:
-            first = math.log10(first)
-            last = math.log10(last)
-        begin = min(max(begin, first), max(last - length, first))
-        end = min(begin + length, last)
-        if begin == first and end == last:
+        limits = _time_axis(whole, Shown(), len(self.times), self.log_time)
+        begin = min(max(begin, limits.low), max(limits.high - length, limits.low))
+        end = min(begin + length, limits.high)
+        if begin == limits.low and end == limits.high:
             return None
         return (10.0**begin, 10.0**end) if self.log_time else (begin, end)
-
-
-@dataclass(frozen=True, slots=True)
-class Marks:
-    """What is drawn beside the curves of a chart."""
-
-    ghost: tuple[Window, Cast] | None = None
-    changes: Sequence[tuple[float, str]] = ()  # of the step: x [s] and a word
-    line: tuple[float, str] | None = None  # a reference value and its name
 
 
 class _Run(NamedTuple):
@@ -105,27 +93,33 @@ class _Run(NamedTuple):
     low: Floats  # (rows, methods)
     high: Floats
 
-    def extremes(self, edges: Floats) -> tuple[Floats, Floats]:
-        """Return the lowest and the highest value in each column, (columns, methods)."""
-        return per_column(self.window.x, self.low, self.high, edges)
+    def columns(self, edges: Floats, log: bool, log_time: bool) -> tuple[Floats, Floats]:
+        """Return the lowest and the highest value in each column, (columns, methods).
 
-    def largest(self, edges: Floats, log_time: bool) -> Floats:
-        """Return log10 of the largest magnitude at each column, (columns, methods).
-
-        At the start errors are zero, which has no logarithm.
+        On a logarithmic axis both are log10 of the largest magnitude at the column.
         """
         x = self.window.x
+        if not log:
+            return per_column(x, self.low, self.high, edges)
         hold = self.window.repeats
         if not log_time:  # whole columns: nothing flickers while they move
             column = float(edges[-1] - edges[0]) / (len(edges) - 1)
             hold = column * math.ceil(hold / column)
-        known = np.where(x[:, None] > 0, np.fmax(abs(self.low), abs(self.high)), np.nan)
-        logs = np.log10(np.maximum(known, FLOOR))
-        return per_column(x, logs, logs, edges, hold)[1]
+        magnitude = np.maximum(np.fmax(abs(self.low), abs(self.high)), FLOOR)
+        # at the start errors are zero, which has no logarithm
+        logs = np.where(x[:, None] > 0, np.log10(magnitude), np.nan)
+        _, largest = per_column(x, logs, logs, edges, hold)
+        return largest, largest
 
 
 def time_chart(
-    window: Window, cast: Cast, shown: Shown, width: int, height: int, marks: Marks = Marks()
+    window: Window,
+    cast: Cast,
+    shown: Shown,
+    width: int,
+    height: int,
+    ghost: tuple[Window, Cast] | None = None,
+    changes: Sequence[tuple[float, str]] = (),
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 
@@ -133,59 +127,56 @@ def time_chart(
     largest magnitude of the half swing that ends there, so that zeros do not tear the lines; a long
     run as a whole has logarithmic time, too: steady growth is a slope.  A CROSSING is where one
     error passes another for the rest of the chart.  A ghost's same methods lie behind, fainter.
+    `changes` of the step: x [s] and a word.
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     rows = height - 2
-    runs = _runs(window, cast, shown, marks)
-    levels = _levels(marks, shown.log)
+    runs = _runs(window, cast, shown, ghost)
+    levels = _levels(shown)
     log_time = _has_log_time(window, shown)
     label_width = 5  # of decades
     if not shown.log:
-        y_axis = _linear_y_axis(runs, [*levels.values()], rows)
+        y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
     columns = width - 1 - ROOM - label_width
     x_axis = _time_axis(window, shown, columns, log_time)
     edges, times = _moments(x_axis, columns, log_time)
+    sides = [run.columns(edges, shown.log, log_time) for run in runs]
     if shown.log:
-        largest = [run.largest(edges, log_time) for run in runs]
-        y_axis = _log_y_axis(np.hstack(largest), [*levels.values()], rows)
-        sides = [(each, each) for each in largest]
-    else:
-        sides = [run.extremes(edges) for run in runs]
+        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
     plot = _Plot(Canvas(width, height), x_axis, y_axis, columns, rows, shown.log)
     plot.draw_axes()
-    plot.draw_marks(marks.changes, levels, log_time)
-    for run, side in zip(reversed(runs), reversed(sides), strict=True):
-        plot.draw_curves(run, *side)
-    low, high = sides[0]
+    plot.draw_marks(changes, levels, log_time)
+    for run, (low, high) in reversed([*zip(runs, sides, strict=True)]):
+        plot.draw_curves(run, low, high)
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
         for column, value in _crossings(high, times, window.repeats):
             plot.canvas.label(plot.left + column, plot.row(value), CROSSING, TEXT)
-    ends = (x_axis.low, x_axis.high)
     picture = plot.canvas.picture()
-    places = shown.places(cast)
-    return TimePlot(picture, places, plot.left, times.tolist(), values, ends, log_time)
+    ends = (x_axis.low, x_axis.high)
+    return TimePlot(picture, shown.places(cast), plot.left, times.tolist(), values, ends, log_time)
 
 
-def _runs(window: Window, cast: Cast, shown: Shown, marks: Marks) -> list[_Run]:
+def _runs(
+    window: Window, cast: Cast, shown: Shown, ghost: tuple[Window, Cast] | None
+) -> list[_Run]:
     """Return the curves of the run, and those of the ghost's same methods."""
 
-    def run(window: Window, cast: Cast, places: list[int], letters: str = "") -> _Run:
+    def run(window: Window, cast: Cast, keys: set[str]) -> _Run:
+        places = [place for place, method in enumerate(cast) if method.key in keys]
         low = window.low[shown.quantity][:, places]
         high = window.high[shown.quantity][:, places]
+        letters = "".join(cast[place].letter for place in places)
         return _Run(window, [inks(cast)[place] for place in places], letters, low, high)
 
-    methods = [cast[place] for place in shown.places(cast)]
-    letters = "".join(method.letter for method in methods)
-    runs = [run(window, cast, shown.places(cast), letters)]
-    if marks.ghost is not None:
-        keys = {method.key for method in methods}
-        behind = [place for place, method in enumerate(marks.ghost[1]) if method.key in keys]
-        ghost = run(*marks.ghost, behind)
-        runs.append(ghost._replace(inks=[faint(ink) for ink in ghost.inks]))
+    keys = {cast[place].key for place in shown.places(cast)}
+    runs = [run(window, cast, keys)]
+    if ghost is not None:
+        behind = run(*ghost, keys)
+        runs.append(behind._replace(inks=[faint(ink) for ink in behind.inks], letters=""))
     return runs
 
 
@@ -233,7 +224,7 @@ class _Plot:
         """Draw a dotted line at each change of the step, and at each reference value."""
         canvas = self.canvas
         for x, text in changes:
-            value = math.log10(max(x, 1e-9)) if log_time else x
+            value = math.log10(max(x, FLOOR)) if log_time else x
             if self.x_axis.low < value < self.x_axis.high:
                 at = 2 * (self.left + self.columns * float(self.x_axis.share(value)))
                 canvas.line(at, 0, at, 4 * self.rows, FRAME, dotted=True)
@@ -263,14 +254,13 @@ class _Plot:
                 continue
             at = int(known[-1])
             text = run.letters[place]
+            row = self.row(high[at, place])
             if beyond[at, place]:
                 at = int(np.flatnonzero(beyond[:, place] & ~gone[:, place])[-1])
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
                 row = self.rows - 1 if value < 0 and not self.log else 0
                 number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
                 text = f"{'↓' if row else '↑'}{text}{number}"
-            else:
-                row = row_at(float(top[at, place]), self.rows)
             self._write(self.left + at + 1, row, text, ink)
 
     def _write(self, column: int, row: int, text: str, ink: int) -> None:
@@ -287,40 +277,30 @@ def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
     return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)
 
 
-def _levels(marks: Marks, log: bool) -> dict[str, float]:
+def _levels(shown: Shown) -> dict[str, float]:
     """Return where on the vertical axis the reference line is, by its name, if there is one."""
-    if marks.line is None:
+    line = shown.line
+    if line is None or line.quantity != shown.quantity:
         return {}
-    value, name = marks.line
-    return {name: math.log10(abs(value)) if log else value}
+    return {line.name: math.log10(abs(line.value)) if shown.log else line.value}
 
 
 def _has_log_time(window: Window, shown: Shown) -> bool:
-    if not shown.log:
-        return False
     if shown.stretch is not None:
-        return shown.stretch.log_time
-    return shown.seconds is None and time_span(window.x, None, 1)[1] > LONG
-
-
-def _whole_span(window: Window, log_time: bool) -> tuple[float, float]:
-    """Return begin and end [s] of the axis of a whole run.
-
-    A logarithmic one begins at a power of ten two or three decades before the end.
-    """
-    begin, end = time_span(window.x, None, 1)
-    if log_time:
-        begin = max(10.0 ** math.floor(math.log10(end) - 2.3), min(window.repeats, end / 10))
-    return begin, end
+        return shown.log and shown.stretch.log_time
+    return shown.log and shown.seconds is None and bool((window.x > LONG).any())
 
 
 def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Axis:
+    """Return the axis of a stretch, of the last seconds, or of the whole run.
+
+    A logarithmic one begins at a power of ten two or three decades before the end.
+    """
+    begin, end = time_span(window.x, shown.seconds, columns)
     if shown.stretch is not None:
-        begin, end = shown.stretch.begin, shown.stretch.end
+        _, begin, end, _ = shown.stretch
     elif log_time:
-        begin, end = _whole_span(window, log_time)
-    else:
-        begin, end = time_span(window.x, shown.seconds, columns)
+        begin = max(10.0 ** math.floor(math.log10(end) - 2.3), min(window.repeats, end / 10))
     make = log_time_axis if log_time else time_axis
     return make(begin, end, columns, " run" if window.turned else "")
 
@@ -333,16 +313,14 @@ def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
     return half_columns[::2], half_columns[1::2]
 
 
-def _crossings(largest: Floats, times: Floats, repeats: float) -> list[tuple[int, float]]:
-    """Return (column, height) where one of two curves passes the other for good.
+def _crossings(largest: Floats, times: Floats, repeats: float) -> Iterator[tuple[int, float]]:
+    """Yield (column, height) where one of two curves passes the other for good.
 
     Before and after they are apart for half a swing, and for a tenth of the chart.
     """
-    crossings = []
-    for one, other in combinations(range(largest.shape[1]), 2):
-        apart = largest[:, one] - largest[:, other]
-        known = np.flatnonzero(~np.isnan(apart))
-        turns = np.flatnonzero(np.diff(np.sign(apart[known]))) + 1
+    for one, other in combinations(largest.T, 2):
+        known = np.flatnonzero(~np.isnan(one - other))
+        turns = np.flatnonzero(np.diff(np.sign((one - other)[known]))) + 1
         if not 1 <= len(turns) <= 2:
             continue
         at = int(known[turns[-1]])
@@ -350,46 +328,37 @@ def _crossings(largest: Floats, times: Floats, repeats: float) -> list[tuple[int
         after = times[known[-1]] - times[at]
         columns = min(turns[0], len(known) - turns[-1])
         if min(before, after) >= repeats and columns >= max(0.1 * len(largest), 2):
-            crossings.append((at, float(largest[at, [one, other]].mean())))
-    return crossings
+            yield at, float(one[at] + other[at]) / 2
 
 
-def _log_y_axis(largest: Floats, levels: list[float], rows: int) -> Axis:
+def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
     """Return an axis to the largest error from the smallest one but for those at the start."""
     limit = math.log10(LARGEST)
-    above = np.where((largest > math.log10(FLOOR)) & (largest <= limit), largest, np.nan)
-    known = above[:, ~np.isnan(above).all(axis=0)]
-    if not known.size:
+    known = [each[(each > math.log10(FLOOR)) & (each <= limit)] for each in largest.T]
+    known = [each for each in known if len(each)]
+    if not known:
         return log_axis(-4, 0, rows)
-    top = limit if (largest > limit).any() else float(np.nanmax(known))
-    ordered = np.sort(known, axis=0)  # what is not known comes last
-    below = (0.05 * (~np.isnan(known)).sum(axis=0, keepdims=True)).astype(np.intp)
-    bottom = float(np.take_along_axis(ordered, below, axis=0).min())
-    return log_axis(bottom, max([top, *levels]), rows)
+    top = limit if (largest > limit).any() else max(each.max() for each in known)
+    bottom = min(np.sort(each)[len(each) // 20] for each in known)
+    return log_axis(float(bottom), float(max([top, *levels.values()])), rows)
 
 
-def _linear_y_axis(runs: list[_Run], levels: list[float], rows: int) -> Axis:
+def _linear_y_axis(runs: list[_Run], levels: dict[str, float], rows: int) -> Axis:
     lowest = np.hstack([run.low.ravel() for run in runs])
     highest = np.hstack([run.high.ravel() for run in runs])
     if np.isnan(highest).all():
         return linear_axis(-1, 1, rows)
-    ends = [np.nanmin(lowest), np.nanmax(highest), *levels]
+    ends = [np.nanmin(lowest), np.nanmax(highest), *levels.values()]
     low, high = np.clip([min(ends), max(ends)], -LARGEST, LARGEST).tolist()
     return linear_axis(low, high, rows)
 
 
 def _outline(low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Return columns and heights of a short line through all columns' lows and highs.
-
-    What lies on the way between two points at the same height is left out.
-    """
+    """Return columns and heights of a line through all columns' lows and highs."""
     known = np.flatnonzero(~np.isnan(low))
     low = low[known]
     high = high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
-    heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
-    distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    x = np.repeat(known, 2)[distinct]
-    y = heights[distinct]
-    bends = np.concatenate([[True], (y[1:-1] != y[:-2]) | (y[1:-1] != y[2:]), [True]])[: len(y)]
-    return x[bends], y[bends]
+    first = np.where(falling, high, low)
+    last = np.where(falling, low, high)
+    return np.repeat(known, 2), np.stack([first, last], axis=1).ravel()

@@ -5,12 +5,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from engine.methods import USUAL_CAST
+from engine.scenes import Line
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, inks, size
 from tui.drawing.axes import per_column, time_span
 from tui.drawing.chart import Series, loglog_chart
 from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
-from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, Marks, time_chart
+from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from tui.playback.rows import Window
 from tui.playback.shown import Shown
 
@@ -198,10 +199,10 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross():
 def test_a_ghost_is_behind_the_same_methods():
     data = window([1, 2, 3], [1, 2, 3])
     shown = looking([0], seconds=20)
-    plot = time_chart(data, USUAL_CAST, shown, 60, 14, Marks(ghost=(data, USUAL_CAST)))
+    plot = time_chart(data, USUAL_CAST, shown, 60, 14, ghost=(data, USUAL_CAST))
     assert inks(plot.picture) == {0, FRAME, TEXT}
     higher = window([1, 2, 3], [10, 20, 30])
-    plot = time_chart(data, USUAL_CAST, shown, 60, 14, Marks(ghost=(higher, USUAL_CAST)))
+    plot = time_chart(data, USUAL_CAST, shown, 60, 14, ghost=(higher, USUAL_CAST))
     assert inks(plot.picture) == {0, FAINT, FRAME, TEXT}
 
 
@@ -217,8 +218,9 @@ def test_a_line_that_leaves_the_chart_ends_there_with_its_value():
 
 def test_a_change_of_the_step_and_a_reference_are_dotted_lines_with_words():
     t = np.arange(0.05, 20.0, 0.05)
-    marks = Marks(changes=[(10.0, "h 0.1")], line=(1000.0, "limit"))
-    plot = time_chart(window(t, t), USUAL_CAST, looking([0], seconds=20), 60, 14, marks)
+    shown = looking([0], seconds=20, line=Line("energy_error", 1000.0, "limit"))
+    changes = [(10.0, "h 0.1")]
+    plot = time_chart(window(t, t), USUAL_CAST, shown, 60, 14, changes=changes)
     lines = plot.picture.text.splitlines()
     column = plot.left + len(plot.times) // 2
     assert lines[11][column + 1 :].startswith("h 0.1")

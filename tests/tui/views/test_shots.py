@@ -8,7 +8,7 @@ import pytest
 from engine.scenes import SCENES
 from tests.tui.drawn import cells
 from tui.drawing.palette import FAINT, inks
-from tui.drawing.time_chart import Marks, time_chart
+from tui.drawing.time_chart import time_chart
 from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.views.phase.picture import method_points, phase_picture
@@ -28,10 +28,8 @@ class Seen:
         for third in range(round(3 * seconds) + 1):
             self.live.tick(third / 3)
         shown = self.shown = Shown().through(scene)
-        line = shown.line if shown.line and shown.line.quantity == shown.quantity else None
-        marks = Marks(line=line and (line.value, line.name))
         window = self.live.history.window(shown.seconds)
-        self.chart = time_chart(window, scene.cast, shown, *CHARTS[size], marks).picture
+        self.chart = time_chart(window, scene.cast, shown, *CHARTS[size]).picture
         self.bottom = CHARTS[size][1] - 3
 
     def heights(self, letter):

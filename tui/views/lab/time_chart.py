@@ -106,7 +106,7 @@ class TimeChart(Pane):
         return self.plot.picture
 
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
-        from tui.drawing.time_chart import Marks, time_chart
+        from tui.drawing.time_chart import time_chart
 
         until = sample.t
         back = look.seconds
@@ -119,11 +119,8 @@ class TimeChart(Pane):
         ghost = None
         if source.ghost is not None:
             ghost = source.ghost.window(until, back), source.ghost.scene.cast
-        line = None
-        if look.line and look.line.quantity == look.quantity:
-            line = look.line.value, look.line.name
-        marks = Marks(ghost, _step_changes(source.changes), line)
-        return time_chart(window, self.cast, look, *self.room, marks)
+        changes = _step_changes(source.changes)
+        return time_chart(window, self.cast, look, *self.room, ghost=ghost, changes=changes)
 
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
         room = self.room.width - 6
