@@ -191,9 +191,9 @@ def small_studies(library: Path) -> Iterator[None]:
 
 
 async def still(theatre: Theatre) -> None:
-    """Wait for what was asked for, in other threads, too; but not for charts and for answers to dialogs."""
+    """Wait for what was asked for, in other threads, too; but not for charts."""
     await theatre.pilot.pause(0)
-    while not all(worker.is_finished for worker in theatre.app.workers if worker.group != "form"):
+    while not all(worker.is_finished for worker in theatre.app.workers):
         await theatre.pilot.pause(0.001)
 
 

@@ -18,7 +18,7 @@ from textual.screen import ModalScreen, ScreenResultType
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
-from engine.methods import METHODS, Cast, Method
+from engine.methods import METHODS, Method
 from engine.models import PARAMETERS
 from engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
 from tui.cli.options import angle, number
@@ -138,8 +138,8 @@ class _Paged(OptionList):
             super().action_page_down()  # type: ignore[no-untyped-call]
 
 
-class SceneList(Form[str | None]):
-    """Returns the name of the scene to start, or None."""
+class SceneList(Form[str]):
+    """Asks for the scene to start, and returns its name."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)")]
 
@@ -166,8 +166,8 @@ class SceneList(Form[str | None]):
         self.dismiss(event.option_id)
 
 
-class CastForm(Form[Cast | None]):
-    """Returns the methods to start with, in the order in which they were taken, or None."""
+class CastForm(Form[Scene]):
+    """Returns the scene with the methods in the order in which they were taken."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,M,shift+m,q", "dismiss(None)"),
@@ -177,6 +177,7 @@ class CastForm(Form[Cast | None]):
 
     def __init__(self, scene: Scene) -> None:
         super().__init__()
+        self._scene = scene
         known = dict.fromkeys((*METHODS, *scene.cast))
         self._methods = [each for each in known if scene.model in each.models]
         self._title = f"Methods for the model {scene.model}, one to {MAX_METHODS}"
@@ -218,7 +219,7 @@ class CastForm(Form[Cast | None]):
 
     def action_start(self) -> None:
         if self.cast:
-            self.dismiss(self.cast)
+            self.dismiss(self._scene.with_cast(self.cast))
         else:
             self.notify("Take at least one method.")
 
@@ -237,8 +238,8 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
 """The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
 
 
-class StartForm(Form[Scene | None]):
-    """Returns the scene to start, or None."""
+class StartForm(Form[Scene]):
+    """Returns the scene with other numbers."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "dismiss(None)"),

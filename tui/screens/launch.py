@@ -5,7 +5,6 @@ import gc
 import os
 import shlex
 import sys
-from asyncio import CancelledError
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
@@ -138,10 +137,8 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
         options.theme = theme if theme == "ansi" else background() or theme
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(screen, terminal)
-    result: Exit | BaseException | None = None
     try:
-        with suppress(CancelledError):  # of a dialog that closes while Textual 8.2 does
-            result = app.run(mouse=terminal.mouse)
+        result = app.run(mouse=terminal.mouse)
     finally:
         app.finish()
     codes = [say_goodbye(each.source) for each in app.source_screens]

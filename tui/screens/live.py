@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from textual import work
 from textual.binding import Binding, BindingType
+from textual.screen import ModalScreen
 from textual.widget import Widget
 
 from engine.methods.own import OwnMethodError
@@ -187,27 +187,33 @@ class LiveScreen(SourceScreen):
 
     # Forms; they are imported when they are needed
 
-    @work(group="form")
-    async def action_scenes(self) -> None:
+    def _ask(self, form: ModalScreen[Any], use: Callable[[Any], None]) -> None:
+        """Lay a form over the lab, and use its answer unless it is cancelled.
+
+        No worker waits for the answer: as the app ends, Textual would have it wait for the end of
+        this screen, and then cancel both.
+        """
+
+        def answered(answer: Any) -> None:
+            if answer is not None:
+                use(answer)
+
+        self.app.push_screen(form, answered)
+
+    def action_scenes(self) -> None:
         from tui.screens.dialogs import SceneList
 
-        if name := await self.app.push_screen_wait(SceneList(self.live.scene.name)):
-            self.action_start_scene(name)
+        self._ask(SceneList(self.live.scene.name), self.action_start_scene)
 
-    @work(group="form")
-    async def action_start_values(self) -> None:
+    def action_start_values(self) -> None:
         from tui.screens.dialogs import StartForm
 
-        if scene := await self.app.push_screen_wait(StartForm(self._scene_now())):
-            self.start(scene)
+        self._ask(StartForm(self._scene_now()), self.start)
 
-    @work(group="form")
-    async def action_methods(self) -> None:
+    def action_methods(self) -> None:
         from tui.screens.dialogs import CastForm
 
-        scene = self._scene_now()  # another may run by the answer
-        if cast := await self.app.push_screen_wait(CastForm(scene)):
-            self.start(scene.with_cast(cast))
+        self._ask(CastForm(self._scene_now()), self.start)
 
     def _scene_now(self) -> Scene:
         return self.live.scene.altered(h=self.live.stepping.smallest)

@@ -105,3 +105,8 @@ async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(
             await asyncio.sleep(0.3)
     assert set(arranged) == {Size(30, 12)}
     assert len(arranged) < 10
+
+
+async def test_the_lab_ends_quietly_while_a_form_opens():
+    async with lab() as theatre:
+        theatre.app.call_later(theatre.stage.action_start_values)
