@@ -5,16 +5,12 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 from traceback import walk_tb
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from textual import command
 from textual.app import App, ScreenStackError
 from textual.binding import Binding, BindingType
-from textual.command import CommandPalette
 from textual.events import Event
 from textual.filter import LineFilter
-from textual.notifications import SeverityLevel
-from textual.reactive import var
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
@@ -23,19 +19,16 @@ from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
-from tui.terminal.options import CHARACTER_SETS, SMALLEST, USUAL, CharacterSet, TerminalOptions
+from tui.terminal.options import SMALLEST, USUAL, TerminalOptions
 from tui.terminal.signals import Job, SignalThread
 
-WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
-HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
+WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
+HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
 """The classes of a terminal's size in the style sheet, each from so many columns or rows on."""
 
 
 class PenduApp(App[Exit | BaseException]):
-    """Shows the lab or a replay.
-
-    Returns the exit code, the error that ended it, or None if the user quit.
-    """
+    """Returns the exit code, the error that ended it, or None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
@@ -47,8 +40,6 @@ class PenduApp(App[Exit | BaseException]):
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
-    character_set: var[CharacterSet] = var("braille", init=False)
-
     def __init__(self, screen: SourceScreen, terminal: TerminalOptions = USUAL) -> None:
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
@@ -58,14 +49,14 @@ class PenduApp(App[Exit | BaseException]):
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme
         self.fps = terminal.fps
-        self.set_reactive(PenduApp.character_set, terminal.character_set)
+        self.character_filter = CharacterSetFilter(terminal.character_set)
         self.source_screens = [screen]
         self._last_notice = ""
         self._job = Job(self.suspend)
 
     @property
     def source_screen(self) -> SourceScreen:
-        """The screen that follows the clock; a text or a form may lie over it."""
+        """The screen that follows the clock; a dialog may lie over it."""
         return self.source_screens[-1]
 
     def get_default_screen(self) -> Screen[None]:
@@ -80,39 +71,31 @@ class PenduApp(App[Exit | BaseException]):
             SignalThread(loop, self.action_interrupt, self.finish, job).start()
 
     async def on_event(self, event: Event) -> None:
-        """Survive a key that breaks Textual's command palette: an error would end the app."""
+        """Survive a key that breaks Textual's palette or list: an error would end the app."""
         try:
             await super().on_event(event)
         except Exception as error:
-            if not is_of_palette(error):
+            if not is_of_list(error):
                 raise
             self._handle_exception(error)
 
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it.
 
-        The command palette is only closed: Textual 8.2's stumbles over keys that come faster than
-        it opens and closes.
+        Textual 8.2's palette and lists stumble over keys that come faster than they open and close;
+        only they are closed.
         """
         if isinstance(error, ScreenStackError):
             return  # a key came when the screens were gone
-        if is_of_palette(error):
-            if isinstance(self.screen, CommandPalette):
+        if is_of_list(error):
+            if self.screen is not self.source_screen:
                 self.call_later(self.screen.dismiss)
         elif self.is_headless:
             super()._handle_exception(error)
         elif self.return_code is None:  # else the program is leaving
             self.exit(error)
 
-    def notify(
-        self,
-        message: str,
-        *,
-        title: str = "",
-        severity: SeverityLevel = "information",
-        timeout: float | None = None,
-        markup: bool = True,
-    ) -> None:
+    def notify(self, message: str, **options: Any) -> None:
         """Replace an equal notice: a key that is held down shall cover one line at most.
 
         No notice has markup: units stand in brackets.
@@ -120,10 +103,9 @@ class PenduApp(App[Exit | BaseException]):
         if message == self._last_notice:
             self.clear_notifications()
         self._last_notice = message
-        super().notify(message, title=title, severity=severity, timeout=timeout, markup=False)
+        super().notify(message, **{**options, "markup": False})
 
     def finish(self) -> None:
-        """Finish the recording."""
         self.source_screen.source.close()
 
     def action_interrupt(self) -> None:
@@ -148,19 +130,15 @@ class PenduApp(App[Exit | BaseException]):
         self.theme = name
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        ours = _FILTERS[self.character_set]
-        return [*super().get_line_filters(), *([ours] if ours.enabled else [])]
+        filters = [*super().get_line_filters(), self.character_filter]
+        return [each for each in filters if each.enabled]
 
 
-def is_of_palette(error: BaseException) -> bool:
-    """Return whether an error, perhaps of a worker, was raised in Textual's command palette."""
+def is_of_list(error: BaseException) -> bool:
+    """Return whether an error, perhaps of a worker, was raised in Textual's palette or list."""
     raised = getattr(error, "error", error)
-    codes = (frame.f_code for frame, _ in walk_tb(raised.__traceback__))
-    return any(code.co_filename == command.__file__ for code in codes)
-
-
-_FILTERS = {character_set: CharacterSetFilter(character_set) for character_set in CHARACTER_SETS}
-_ANSI = BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections
+    modules = {frame.f_globals["__name__"] for frame, _ in walk_tb(raised.__traceback__)}
+    return not modules.isdisjoint({"textual.command", "textual.widgets._option_list"})
 
 
 def _theme(name: str, colours: Palette) -> Theme:
@@ -168,6 +146,9 @@ def _theme(name: str, colours: Palette) -> Theme:
         return colour if colour.startswith("#") else f"ansi_{colour}"  # Textual's names of the 16
 
     background = called(colours.background)
+    variables = {"frame": called(colours.frame)}
+    if name == "ansi":
+        variables |= BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections
     return Theme(
         name=name,
         dark=name != "light",
@@ -178,5 +159,5 @@ def _theme(name: str, colours: Palette) -> Theme:
         surface=background,
         panel=background,
         error=called(colours.warn),
-        variables={**(_ANSI if name == "ansi" else {}), "frame": called(colours.frame)},
+        variables=variables,
     )

@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
 from itertools import groupby, zip_longest
 from typing import ClassVar
 
@@ -35,8 +34,6 @@ COLUMN_WIDTH = 36  # of a key and what it does
 class Once(SizedScreen[ScreenResultType]):
     """A screen that closes once, however fast the clicks and keys come."""
 
-    _dismissed = False
-
     def on_mount(self) -> None:
         """With reduced motion no cursor blinks; Textual lets it."""
         for field in self.query(Input):
@@ -44,18 +41,13 @@ class Once(SizedScreen[ScreenResultType]):
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
         """Close with a result, once; a second call would close the screen below."""
-        if self._dismissed or self.app.screen is not self:
+        if self.app.screen is not self:
             return AwaitComplete()
-        self._dismissed = True
         return super().dismiss(result)
 
 
-class Modal(ModalScreen[ScreenResultType], Once[ScreenResultType]):
-    """A screen over the lab."""
-
-
-class Form(Modal[ScreenResultType]):
-    """A modal that asks for something; a click beside it cancels."""
+class Form(ModalScreen[ScreenResultType], Once[ScreenResultType]):
+    """Asks for something over the lab; a click beside it cancels."""
 
     def on_click(self, event: events.Click) -> None:
         if event.widget is self:
@@ -65,7 +57,7 @@ class Form(Modal[ScreenResultType]):
 # Texts, and the help
 
 
-class TextScreen(Modal[None]):
+class TextScreen(ModalScreen[None], Once[None]):
     """A text.  Esc closes it, and so do the keys that open one."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -126,18 +118,6 @@ def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> st
 # Forms
 
 
-class _Paged(OptionList):
-    """Textual 8.2's list knows no pages before its first paint."""
-
-    def action_page_up(self) -> None:
-        with suppress(KeyError):
-            super().action_page_up()  # type: ignore[no-untyped-call]
-
-    def action_page_down(self) -> None:
-        with suppress(KeyError):
-            super().action_page_down()  # type: ignore[no-untyped-call]
-
-
 class SceneList(Form[str]):
     """Asks for the scene to start, and returns its name."""
 
@@ -148,7 +128,7 @@ class SceneList(Form[str]):
         self._current = current
 
     def compose(self) -> ComposeResult:
-        listed = _Paged(id="scenes", markup=False)
+        listed = OptionList(id="scenes", markup=False)
         listed.border_title = "Scenes, with what to watch"
         listed.border_subtitle = "Enter starts, Esc cancels"
         for group, scenes in GROUPS.items():
@@ -184,7 +164,7 @@ class CastForm(Form[Scene]):
         self.cast = scene.cast
 
     def compose(self) -> ComposeResult:
-        listed = _Paged(*map(self._line, self._methods), id="cast")
+        listed = OptionList(*map(self._line, self._methods), id="cast")
         listed.border_title = self._title
         listed.border_subtitle = "Space takes or leaves a method, Enter starts, Esc cancels"
         yield listed

@@ -9,6 +9,7 @@ from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tests.tui.monkey import small_studies
 from tui.drawing.palette import PALETTES, TEXT
+from tui.terminal.character_sets import CharacterSetFilter
 from tui.views import VIEWS
 
 
@@ -47,7 +48,7 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
 
 async def test_forms_help_and_the_palette_are_ascii_too():
     async with lab() as theatre:
-        theatre.app.character_set = "ascii"
+        theatre.app.character_filter = CharacterSetFilter("ascii")
         for keys in (["i"], ["P"], ["question_mark"], ["ctrl+p", *"theme"]):
             await theatre.press(*keys)
             await theatre.pilot.pause(0.3)
