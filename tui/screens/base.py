@@ -31,7 +31,6 @@ from tui.words.plain_text import description
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
 MAX_UNDOS = 30  # each may hold a run
-FOOTER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
 
 _SPEED = Binding.Group("half, double speed")
 _STEPS = Binding.Group("one step back, forward")
@@ -138,7 +137,7 @@ class SourceScreen(SizedScreen[None]):
         yield TooSmall()
         yield from self.more()
         yield self.line(InsightLine())
-        yield KeyLine(FOOTER)
+        yield KeyLine()
 
     def more(self) -> Iterable[Widget]:
         """The widgets above the insight line."""

@@ -2,7 +2,6 @@
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 from itertools import groupby
 from typing import NamedTuple
 
@@ -26,7 +25,6 @@ from tui.words.insight import insight_text
 from tui.words.numbers import about, factor, seconds, start, two_digits
 from tui.words.tour import Tour
 
-SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
 """The ink of LIVE and REPLAY, and of the tour's titles."""
 
@@ -91,8 +89,10 @@ def _time(source: Source) -> Iterator[Segment]:
         yield Segment(12, "stands still", WARN)
     elif playhead.paused:
         yield Segment(12, "paused ")
+    elif source.stepping.h < 0:
+        yield Segment(12, "backwards")
     else:
-        yield Segment(12, "backwards" if source.stepping.h < 0 else "running")
+        yield Segment(12, "running")
     speed = speed_text(playhead.speed)
     yield Segment(7, speed)
     if (share := source.pace) < 0.99:
@@ -103,12 +103,18 @@ def _time(source: Source) -> Iterator[Segment]:
 def _stepping(source: Source) -> Iterator[Segment]:
     stepping = source.stepping
     fastest = source.scene.equations.fastest
-    warning = limit_warning(source.scene.cast, [abs(h) * fastest for h in stepping.own])
-    yield Segment(11, f"h {stepping.h:.4g} s{' equal cost' if stepping.equal_cost else ''}")
-    yield Segment(10, f"z {abs(stepping.h) * fastest:.3g}", WARN if warning else TEXT)
-    if warning:
+    h = f"h {stepping.h:.4g} s"
+    z = f"z {abs(stepping.h) * fastest:.3g}"
+    if stepping.equal_cost:
+        h += " equal cost"
+    yield Segment(11, h)
+    if warning := limit_warning(source.scene.cast, [abs(h) * fastest for h in stepping.own]):
+        yield Segment(10, z, WARN)
         yield Segment(9, warning, WARN)
-    is_slow = abs(stepping.h / source.playhead.speed) >= SLOW
+    else:
+        yield Segment(10, z)
+    # with a second or more from step to step, the lab would seem to stand still
+    is_slow = abs(stepping.h / source.playhead.speed) >= 1.0
     if is_slow and not source.playhead.paused and source.next_step is not None:
         yield Segment(9, f"next step in {about(int(max(source.next_step, 0.0)))}")
 
@@ -128,9 +134,11 @@ def _recording(source: Source) -> Iterator[Segment]:
 
 def speed_text(speed: float) -> str:
     """Return as "1×", "1/8×", "1024×", "-2×"."""
-    sign = "-" if speed < 0 else ""
-    size = abs(speed)
-    return f"{sign}{factor(size)}×" if size >= 1 else f"{sign}1/{factor(1 / size)}×"
+    if speed < 0:
+        return f"-{speed_text(-speed)}"
+    if speed < 1:
+        return f"1/{factor(1 / speed)}×"
+    return f"{factor(speed)}×"
 
 
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
@@ -156,22 +164,23 @@ class InsightLine(Pane):
         width, height = self.room
         status = source.recording_status
         watch = source.scene.watch
+        text = insight_text(source, self.shown.hidden)
+        ink = TEXT
         if status is not None and status.failed:
-            text, ink = f"Not recording: {status.failed}", WARN
-        else:
-            text, ink = insight_text(source, self.shown.hidden), TEXT
-        if height < 2 or not watch:
-            return Picture([[(f" {line}", ink)] for line in fitted(text, width - 2, height)])
-        rest = "" if text == watch else text
-        lines = [(line, TEXT) for line in fitted(watch, width - 2, 1)]
-        lines += [(line, ink) for line in fitted(rest, width - 2, 1)]
+            text = f"Not recording: {status.failed}"
+            ink = WARN
+        lines = []
+        if watch and height > 1:
+            lines = [(line, TEXT) for line in fitted(watch, width - 2, 1)]
+            height -= 1
+        if text != watch or not lines:
+            lines += [(line, ink) for line in fitted(text, width - 2, height)]
         return Picture([[(f" {line}", each)] for line, each in lines])
 
 
-@lru_cache(maxsize=8)  # a sentence stays for many seconds
 def fitted(text: str, width: int, height: int) -> list[str]:
     """Return the text on `height` lines; where it does not fit it ends in …."""
-    return textwrap.wrap(text, max(width, 2), max_lines=max(height, 1), placeholder=" …")
+    return textwrap.wrap(text, max(width, 2), max_lines=height, placeholder=" …")
 
 
 FORWARD = {
@@ -215,15 +224,13 @@ def key_text(binding: Binding) -> str:
 
 
 class KeyLine(CellWidget):
-    """The keys that are needed now, in an order of their hints; a click on a key presses it.
+    """The keys that are needed now; a click on one presses it."""
 
-    The bindings of a focused pane come where `order` has "".
-    """
+    ORDER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
+    """Hints in their order; "" stands for all of a focused pane."""
 
-    def __init__(self, order: Sequence[str]) -> None:
-        super().__init__()
-        self._order = order
-        self._places: list[tuple[int, int, str]] = []  # first column, end, key
+    _keys: Sequence[str] = ()
+    """The key that a click on each column presses."""
 
     def on_mount(self) -> None:
         self.screen.bindings_updated_signal.subscribe(self, lambda _: self.draw())
@@ -240,44 +247,42 @@ class KeyLine(CellWidget):
                 by_action.setdefault(each.binding.action, each)
 
         def place(each: ActiveBinding) -> int:
-            hint = each.binding.description if isinstance(each.node, (Screen, App)) else ""
-            return self._order.index(hint) if hint in self._order else len(self._order)
+            hint = ""
+            if isinstance(each.node, (Screen, App)):
+                hint = each.binding.description
+            return [*self.ORDER, hint].index(hint)
 
         return sorted(by_action.values(), key=place)
 
     def _row(self) -> Row:
         """Return what fits; grouped keys share a hint."""
         row: list[tuple[str, int]] = []
-        self._places = []
-        column = 0
+        columns: list[str] = []
         grouped = groupby(self._needed(), key=lambda each: each.binding.group or each.binding)
         for _, members in grouped:
-            keys = [each.binding for each in members]
-            hint = f"{keys[0].description} "
-            texts = [f" {key_text(key)}" for key in keys]
-            texts[-1] += " "
-            if column + sum(map(cell_len, texts)) + cell_len(hint) > self.room.width:
+            bindings = [each.binding for each in members]
+            text = "".join(f" {key_text(each)}" for each in bindings)
+            hint = f"{bindings[0].description} "
+            if len(columns) + len(text) + 1 + len(hint) > self.room.width:
                 continue
-            for binding, text in zip(keys, texts, strict=True):
-                self._places.append((column, column + cell_len(text), binding.key))
-                column += cell_len(text)
-            row += [("".join(texts), TEXT), (hint, QUIET)]
-            column += cell_len(hint)
-            self._places[-1] = (self._places[-1][0], column, keys[-1].key)
+            row += [(f"{text} ", TEXT), (hint, QUIET)]
+            for each in bindings:
+                columns += [each.key] * (1 + len(key_text(each)))
+            columns += [bindings[-1].key] * (1 + len(hint))
+        self._keys = columns
         return row
 
     def on_click(self, event: events.Click) -> None:
-        for first, end, key in self._places:
-            if first <= event.x < end:
-                self.app.simulate_key(key)
+        if event.x < len(self._keys):
+            self.app.simulate_key(self._keys[event.x])
 
 
 class TooSmall(CellWidget):
-    """Says the size there is and the size it takes, in place of everything; the keys still work."""
+    """Stands in place of everything; the keys still work."""
 
     def draw(self) -> None:
         columns, rows = self.room
-        needed = "x".join(map(str, SMALLEST))
+        needed = "{}x{}".format(*SMALLEST)
         text = (
             f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
         )
