@@ -43,7 +43,6 @@ class Canvas:
         self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
 
     def copy(self) -> Self:
-        """Return another canvas with the same dots and words, to draw more on."""
         copied = copy.copy(self)
         copied._bits = self._bits[:]
         copied._inks = self._inks[:]
@@ -51,7 +50,6 @@ class Canvas:
         return copied
 
     def points(self, points: Iterable[tuple[float, float]], ink: int) -> None:
-        """Set the dots at (x, y)."""
         columns = self.columns
         width = self.width
         height = self.height
@@ -166,7 +164,6 @@ class Canvas:
         return self._inks[cell] + NOBODY if letter is None else letter[1]
 
     def picture(self) -> Picture:
-        """Return what has been drawn so far."""
         text, _ = codecs.charmap_decode(self._bits, "strict", _BRAILLE)
         inks = bytes(self._inks)
         if self._letters:

@@ -47,7 +47,6 @@ class CellWidget(Widget):
         self.draw()
 
     def show(self, picture: Picture) -> None:
-        """Show a picture in place of the one before."""
         changed = picture.changed_rows(self._picture)
         self._picture = picture
         self._changed.update(changed)
@@ -56,13 +55,11 @@ class CellWidget(Widget):
 
     @property
     def text(self) -> str:
-        """What is shown, without colours."""
         return self._picture.text
 
     def refresh(
         self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False
     ) -> Self:
-        """Paint these regions anew, or everything."""
         if not regions:
             self._crop = None
         return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
@@ -105,7 +102,6 @@ class CellWidget(Widget):
         return segments
 
     def style_of(self, ink: int, base: Style) -> Style:
-        """Return how characters in an ink look; `base` is the widget's own style."""
         return base if ink == NOBODY else base + Style(color=palette(self.app.theme).colour(ink))
 
     def notify_style_update(self) -> None:

@@ -50,7 +50,6 @@ class LogLog:
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
-        """Return axes that fit all points, with marks, for this many columns and rows."""
         rows = height - 4
         points = np.concatenate(
             [np.empty((0, 2)), *(one.logs() for one in series if not one.dotted)]

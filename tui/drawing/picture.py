@@ -29,13 +29,11 @@ class Picture:
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self.rows)
 
     def changed_rows(self, before: "Picture") -> list[int]:
-        """Return the rows that differ from those of another picture."""
         pairs = zip_longest(before.rows, self.rows)
         return [y for y, (old, new) in enumerate(pairs) if old != new]
 
     @classmethod
     def of_line(cls, text: str, ink: Ink = NOBODY) -> Self:
-        """Return a single row in one ink."""
         return cls((((text, ink),),))
 
     @classmethod

@@ -35,8 +35,6 @@ CROSSING = "×"
 
 
 class Reading(NamedTuple):
-    """What a chart shows at a moment."""
-
     t: float  # s
     values: list[float]  # in the order of `places`; nan where not known
 
@@ -163,7 +161,6 @@ def time_chart(
 def _runs(
     window: Window, cast: Cast, shown: Shown, ghost: tuple[Window, Cast] | None
 ) -> list[_Run]:
-    """Return the curves of the run, and those of the ghost's same methods."""
 
     def run(window: Window, cast: Cast, keys: set[str]) -> _Run:
         places = [place for place, method in enumerate(cast) if method.key in keys]
@@ -221,7 +218,6 @@ class _Plot:
     def draw_marks(
         self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
     ) -> None:
-        """Draw a dotted line at each change of the step, and at each reference value."""
         canvas = self.canvas
         for x, text in changes:
             value = math.log10(max(x, FLOOR)) if log_time else x
@@ -273,7 +269,6 @@ class _Plot:
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
-    """Return a sentence in place of a chart."""
     return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)
 
 

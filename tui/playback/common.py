@@ -29,15 +29,10 @@ class Playhead(NamedTuple):
     def at(self, now: float) -> "Playhead":
         """Return the playhead at `now` [s] of a clock, which moves nothing by going back."""
         elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
-        return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
-
-    def moved_to(self, position: float) -> "Playhead":
-        return self._replace(position=position)
+        return self._replace(position=self.position + elapsed * self.speed, seen=now)
 
 
 class RecordingStatus(NamedTuple):
-    """The recording that is being written, or replayed."""
-
     name: str
     seconds: float  # of the recording clock
     failed: str | None = None  # why nothing is recorded right now, in a sentence
@@ -68,12 +63,13 @@ class Playback(ABC):
     """The run on screen up to the sample; after a jump, a replay's past grows for some frames."""
     pace: float = 1.0
     """1: in real time; below, the processor cannot follow."""
+    knows_past = True
+    """Whether the whole past of the sample is at hand."""
     failure: str | None = None
     """Why the run stands still: what is wrong with a user's method, in a sentence."""
 
     @property
     def sample(self) -> Sample:
-        """All methods at the playhead."""
         return self.history.sample
 
     @property
@@ -93,19 +89,12 @@ class Playback(ABC):
     @property
     @abstractmethod
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead."""
-
-    @property
-    def later_marks(self) -> Sequence[Event]:
-        """Marks up to the playhead that are not in the recording."""
-        return ()
+        """What was done up to the playhead, marks set in a replay last."""
 
     @property
     def is_marked(self) -> bool:
-        """Whether the sample on screen has a mark."""
         here = ("mark", self.sample.run, self.sample.step)
-        events = (*self.events, *self.later_marks)
-        return any((event.kind, event.run, event.step) == here for event in events)
+        return any((event.kind, event.run, event.step) == here for event in self.events)
 
 
 def doubled(speed: float, times: int) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tui.playback.history import History
+from tui.playback.history import History, changes_of
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -16,14 +16,10 @@ MAX_ROWS = 1 << 14  # of a recording, 9 minutes of the usual samples, read in a 
 
 
 class Ghost:
-    """A run that ended."""
-
     def __init__(self, name: str, history: History) -> None:
         self.scene = history.scene
-        steps = [f"{abs(change.stepping.h):.4g}" for change in history.changes]
-        sizes = list(dict.fromkeys(steps))
-        more = ["…"] if len(sizes) > 3 else []
-        self._step = f"h {', '.join(sizes[:3] + more)} s"
+        steps = dict.fromkeys(f"{abs(change.stepping.h):.4g}" for change in history.changes)
+        self._step = f"h {', '.join(steps)} s"
         self._name = name
         self._window = history.window()
         recent = history.rows.recent
@@ -37,7 +33,7 @@ class Ghost:
     def recorded(cls, recording: "Recording") -> "Ghost":
         """The longest run of a recording, until time turns or MAX_ROWS are read."""
         run = max(recording.runs, key=lambda run: abs(run.t))
-        history = History.recorded(run, MAX_ROWS)
+        history = History(run.scene, changes_of(run), MAX_ROWS)
         known = recording.samples_between(run.begin, run.end)
         own = (sample for _, sample in known if sample.run == run.number)
         for sample in islice(own, MAX_ROWS):
@@ -47,7 +43,6 @@ class Ghost:
         return cls(recording.path.stem, history)
 
     def label(self, room: int) -> str:
-        """What it is: "dim: swing, h 0.1 s"."""
         text = f"dim: {self._name}, {self._step}"
         return text if len(text) <= room else f"dim: {self._step}"
 

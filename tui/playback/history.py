@@ -6,7 +6,7 @@ of a frame is the last point of both, and leaves with the frame.
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping, SteppingChange, change_before
@@ -18,6 +18,18 @@ if TYPE_CHECKING:
     from tui.playback.rows import Floats, Row, Rows, Window  # NumPy can wait for the first paint
 
 MAX_WAITING = 64  # rows that are shown without NumPy
+TRAIL = 300  # samples, ten seconds
+
+
+def changes_of(run: "Run") -> list[SteppingChange]:
+    """Return how a recorded run steps, its start's stepping first."""
+    cast = run.scene.cast
+    changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=cast))]
+    for _, event in run.events:
+        if event.h is not None:
+            stepping = Stepping(event.h, event.equal_cost, cast)
+            changes.append(SteppingChange(event.step, event.t, stepping))
+    return changes
 
 
 class History:
@@ -32,37 +44,34 @@ class History:
         self.scene = scene
         self.exact = scene.exact()
         self.changes = changes
-        self.returned: Sample | None = None
         self._model = scene.equations
         self._reference = self._model.reference(scene.theta, scene.omega)
         self._extra = [each.name for each in self._model.quantities()]
         common = ("energy_error", "theta_error", "shadow_error")
-        self._quantities: tuple[Quantity, ...] = (*common, *self._extra, "energy")
-        self._repeats = (self.exact.period or 0.0) / (2 if self.exact.regime == "libration" else 1)
+        self._quantities = (*common, *self._extra, "energy")
+        self._repeats = self.exact.period or 0.0
+        if self.exact.regime == "libration":
+            self._repeats /= 2
         self._capacity = capacity
         self._current: Row | None = None
         self._last_row = -1  # its step
         self._waiting: list[Row] = []
-        self._trails: tuple[Row, int, Floats] | None = None
+        self._trails: tuple[Row, Floats] | None = None
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
-
-    @classmethod
-    def recorded(cls, run: "Run", capacity: int = 4096) -> Self:
-        """Return an empty history of a recorded run."""
-        cast = run.scene.cast
-        changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=cast))]
-        for _, event in run.events:
-            if event.h is not None:
-                stepping = Stepping(event.h, event.equal_cost, cast)
-                changes.append(SteppingChange(event.step, event.t, stepping))
-        return cls(run.scene, changes, capacity)
 
     @property
     def step(self) -> int:
         """The step of the sample; -1 before the first."""
         return self._current[0] if self._current else -1
+
+    @property
+    def returned(self) -> Sample | None:
+        """The sample up to now with which time was back at its start."""
+        if self._returned is None or self._returned.step > self.step:
+            return None
+        return self._returned
 
     def add(self, sample: Sample, is_row: bool = True) -> None:
         """Show a sample, and remember it if it is a row.
@@ -71,14 +80,15 @@ class History:
         everything from its step on: that run goes on from this one's past.
         """
         if self._current and sample.run != self.sample.run:
-            self._truncate(sample.step - 1)
+            self._last_row = sample.step - 1
+            self.rows.truncate(self._last_row)
+            if self._returned and self._returned.step > self._last_row:
+                self._returned = None
         is_new = sample.step > self._last_row
         row = self._row(sample, is_row and is_new)
         h = change_before(self.changes, sample.step).stepping.h
         if is_new and sample.step and abs(sample.t) < 1e-6 * abs(h):  # t is rounded
             self._returned = sample
-        is_behind = self._returned is None or self._returned.step > sample.step
-        self.returned = None if is_behind else self._returned
         self.sample = sample
         self._current = row
         if is_row and is_new:
@@ -92,10 +102,12 @@ class History:
         readings = sample.readings
         exact = self.exact.at(sample.t)
         states = [(reading.theta, reading.omega) for reading in readings]
-        others = [[self._model.theta_error(theta, exact.theta) for theta, _ in states]]
-        others.append(self._modified_energy_errors(sample))
-        others += [[reading.extra[name] for reading in readings] for name in self._extra]
-        others.append([reading.energy for reading in readings])
+        others = [
+            [self._model.theta_error(theta, exact.theta) for theta, _ in states],
+            self._modified_energy_errors(sample),
+            *([reading.extra[name] for reading in readings] for name in self._extra),
+            [reading.energy for reading in readings],
+        ]
         low = high = [reading.energy_error for reading in readings]
         if with_extremes:
             low = [reading.energy_error_low for reading in readings]
@@ -139,12 +151,6 @@ class History:
             # it overflows where H does not
             energies.append(energy if math.isfinite(energy) else math.nan)
         return energies
-
-    def _truncate(self, step: int) -> None:
-        self.rows.truncate(step)
-        self._last_row = self.rows.last_step(self.rows.count)
-        if self._returned is not None and self._returned.step > step:
-            self._returned = None
 
     @property
     def rows(self) -> "Rows":
@@ -195,20 +201,20 @@ class History:
         largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
         return largest, window.high["theta_error"][count - 1].tolist()
 
-    def trails(self, length: int) -> "Floats":
-        """Return theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
+    @property
+    def trails(self) -> "Floats":
+        """Theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
 
-        At the last `length` samples, (samples, methods + 1, 2).
+        At the last TRAIL samples, (samples, methods + 1, 2).
         """
         current = self._current
         assert current is not None
-        if self._trails is None or self._trails[0] is not current or self._trails[1] < length:
-            self._trails = current, length, self.rows.trails(current, length)
-        return self._trails[2][-length:]
+        if self._trails is None or self._trails[0] is not current:  # read once a frame
+            self._trails = current, self.rows.trails(current, TRAIL)
+        return self._trails[1]
 
     def thetas(self, index: int, length: int) -> list[float]:
         """Return theta [rad] of a method at the last `length` samples, oldest first."""
         if self._rows is None:
             return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
-        # as many as phase space shows, so that they are read once a frame
-        return self.trails(300)[-length:, index, 0].tolist()  # type: ignore[no-any-return]
+        return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]

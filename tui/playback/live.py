@@ -4,14 +4,13 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
-from copy import copy
 from typing import TYPE_CHECKING, Any, Literal
 
 from engine.methods.own import OwnMethod, OwnMethodError
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
 from engine.run.rewindable import RewindableRun
-from engine.run.stepping import Stepping, SteppingChange
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Event, EventKind, noticed
 from tui.cli.time_limit import limited
@@ -29,10 +28,7 @@ ROW_RATE = 30  # rows of the history, and samples of the recording, a second at 
 
 
 class Live(Playback):
-    """The lab: it runs, it is changed, it is recorded once a recorder is there."""
-
     kind: Literal["LIVE"] = "LIVE"
-    knows_past = True
     _run: RewindableRun
     _left: "Ghost | None" = None  # the run before the restart with another step
 
@@ -41,16 +37,14 @@ class Live(Playback):
         scene: Scene,
         speed: float = 1.0,
         clock: Callable[[], float] = time.perf_counter,
-        changes: Sequence[SteppingChange] = (),
         history: History | None = None,
     ) -> None:
-        """Go on from a run of this history, with the `changes` made on the way there."""
+        """Begin a run, or go on from a history, which becomes the lab's own."""
         self.playhead = Playhead(speed=speed)
         self.recorder: LiveRecorder | None = None
         self.laid_under: Ghost | None = None
         self._events: list[Event] = []
-        # the recording clock: it stands while the lab is paused, whatever the speed
-        self._recorded = Playhead()
+        self._recorded = 0.0  # s on the recording clock, which stands only while the lab is paused
         self._clock = clock
         self._clocked = 0.0  # s, of what was recorded last
         self._noticed_step = 0  # up to which the milestones of the run are events
@@ -58,8 +52,7 @@ class Live(Playback):
         run = RewindableRun(scene, 1, compiled_in_background)
         if history is not None:
             with _limited(scene):
-                run.repeat(changes, history.step)
-            history = copy(history)
+                run.repeat(history.changes[1:], history.step)
             history.changes = run.changes
         self._enter(run, history or History(scene, run.changes))
 
@@ -77,13 +70,11 @@ class Live(Playback):
 
     @property
     def ghost(self) -> "Ghost | None":
-        """The run that is laid under this one."""
         ghost = self._left or self.laid_under
         return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
 
     @property
     def next_step(self) -> float:
-        """Seconds of the clock until the next step."""
         ahead = self._run.x + abs(self.stepping.h) - self.playhead.position
         return ahead / abs(self.playhead.speed)
 
@@ -107,9 +98,9 @@ class Live(Playback):
         """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
         before = self.playhead
         self.playhead = before.at(now)
-        self._recorded = self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
+        self._recorded += max(now - before.seen, 0.0)
         began = self._clock()
         # A sample at home shows what each method misses its start by.
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
@@ -120,7 +111,7 @@ class Live(Playback):
                 break
         due = self.playhead.position - before.position
         if left > 0:
-            self.playhead = self.playhead.moved_to(self._run.x)
+            self.playhead = self.playhead._replace(position=self._run.x)
         if due:
             share = (self.playhead.position - before.position) / due
             self.pace += (share - self.pace) * (1 - math.exp(before.seen - now))  # over a second
@@ -155,7 +146,7 @@ class Live(Playback):
         if n < 0:
             with self._standing_still():
                 self._run.back_to(max(0, target))
-        self.playhead = self.playhead.moved_to(self._run.x)
+        self.playhead = self.playhead._replace(position=self._run.x)
         return self._take_sample()
 
     def go_to(self, run: int, step: int) -> bool:
@@ -179,7 +170,6 @@ class Live(Playback):
         self.failure = None
         if paused != self.playhead.paused:
             self.playhead = self.playhead._replace(paused=paused)
-            self._recorded = self._recorded._replace(paused=paused)
             self._note_here("pause" if paused else "resume")
 
     def set_speed(self, speed: float) -> None:
@@ -219,7 +209,6 @@ class Live(Playback):
 
     @property
     def run_state(self) -> RunState:
-        """The run as an undo can bring it back."""
         return RunState(self._run, self.history, self._left)
 
     def return_to(self, state: RunState) -> None:
@@ -232,7 +221,7 @@ class Live(Playback):
     def _enter(self, run: RewindableRun, history: History) -> None:
         self._run = run
         self.history = history
-        self.playhead = self.playhead.moved_to(run.x)
+        self.playhead = self.playhead._replace(position=run.x)
         self._note_start()
         self._take_sample()
 
@@ -253,11 +242,10 @@ class Live(Playback):
     # The recording
 
     def record(self, recorder: "LiveRecorder") -> None:
-        """Record from here on."""
         self.recorder = recorder
         for event in self._events:
-            recorder.event(event, self._recorded.position)
-        recorder.sample(self.sample, self._recorded.position)
+            recorder.event(event, self._recorded)
+        recorder.sample(self.sample, self._recorded)
 
     def mark(self, text: str | None = None) -> None:
         if not self.is_marked:
@@ -266,7 +254,7 @@ class Live(Playback):
     def close(self) -> None:
         if self.recorder is not None:
             if not self._run.in_past:
-                self.recorder.sample(self.sample, self._recorded.position)
+                self.recorder.sample(self.sample, self._recorded)
             self.recorder.close()
 
     def _take_sample(self, is_row: bool = True) -> Sample:
@@ -281,7 +269,7 @@ class Live(Playback):
     def _due(self) -> float:
         """The recording clock [s] at which the step was due, not before what was recorded last."""
         late = (self.playhead.position - self._run.x) / abs(self.playhead.speed)
-        self._clocked = max(self._clocked, self._recorded.position - max(late, 0.0))
+        self._clocked = max(self._clocked, self._recorded - max(late, 0.0))
         return self._clocked
 
     def _note_start(self) -> None:
@@ -309,12 +297,11 @@ class Live(Playback):
         self._events.append(event)
         if self.recorder is not None:
             is_of_step = event.kind == "noticed"
-            self._clocked = self._due if is_of_step else self._recorded.position
+            self._clocked = self._due if is_of_step else self._recorded
             self.recorder.event(event, self._clocked)
 
 
 def has_own(scene: Scene) -> bool:
-    """Return whether a scene has a method of the user's own."""
     return any(isinstance(method, OwnMethod) for method in scene.cast)
 
 

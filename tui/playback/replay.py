@@ -4,6 +4,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -12,7 +13,7 @@ from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping, SteppingChange, change_before
 from recordings.events import Event, check_present
 from tui.playback.common import Playback, Playhead, RecordingStatus
-from tui.playback.history import History
+from tui.playback.history import History, changes_of
 from tui.playback.live import Live
 from tui.playback.marks import Mark, Marks
 
@@ -21,10 +22,8 @@ if TYPE_CHECKING:
 
 FILL_BUDGET = 0.006  # s of each frame for reading the past
 MAX_FOLLOWED = 100  # samples; what lies further ahead is jumped to
-TAIL = 1.0  # s of the past that are there at once after a jump, for the trails
 DENSE = 60.0  # s of the past that are read completely; what lies before,
 MAX_PIECES = 300  # in pieces of a second, evenly spread
-NANOSECOND = 1e-9  # s; clocks in a file are rounded to it
 
 
 class Replay(Playback):
@@ -35,6 +34,7 @@ class Replay(Playback):
     run_state = None
     next_step = None
     run: "Run"
+    _reading: Iterator[None]  # the past, while there is more of it
 
     def __init__(
         self, recording: "Recording", clock: Callable[[], float] = time.perf_counter
@@ -46,7 +46,6 @@ class Replay(Playback):
         self.looping = False  # plays the recording again and again
         self._closed = False
         self._clock = clock
-        self._reading: Iterator[None] | None = None  # the past, while there is more of it
         first = recording.at(0.0)
         assert first is not None, "a recording without samples is refused before it gets here"
         self._jump(first)
@@ -55,11 +54,18 @@ class Replay(Playback):
 
     @property
     def events(self) -> Sequence[Event]:
-        return [event for clock, event in self.recording.events if clock <= self.playhead.position]
+        here = self.playhead.position
+        marks = [self._event(mark) for mark in self.marks if mark.clock <= here]
+        return [*(event for clock, event in self.recording.events if clock <= here), *marks]
+
+    def _event(self, mark: Mark) -> Event:
+        run = self.recording.run_of(mark.run) or self.run
+        before = change_before(changes_of(run), mark.step)
+        t = before.t + (mark.step - before.step) * before.stepping.h
+        return Event("mark", mark.run, mark.step, t, text=mark.text)
 
     @property
     def milestones(self) -> Sequence[Milestone]:
-        """What the lab noticed in this run up to the sample."""
         return [each for each in self.run.milestones if each.step <= self.sample.step]
 
     @property
@@ -77,16 +83,6 @@ class Replay(Playback):
             if reading.diverged_at is not None:
                 given[method] = Judgement("failed")
         return [given.get(method, Judgement()) for method in self.scene.cast]
-
-    @property
-    def later_marks(self) -> Sequence[Event]:
-        return [self._event(mark) for mark in self.marks if mark.clock <= self.playhead.position]
-
-    def _event(self, mark: Mark) -> Event:
-        run = self.recording.run_of(mark.run) or self.run
-        before = change_before(History.recorded(run).changes, mark.step)
-        t = before.t + (mark.step - before.step) * before.stepping.h
-        return Event("mark", mark.run, mark.step, t, text=mark.text)
 
     @property
     def _past_changes(self) -> list[SteppingChange]:
@@ -115,30 +111,24 @@ class Replay(Playback):
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""
         self.playhead = self.playhead.at(now)
         if not self.playhead.paused:
-            self._stay_inside()
+            position = self.playhead.position
+            end = min(max(position, 0.0), self.length)
+            if self.looping and position != end:
+                self.playhead = self.playhead._replace(position=self.length - end)
+            elif position != end:
+                self.playhead = self.playhead._replace(position=end, paused=True)
             self._follow()
         self.fill()
         return self.sample
 
-    def _stay_inside(self) -> None:
-        position = self.playhead.position
-        if 0.0 <= position <= self.length:
-            return
-        start, end = (0.0, self.length) if self.playhead.speed > 0 else (self.length, 0.0)
-        if self.looping and self.length:
-            self.playhead = self.playhead.moved_to(start)
-        elif (self.playhead.speed < 0) == (position < 0.0):
-            self.playhead = self.playhead._replace(paused=True).moved_to(end)
-
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
         self.playhead = self.playhead._replace(paused=paused)
-        start, end = (0.0, self.length) if self.playhead.speed > 0 else (self.length, 0.0)
+        end = self.length if self.playhead.speed > 0 else 0.0
         if not paused and self.playhead.position == end:
-            self.seek(start)
+            self.seek(self.length - end)
 
     def set_speed(self, speed: float) -> None:
-        """Play `speed` seconds of the recording per second; negative plays backwards."""
         self.playhead = self.playhead._replace(speed=speed)
 
     def step(self, n: int) -> Sample:
@@ -148,13 +138,11 @@ class Replay(Playback):
         for _ in range(abs(n)):
             if not self._closed and (place := move(self._place)):
                 self._show(place)
-        clock, _ = self.recording.sample(self._place)
-        self.playhead = self.playhead.moved_to(clock)
+        self.playhead = self.playhead._replace(position=self.recording.sample(self._place).clock)
         return self.sample
 
     def seek(self, position: float) -> None:
-        """Go to a moment of the recording clock [s], or to the nearer end."""
-        self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
+        self.playhead = self.playhead._replace(position=min(max(position, 0.0), self.length))
         self._follow()
 
     def go_to(self, run: int, step: int) -> bool:
@@ -162,10 +150,11 @@ class Replay(Playback):
         self.pause(True)
         known = [(clock, event.run, event.step) for clock, event in self.recording.events]
         known += [(mark.clock, mark.run, mark.step) for mark in self.marks]
-        clock = next((clock for clock, *at in known if at == [run, step]), None)
-        if clock is not None:
-            self.seek(clock)
-        return clock is not None
+        for clock, *at in known:
+            if at == [run, step]:
+                self.seek(clock)
+                return True
+        return False
 
     def seek_event(self, direction: int) -> None:
         position = self.playhead.position
@@ -176,7 +165,6 @@ class Replay(Playback):
             self.seek(max((tick for tick in self.ticks if tick < position - 0.3), default=0.0))
 
     def mark(self, text: str | None = None) -> None:
-        """Set a mark at the sample, unless it has one; it is saved beside the recording."""
         if not self.is_marked:
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 
@@ -186,12 +174,14 @@ class Replay(Playback):
         Raises RecordingError if the run has a user's own method that was not given.
         """
         check_present(self.scene)
-        return Live(self.scene, changes=self._past_changes[1:], history=self.history)
+        history = copy(self.history)
+        history.changes = self._past_changes
+        return Live(self.scene, history=history)
 
     def close(self) -> None:
         """Close the file; a frame that was due already shows what was there."""
         self._closed = True
-        self._reading = None
+        self._reading = iter(())
         self.recording.close()
 
     # Samples of the file
@@ -200,7 +190,8 @@ class Replay(Playback):
         """Show the last sample before the playhead, after those between where they are few."""
         if self._closed:
             return
-        target = self.recording.at(self.playhead.position + NANOSECOND) or self._place
+        # clocks in a file are rounded to nanoseconds
+        target = self.recording.at(self.playhead.position + 1e-9) or self._place
         for _ in range(MAX_FOLLOWED):
             if self._place < target and (following := self.recording.next(self._place)):
                 self._show(following)
@@ -227,28 +218,25 @@ class Replay(Playback):
         run = self.recording.run_of(sample.run)
         assert run is not None
         self.run = run
-        self.history = History.recorded(run)
-        for _ in self._read(self.history, max(run.begin, clock - TAIL), clock, sample.step):
+        self.history = History(run.scene, changes_of(run))
+        for _ in self._read(self.history, max(run.begin, clock - 1.0), clock, sample.step):
             pass
         self.history.add(sample)
+        self.knows_past = False
         self._reading = self._past()
-
-    @property
-    def knows_past(self) -> bool:
-        """Whether the whole past of the sample is at hand."""
-        return self._reading is None
 
     def fill(self) -> bool:
         """Read more of the past; return whether all of it that will be read has been."""
         until = self._clock() + FILL_BUDGET
-        while self._reading is not None and self._clock() < until:
-            if next(self._reading, self) is self:
-                self._reading = None
-        return self._reading is None
+        for _ in self._reading:
+            if self._clock() >= until:
+                return False
+        self.knows_past = True
+        return True
 
     def _past(self) -> Iterator[None]:
         """Read the past, and then the samples that have come since."""
-        history = History.recorded(self.run)
+        history = History(self.run.scene, changes_of(self.run))
         start = self.run.begin
         while start < (end := self.recording.sample(self._place).clock):
             for piece in pieces(start, end):

@@ -136,7 +136,6 @@ class Rows:
 
 
 def _merged(first: Records, last: Records) -> Records:
-    """Return rows that reach from the first ones to the end of the last ones."""
     rows = last.copy()
     rows["low"] = np.fmin(first["low"], last["low"])
     rows["high"] = np.fmax(first["high"], last["high"])

@@ -19,7 +19,6 @@ LARGEST = 1e6
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
-    """Return what a chart can show of a scene."""
     model = scene.equations
     has_shadow = model.has_force and any(method.modified_energy for method in scene.cast)
     common = [each for each in QUANTITIES if has_shadow or each != "shadow_error"]
@@ -37,8 +36,6 @@ class Stretch(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """The methods, the quantities and the range of time on screen."""
-
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion, dotted
     quantity: Quantity = "energy_error"  # of the chart
@@ -74,7 +71,6 @@ class Shown(NamedTuple):
         return self._replace(hidden=self.hidden ^ {cast[place].key})
 
     def alone(self, place: int, cast: Cast) -> "Shown":
-        """Show this method alone, or all of them if it is alone already."""
         others = frozenset(method.key for method in cast) - {cast[place].key}
         return self._replace(hidden=frozenset() if self.hidden == others else others)
 
@@ -85,7 +81,6 @@ class Shown(NamedTuple):
         return known[(index + ahead) % len(known)]
 
     def next_window(self) -> "Shown":
-        """Leave the zoom, or take the next window."""
         if self.stretch is not None:
             return self._replace(stretch=None)
         known = [*WINDOWS, *({self.seconds} - {*WINDOWS})]  # a shot has any number

@@ -58,7 +58,7 @@ def numbered(lines: Sequence[EventLine]) -> list[str]:
 
 def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
-    for event in [*source.events, *source.later_marks]:
+    for event in source.events:
         text = ""
         if event.kind == "mark":
             marks += 1

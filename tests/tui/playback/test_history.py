@@ -127,7 +127,7 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     history = filled([sample(0, 0), sample(10, 10)])
     history.add(sample(13, 13, low=-99), is_row=False)
     assert history.window().low["energy_error"][:, 0].tolist() == [0, 10, 13]
-    assert history.trails(2).shape[0] == 2
+    assert len(history.trails) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]
 
@@ -162,11 +162,11 @@ def test_rows_have_the_readings_energies_variables_and_theta_errors(name, stride
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     history = filled(sample(step, theta=step) for step in range(20))
-    theta, omega = history.trails(3)[:, 2].T
+    theta, omega = history.trails[-3:, 2].T
     assert (theta.tolist(), omega.tolist()) == ([17, 18, 19], [-17, -18, -19])
     exact = [history.exact.at(0.1 * step) for step in (18, 19)]
-    assert history.trails(2)[:, -1].tolist() == [list(state) for state in exact]
-    assert len(history.trails(100)) == CAPACITY
+    assert history.trails[-2:, -1].tolist() == [list(state) for state in exact]
+    assert len(history.trails) == CAPACITY
 
 
 def largest(history: History, quantity: str) -> np.ndarray:

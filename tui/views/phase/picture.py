@@ -50,7 +50,7 @@ def method_points(
     """Return the points that are shown of a sample, the exact one first."""
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
-    trails = source.history.trails(300)  # ten seconds
+    trails = source.history.trails
     cast = source.scene.cast
     for place in shown.places(cast):
         reading = sample.readings[place]
