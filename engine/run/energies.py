@@ -23,7 +23,7 @@ from engine.run.judgement import Judgement, Progress
 
 # correlation times, of the record: the first looks like a walk, the others like a level
 _TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])
-_WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in that of the kicks
+_WHITE = np.array([0.0, 3, 100])  # variance of white noise, in that of the kicks
 _RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
@@ -44,22 +44,27 @@ def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
         return Judgement("loses" if energies[0] > 0 else "grows")
     floor = max(_last_digit(energies), limits.ROUNDING)
     first = _outliers(energies, floor)
-    first += _Record(times[first:], energies[first:], floor).transient()
-    at = times[first:]
-    rest = energies[first:]
-    judgement = _judge(at, rest, floor)
-    sizes = np.abs(rest)
-    multiplied = sizes.max() > limits.MULTIPLIED * sizes.min() > 0 < rest.min() * rest.max()
-    if absolute and multiplied and judgement.verdict not in ("grows", "loses"):
-        logarithms = np.sign(rest) * np.log(sizes)
-        judgement = judgement._replace(verdict=_judge(at, logarithms, limits.ROUNDING).verdict)
-    scale = unit / float(at[-1] - at[0])
+    if np.ptp(energies[first:]) <= 2 * floor:
+        uncertainty = floor * unit / float(times[-1] - times[first])
+        return Judgement("bounded", slope=0.0, uncertainty=uncertainty, first=first)
+    record = _Record(times[first:], energies[first:], floor)
+    signed = np.sign(energies[0]) * energies[first:]
+    if absolute and signed.max() > limits.MULTIPLIED * signed.min() > 0:
+        logarithms = np.sign(energies[0]) * np.log(signed)
+        judgement = _Record(times[first:], logarithms, limits.ROUNDING).conclude()
+    else:
+        if early := record.transient():
+            first += early
+            record = _Record(times[first:], energies[first:], floor)
+        judgement = record.conclude()
+    scale = unit / float(times[-1] - times[first])
     return judgement._replace(
-        slope=judgement.slope and judgement.slope * scale,
-        uncertainty=judgement.uncertainty and judgement.uncertainty * scale,
-        fluctuation=judgement.fluctuation and judgement.fluctuation * unit,
-        transient=float(at[0] - times[0]),
+        slope=record.line.amplitude * scale,
+        uncertainty=math.hypot(record.line.deviation, record.incomplete) * scale,
+        transient=float(times[first] - times[0]),
         first=first,
+        independent=record.independent,
+        fluctuation=float(np.std(record.rest)) * unit,
     )
 
 
@@ -84,26 +89,6 @@ def _outliers(energies: Any, floor: float) -> int:
     width = float(np.ptp(rest[early:]))
     outside = np.flatnonzero(np.abs(rest[:early] - middle) > width / 2 + max(width / 2, floor))
     return int(outside[-1]) + 1 if len(outside) else 0
-
-
-def _judge(times: Any, energies: Any, floor: float) -> Judgement:
-    """Judge a record without a transient; the slope is that over the whole record."""
-    if float(np.ptp(energies)) <= 2 * floor:
-        return Judgement("bounded", slope=0.0, uncertainty=floor)
-    record = _Record(times, energies, floor)
-    judgement = record.conclude()
-    if judgement.verdict == "bounded":
-        wobble = np.abs(record.rest)
-        wider = _Record(times, wobble, floor)
-        share = wider.line.amplitude / float(wobble.mean())
-        if wider.conclude().verdict == "grows" and share > limits.WIDENING:
-            judgement = Judgement("wanders")
-    return judgement._replace(
-        slope=record.line.amplitude,
-        uncertainty=math.hypot(record.line.deviation, record.incomplete),
-        independent=record.independent,
-        fluctuation=float(np.std(record.rest)),
-    )
 
 
 class _Fit(NamedTuple):
@@ -230,10 +215,16 @@ class _Record:
         return float(cycles[np.argmax(((rest @ waves) ** 2).sum(axis=1))])
 
     @property
+    def _widens(self) -> bool:
+        """Whether it fluctuates more from quarter to quarter, and far more at the end."""
+        sizes = [float(np.abs(part).mean()) for part in np.array_split(self.rest, 4)]
+        return sizes == sorted(sizes) and sizes[-1] > limits.WIDENING * (sizes[0] + self._floor)
+
+    @property
     def _has_settled(self) -> bool:
-        """Whether the best that has settled is better than the best that moves."""
-        better = self._settled.likelihood - self._moving.likelihood > limits.SETTLED
-        return better and self._settled.amplitude**2 > self._within
+        """Whether a curve that settles is far likelier than any that moves, and leaves the band."""
+        likelier = self._settled.likelihood - self._moving.likelihood > limits.ODDS
+        return likelier and self._settled.amplitude**2 > self._within
 
     def transient(self) -> int:
         """Return how many samples belong to an approach to a level that is over early."""
@@ -244,30 +235,26 @@ class _Record:
         return int(np.searchsorted(self._at, end))
 
     def conclude(self) -> Judgement:
-        """Return the verdict that the descriptions allow."""
-        line = self.line.sigmas
+        """Return the verdict that the best curves of each kind allow."""
         few = self.independent < limits.MIN_INDEPENDENT or self._cycles < limits.MIN_CYCLES
-        walk_like = few or self.independent < 2 * limits.MIN_INDEPENDENT
-        change = limits.CURVE_OF_FEW if few else limits.CHANGE
-        if self._has_settled and self._settled.sigmas > change:
+        least = limits.CURVE_OF_FEW if few else limits.TREND
+        if self._has_settled and self._settled.sigmas > least:
             return Judgement("caught")
-        settled = self._settled.likelihood - self._moving.likelihood
-        curved = self._moving.likelihood - self.line.likelihood > limits.CLEAR
-        sure = line > limits.LINE_OF_FEW or self._moving.sigmas > limits.CURVE_OF_FEW
-        trend = sure or (not walk_like and self._moving.sigmas > limits.TREND)
-        if trend and not (curved and settled > -limits.CLEAR):
-            if abs(self.line.amplitude) < max(2 * self._floor, self.incomplete):
-                return Judgement("bounded")
-            return Judgement("grows" if self.line.amplitude > 0 else "loses")
-        level = self._settled.sigmas < limits.CHANGE
-        if level and line < limits.STILL and not walk_like:
-            return Judgement("bounded")
-        walks = self._level.walks > limits.CLEAR and math.isinf(self._cycles)
-        if level and line < limits.TREND and walks:
+        rise = self.line.amplitude
+        still = self.line.sigmas < limits.STILL or abs(rise) < max(2 * self._floor, self.incomplete)
+        settled = self._settled.likelihood - limits.ODDS
+        moves = settled < max(self.line.likelihood, self._moving.likelihood - 2 * limits.ODDS)
+        trend = self.line.sigmas > limits.LINE_OF_FEW or self._moving.sigmas > least
+        if moves and trend and not still:
+            return Judgement("grows" if rise > 0 else "loses")
+        if still and not few:
+            return Judgement("wanders" if self._widens else "bounded")
+        walks = self._level.walks > limits.WALK_ODDS and math.isinf(self._cycles)
+        if self.line.sigmas < limits.TREND and walks:
             return Judgement("wanders")
         if self._cycles < limits.MIN_CYCLES:
             return _too_early(self._cycles, limits.MIN_CYCLES, "cycles of its slowest wave")
-        need = 2 * max(limits.MIN_INDEPENDENT, self.independent)
+        need = max(limits.MIN_INDEPENDENT, 2 * self.independent)
         return _too_early(self.independent, need, "independent samples")
 
 

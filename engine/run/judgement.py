@@ -24,10 +24,10 @@ DEFINITIONS: dict[Verdict, str] = {
 
 FALSE_ALARMS: dict[Verdict, float] = {
     "bounded": 0.6,
-    "grows": 0.9,
-    "loses": 0.2,
-    "caught": 0.6,
-    "wanders": 6.4,
+    "grows": 0.6,
+    "loses": 0.5,
+    "caught": 0.8,
+    "wanders": 6.3,
 }
 """How many of 100 such verdicts on energies alone are wrong, by tests/bench/foreign.py."""
 
@@ -69,20 +69,19 @@ NO_BAND = 4.5  # of one that does not; random walks of 32 bins are wider
 # A record of any program.  Standard deviations and likelihood ratios are those of white noise;
 # tests/bench/foreign.py measures the errors in other noises.
 MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
-MIN_INDEPENDENT = 15  # correlation times: uncertainties were tested down to here
+MIN_INDEPENDENT = 30  # correlation times: with fewer, noise and a curve look alike
 STILL = 2.0  # standard deviations: a level exceeds them in 1 or 2 of 100 records
 TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
-CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
-LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
-CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
-SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
-CLEAR = math.log(10)  # of a likelihood ratio: of two curves, or of a walk and a level
+LINE_OF_FEW = 8.0  # standard deviations: 2 or 3 of 1000 random walks have a steeper line
+CURVE_OF_FEW = 12.0  # standard deviations: 1 in 1000 random walks has a clearer curve
+ODDS = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
+WALK_ODDS = math.log(10)  # of the likelihood ratio of a random walk and a level
 WAVE = 12.0  # of a likelihood ratio: a wave in a random walk gains up to 10
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
 LOST = 0.01  # of the first energy: losing all of it is no other level
-MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
-WIDENING = 1.0  # of its mean: what fluctuates three times more at its end is in no band
+MULTIPLIED = 10.0  # times the smallest energy: what multiplies is judged in its logarithm
+WIDENING = 3.0  # times as much as at its start: what fluctuates so at its end is in no band
 
 
 class LookPoint(NamedTuple):

@@ -124,8 +124,7 @@ def judged(errors: list[float]) -> Judge:
 def test_the_uncertainty_is_honest(memory: float, least: int) -> None:
     """The true slope lies within two uncertainties in about 95 % of 200 noisy lines.
 
-    It takes noise that lasts over several bins (autocorrelation 0.6 from bin to bin) for what it is, too,
-    as well as 31 bins can tell; with the formula for independent residuals, 60 % would lie there.
+    Noise may last over several bins; with the formula for independent residuals, 60 % would lie there.
     """
     hits = 0
     for seed in range(200):
