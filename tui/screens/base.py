@@ -89,9 +89,7 @@ class SourceScreen(SizedScreen[None]):
         Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
     ]
 
-    source: var[Source] = var(cast(Source, None))  # there is one from the start
     shown: var[Shown] = var(Shown())
-    view: var[str] = var("lab")
     held: float | None = None
     """The angle [rad] at which the user holds the pendulums; the clock stands meanwhile."""
 
@@ -106,11 +104,12 @@ class SourceScreen(SizedScreen[None]):
         super().__init__()
         self._prepare = prepare
         self._notices = notices
-        self.set_reactive(SourceScreen.source, source)
-        self.set_reactive(SourceScreen.shown, Shown().through(source.scene))
+        self.source = source
+        shown = Shown().through(source.scene)
+        self.set_reactive(SourceScreen.shown, shown)
         self.clock = clock
-        self.set_reactive(SourceScreen.view, self.first_view(source))
-        self._view_in_front: View = create(self.view)
+        self.view = self.first_view(source)
+        self._view_in_front = create(self.view, source, shown)
         self._lines: list[Pane] = []
         self._timer: Timer | None = None  # of the frames
         self._frames = 0
@@ -133,7 +132,7 @@ class SourceScreen(SizedScreen[None]):
     def compose(self) -> ComposeResult:
         yield self.line(StatusLine())
         with Box(id="views"):
-            yield self._bound(self._view_in_front)
+            yield self._view_in_front
         yield TooSmall()
         yield from self.more()
         yield self.line(InsightLine())
@@ -146,12 +145,12 @@ class SourceScreen(SizedScreen[None]):
     def line(self, line: Pane) -> Pane:
         """Register a line of this screen; it is refreshed five times a second."""
         self._lines.append(line)
+        line.source = self.source
         line.sample = self.source.sample
-        return line.data_bind(SourceScreen.source, SourceScreen.shown)
+        return line
 
-    def _bound(self, view: View) -> View:
-        view.follow(self.source.sample, read=False)
-        return view.data_bind(SourceScreen.source, SourceScreen.shown)
+    def watch_shown(self) -> None:
+        self.show_now()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Keep the visitor of a browser from this computer's files and shell."""
@@ -209,10 +208,10 @@ class SourceScreen(SizedScreen[None]):
             self._follow(self.source.sample)
 
     def _follow(self, sample: Sample, read: bool = True) -> None:
-        self._view_in_front.follow(sample, read)
+        self._view_in_front.follow(sample, self.shown, read)
         if read:
             for line in self._lines:
-                line.follow(sample)
+                line.follow(sample, self.shown)
 
     def end(self) -> None:
         """Stop following the clock: another screen takes over."""
@@ -341,13 +340,13 @@ class SourceScreen(SizedScreen[None]):
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""
-        self.call_next(self._show_view, name)  # data_bind works in the screen's own turn only
+        self.call_next(self._show_view, name)
 
     async def _show_view(self, name: str) -> None:
         name = name or following(self.view)
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
-            await views.mount(self._bound(create(name)))
+            await views.mount(create(name, self.source, self.shown))
         for each in views.children:
             each.display = each.id == name
         self.view = name

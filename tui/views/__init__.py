@@ -4,6 +4,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:  # the process that computes for a view starts sooner without Textual
+    from tui.playback.shown import Shown
+    from tui.playback.source import Source
     from tui.views.view import View
 
 
@@ -24,11 +26,11 @@ VIEWS: dict[str, ViewEntry] = {
 """In the order of the key v."""
 
 
-def create(name: str) -> "View":
+def create(name: str, source: "Source", shown: "Shown") -> "View":
     """Return a new view of this name."""
     entry = VIEWS[name]
     widget: type[View] = getattr(import_module(entry.module), entry.widget)
-    return widget(id=name)
+    return widget(source, shown, name)
 
 
 def following(name: str) -> str:

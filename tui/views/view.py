@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from textwrap import wrap
-from typing import Any, ClassVar, Generic, TypeVar, cast
+from typing import Any, ClassVar, Generic, TypeVar
 
 from textual import events
 from textual.app import ComposeResult
@@ -12,7 +12,6 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.content import Content
 from textual.message import Message
-from textual.reactive import var
 from textual.worker import Worker, WorkerState
 
 from engine.methods import Cast
@@ -27,7 +26,6 @@ from tui.playback.shown import Shown, Stretch
 from tui.playback.source import Source
 
 Place = TypeVar("Place")
-UNBOUND = cast(Source, None)  # the screen binds its own before anything is drawn
 
 
 @dataclass
@@ -65,67 +63,60 @@ class Box(Container):
 
 
 class View(Box):
-    """Passes source and settings on to its panes, and samples directly: data_bind would be slow."""
+    """Passes on to its panes what the screen has it show."""
 
-    source: var[Source] = var(UNBOUND)
-    shown: var[Shown] = var(Shown())
-
-    def __init__(self, id: str | None = None) -> None:
+    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
         super().__init__(id=id)
+        self.source = source
+        self.shown = shown
+        self.sample = source.sample
         self._panes: list[Pane] = []
-        self._sample: Sample | None = None
         self._is_painted = False
 
-    def bound(self, pane: "Pane") -> "Pane":
+    def with_source(self, pane: "Pane") -> "Pane":
         self._panes.append(pane)
-        return pane.data_bind(View.source, View.shown)
+        pane.source = self.source
+        return pane
 
     def on_mount(self) -> None:
-        self._follow()
+        self.follow(self.sample, self.shown)
         self.call_after_refresh(self._after_first_paint)
 
     def _after_first_paint(self) -> None:
         self._is_painted = True
-        self._follow()
+        self.follow(self.sample, self.shown)
 
-    def follow(self, sample: Sample, read: bool = True) -> None:
+    def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
         """Show a sample in the panes that move and, if it is time to `read`, in all of them."""
-        has_moved = sample != self._sample
-        self._sample = sample
-        if read or has_moved:
-            self._follow(read)
-
-    def _follow(self, read: bool = True) -> None:
+        if not read and sample == self.sample:
+            return
+        self.sample = sample
+        self.shown = shown
         for pane in self._panes:
-            is_due = (read or pane.MOVES) and (self._is_painted or not pane.NEEDS_NUMPY)
-            if is_due and self._sample is not None:
-                pane.follow(self._sample)
+            if (read or pane.MOVES) and (self._is_painted or not pane.NEEDS_NUMPY):
+                pane.follow(sample, shown)
 
     def zoom(self, factor: float) -> None:
         """Zoom by `factor`, in views that have a chart of time."""
 
 
 class Pane(CellWidget):
-    """Draws a source at one sample; redraws when the source or what is shown changes."""
+    """Draws a source at one sample."""
 
     MOVES: ClassVar[bool] = False
     """Whether it follows every frame, and not only five a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
     """Whether to draw after the first paint: importing NumPy takes as long as the rest."""
 
-    source: var[Source] = var(UNBOUND)
-    shown: var[Shown] = var(Shown())
+    source: Source
+    """Its view or screen provides it."""
+    shown = Shown()
     sample: Sample | None = None
     _titles = ("", "")
 
-    def follow(self, sample: Sample) -> None:
+    def follow(self, sample: Sample, shown: Shown) -> None:
         self.sample = sample
-        self.draw()
-
-    def watch_source(self) -> None:
-        self.draw()
-
-    def watch_shown(self) -> None:
+        self.shown = shown
         self.draw()
 
     @property
@@ -275,12 +266,12 @@ class StudyView(View):
 
     PANE: ClassVar[type[Chooser[Any]]]
 
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
+    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
+        super().__init__(source, shown, id)
         self.pane: Any = self.PANE()
 
     def compose(self) -> ComposeResult:
-        yield self.bound(self.pane)
+        yield self.with_source(self.pane)
 
     def on_show(self) -> None:
         self.pane.focus()

@@ -10,6 +10,8 @@ from textual.widget import Widget
 
 from engine.run.lockstep import Sample
 from engine.scenes import MAX_METHODS
+from tui.playback.shown import Shown
+from tui.playback.source import Source
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.pendulums import Pendulum
@@ -119,8 +121,8 @@ class Stage(Box):
 class LabView(View):
     """Arranges the panes anew when their size, the cast or what is shown of it changes."""
 
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
+    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
+        super().__init__(source, shown, id)
         self._arranged_for: object = None
         drag: list[tuple[float, float]] = []
         self.pendulums = [Pendulum(drag, place) for place in range(MAX_METHODS)]
@@ -133,9 +135,9 @@ class LabView(View):
         }
 
     def compose(self) -> ComposeResult:
-        panes = map(self.bound, [*self.pendulums, *self._others.values()])
+        panes = map(self.with_source, [*self.pendulums, *self._others.values()])
         yield Stage(CellLayout(self._regions), *panes)
-        yield self.bound(ErrorTable())
+        yield self.with_source(ErrorTable())
 
     def zoom(self, factor: float) -> None:
         charts = list(self.query(TimeChart))
@@ -152,20 +154,9 @@ class LabView(View):
         regions: dict[Widget, Region] = dict(zip(shown, tiles, strict=False))
         return regions | {self._others[name]: region for name, region in others.items()}
 
-    def watch_shown(self) -> None:
-        self._arrange()
-
-    def watch_source(self) -> None:
-        self._arrange()
-
-    def follow(self, sample: Sample, read: bool = True) -> None:
-        if read:
-            self._arrange()
-        super().follow(sample, read)
-
-    def _arrange(self) -> None:
-        """Have Textual arrange the stage again, where that would change anything."""
-        if self.is_mounted and self._places != self._arranged_for:
+    def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
+        super().follow(sample, shown, read)
+        if read and self._places != self._arranged_for:
             self._arranged_for = self._places
             # of one pane: Textual forgets what it knows of what is around it
             self._others["overlay"].refresh(layout=True)

@@ -13,6 +13,7 @@ from engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.picture import Section, fact_rows, starts
@@ -113,15 +114,15 @@ class PhaseView(StudyView):
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
-        yield self.bound(Facts(self.pane))
+        yield self.with_source(Facts(self.pane))
 
     def on_resize(self) -> None:
         self._make_room()
 
-    def follow(self, sample: Sample, read: bool = True) -> None:
+    def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
         if read:
             self._make_room()
-        super().follow(sample, read)
+        super().follow(sample, shown, read)
 
     def _make_room(self) -> None:
         has_room = self.size.height >= MIN_ROWS
