@@ -3,7 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -41,24 +41,20 @@ def test_a_logarithmic_axis_covers_its_range_and_labels_evenly_spaced_rows(low, 
 
 
 @given(NUMBERS, NUMBERS, ROWS)
-def test_a_linear_axis_covers_its_range_and_labels_evenly_spaced_rows(a, b, rows):
+def test_a_linear_axis_covers_its_range_with_exact_and_enough_labels_in_evenly_spaced_rows(
+    a, b, rows
+):
     low, high = min(a, b), max(a, b)
     axis = linear_axis(low, high, rows)
     assert axis.low <= low
     assert high <= axis.high
     assert_even(axis, rows)
     step = np.diff(list(axis.labels))[:1].sum() or 1.0
-    for place, label in axis.labels.items():  # the label is the number, and not a rounded one
+    for place, label in axis.labels.items():
         assert float(label) == pytest.approx(place, abs=1e-6 * step)
-
-
-@given(NUMBERS, NUMBERS, st.integers(8, 60))
-def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, b, rows):
-    low, high = min(a, b), max(a, b)
-    assume(high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15))
-    axis = linear_axis(low, high, rows)
-    assert 2 <= len(axis.labels) <= rows / 2 + 1
-    assert high - low >= 0.33 * (axis.high - axis.low)
+    if rows >= 8 and high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15):
+        assert 2 <= len(axis.labels) <= rows / 2 + 1
+        assert high - low >= 0.33 * (axis.high - axis.low)
 
 
 @pytest.mark.parametrize(
@@ -68,10 +64,11 @@ def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, 
         (linear_axis(-0.06, 4.3, 14), "-1 0 1 2 3 4 5"),
         (linear_axis(4.503, 4.509, 10), "4.502 4.504 4.506 4.508 4.510"),
         (linear_axis(-3e-7, 2e-7, 10), "-4e-7 -2e-7 0 2e-7"),
+        (log_time_axis(1.0, 86400.0, 60), "1 s 5 s 1 min 5 min 1 h 5 h 1 d"),
     ],
 )
 def test_the_most_common_axes_of_the_lab(axis, labels):
-    assert list(axis.labels.values()) == labels.split()
+    assert " ".join(axis.labels.values()) == labels
 
 
 def test_there_is_no_empty_decade():
@@ -94,12 +91,6 @@ def test_a_horizontal_logarithmic_axis_covers_its_range_with_few_labels(low, siz
     assert low + size <= axis.high
     assert len(axis.labels) <= columns / 8 + 1
     assert all(place == math.floor(place) for place in axis.labels)
-
-
-def test_a_long_run_is_labelled_in_s_min_h_and_days():
-    axis = log_time_axis(1.0, 86400.0, 60)
-    assert list(axis.labels.values()) == ["1 s", "5 s", "1 min", "5 min", "1 h", "5 h", "1 d"]
-    assert [round(10**place) for place in axis.labels] == [1, 5, 60, 300, 3600, 18000, 86400]
 
 
 @st.composite

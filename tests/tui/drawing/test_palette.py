@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rich.color import Color, ColorSystem
 
-from engine.methods import METHODS, USUAL_CAST, method_of
+from engine.methods import USUAL_CAST, method_of
 from engine.scenes import SCENES
 from tui.drawing.palette import (
     EXACT,
@@ -20,7 +20,6 @@ from tui.drawing.palette import (
     WARN,
     ink_of,
     inks,
-    mark,
     palette,
 )
 
@@ -46,14 +45,24 @@ TO_OKLAB = [
     [0.0259040371, 0.7827717662, -0.8086757660],
 ]
 
-COMPUTED = [theme for theme in PALETTES if theme != "ansi"]
-THEMES = pytest.mark.parametrize("theme", COMPUTED)
+# the distance of the classics and of the methods of a scene for the colour blind, of the latter for
+# all others, and the contrast of words
+THEMES = {
+    "dark": (19.5, 10.6, 21, 4.5),
+    "light": (13.3, 10.2, 20, 4.5),
+    "high-contrast": (21.6, 11.2, 21, 7),
+}
 TERMINALS = {  # what the names of the 16 colours stand for: black, then bright red, blue, cyan, yellow
     "xterm": ("#000000", "#FF0000", "#5C5CFF", "#00FFFF", "#FFFF00"),
     "VGA": ("#000000", "#FF5555", "#5555FF", "#55FFFF", "#FFFF55"),
     "Tango": ("#000000", "#EF2929", "#729FCF", "#34E2E2", "#FCE94F"),
     "Windows": ("#0C0C0C", "#E74856", "#3B78FF", "#61D6D6", "#F9F1A5"),
 }
+
+
+@pytest.fixture(params=THEMES)
+def theme(request):
+    return request.param
 
 
 def linear(colour):
@@ -80,31 +89,23 @@ def contrast(colour, background):
     return (light + 0.05) / (dark + 0.05)
 
 
-@pytest.mark.parametrize(
-    ("theme", "apart"), [("dark", 19.5), ("light", 13.3), ("high-contrast", 21.6)]
-)
-def test_the_colour_blind_can_distinguish_the_classics(theme, apart):
-    assert worst_pair(PALETTES[theme].methods[:4]) == pytest.approx(apart, abs=0.05)
-    assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < apart / 3
-
-
-@pytest.mark.parametrize(
-    ("theme", "apart", "plainly"),
-    [("dark", 10.6, 21), ("light", 10.2, 20), ("high-contrast", 11.2, 21)],
-)
-def test_in_no_scene_two_methods_look_alike(theme, apart, plainly):
+def test_methods_are_told_apart_by_the_colour_blind_too(theme):
+    classics_apart, apart, plainly, _ = THEMES[theme]
+    classics = PALETTES[theme].methods[:4]
+    assert worst_pair(classics) == pytest.approx(classics_apart, abs=0.05)
+    assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < classics_apart / 3
     for scene in SCENES.values():
         colours = [PALETTES[theme].colour(ink) for ink in inks(scene.cast)]
         assert worst_pair(colours) >= apart, scene.name
         assert worst_pair(colours, SIGHT[:1]) >= plainly, scene.name
 
 
-@THEMES
-def test_no_colour_of_a_method_is_taken_for_black(theme):
+def test_no_colour_of_a_method_is_taken_for_black_or_used_twice(theme):
     for colour in PALETTES[theme].methods:
         lightness, a, b = oklab(linear(colour))
         assert lightness > 0.35
         assert math.hypot(a, b) > 0.05
+    assert len({PALETTES[theme].colour(ink) for ink in range(20)}) == 20
 
 
 def test_the_classics_have_the_same_ink_in_every_cast_and_the_others_the_next_free_one():
@@ -115,24 +116,25 @@ def test_the_classics_have_the_same_ink_in_every_cast_and_the_others_the_next_fr
     assert ink_of(imex, (respa, rk4, imex)) == 5
     assert ink_of(rk4, ()) == 3
     assert ink_of(respa, USUAL_CAST) == QUIET
-
-
-def test_another_method_changes_nobodys_colour():
-    for scene in SCENES.values():
-        new = replace(method_of("blanes_moan_6"), key="new", label="New", letter="z")
-        *before, last = inks((*scene.cast, new))
+    for scene in SCENES.values():  # adding a method changes nobody's
+        *before, last = inks((*scene.cast, replace(respa, key="new")))
         assert tuple(before) == inks(scene.cast)
         assert last not in before
 
 
-@pytest.mark.parametrize(("theme", "bound"), [("dark", 4.5), ("light", 4.5), ("high-contrast", 7)])
-def test_text_has_the_contrast_required_by_wcag(theme, bound):
+def test_words_lines_and_trails_have_the_contrast_that_they_need(theme):
     colours = PALETTES[theme]
-    for ink in (*range(10), EXACT, TEXT, NOBODY, WARN, QUIET, GOOD):
-        assert contrast(colours.colour(ink), colours.background) >= bound
+
+    def seen(ink):
+        return contrast(colours.colour(ink), colours.background)
+
+    *_, bound = THEMES[theme]  # of WCAG for words; 3 for graphics
+    assert min(map(seen, (*range(10), EXACT, TEXT, NOBODY, WARN, QUIET, GOOD))) >= bound
+    assert seen(FRAME) >= 3
+    for ink in range(10):
+        assert 1.85 <= seen(ink + FAINT) < 0.7 * seen(ink)
 
 
-@THEMES
 def test_the_methods_differ_in_256_colours(theme):
     colours = PALETTES[theme]
     names = (*colours.methods[:4], colours.text, colours.background)
@@ -151,37 +153,7 @@ def test_the_methods_differ_in_the_terminals_own_16_colours(terminal):
     assert min(contrast(method, black) for method in methods) >= 4.1
 
 
-@THEMES
-def test_lines_are_visible_and_trails_are_fainter_than_their_methods(theme):
-    colours = PALETTES[theme]
-    assert contrast(colours.colour(FRAME), colours.background) >= 3  # WCAG's bound for graphics
-    for owner in range(10):
-        pair = (colours.colour(owner), colours.colour(owner + FAINT))
-        full, faint = (contrast(colour, colours.background) for colour in pair)
-        assert 1.85 <= faint < 0.7 * full
-
-
-@pytest.mark.parametrize("theme", COMPUTED)
-def test_twenty_methods_have_colours_of_their_own(theme):
-    assert len({PALETTES[theme].colour(ink) for ink in range(20)}) == 20
-
-
-@pytest.mark.parametrize(
-    ("theme", "name"),
-    [
-        *((name, name) for name in PALETTES),
-        ("textual-dark", "dark"),
-        ("textual-light", "light"),
-        ("ansi-light", "ansi"),
-        ("nord", "dark"),
-    ],
-)
-def test_other_themes_get_the_palette_that_suits_their_name(theme, name):
-    assert palette(theme) is PALETTES[name]
-
-
-def test_marks_are_distinct_and_take_one_column_in_every_terminal():
-    marks = [mark(place, method) for place, method in enumerate(METHODS)]
-    assert marks[0] == "1 e"
-    assert len(set(marks)) == len(METHODS)
-    assert all(text.isascii() for text in marks)
+def test_other_themes_get_the_palette_that_suits_their_name():
+    suiting = {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}
+    for theme, name in {**{name: name for name in PALETTES}, **suiting}.items():
+        assert palette(theme) is PALETTES[name]
