@@ -77,8 +77,8 @@ def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
 
 
 def test_recent_samples_are_kept_as_they_were_and_a_window_reaches_back_half_a_swing_more():
-    window = filled((sample(step) for step in range(20_000)), capacity=64).window(1.0)
-    assert window.x[[0, -1]] == pytest.approx([1999.9 - 1.0 - window.repeats, 1999.9], abs=0.1)
+    window = filled((sample(step) for step in range(2000)), capacity=64).window(1.0)
+    assert window.x[[0, -1]] == pytest.approx([199.9 - 1.0 - window.repeats, 199.9], abs=0.1)
     assert np.allclose(np.diff(window.x), 0.1)
 
 
@@ -88,10 +88,6 @@ def test_errors_repeat_after_half_a_swing_and_a_turn_in_rotation():
     assert run(DRIFT).window().repeats == pytest.approx(2.1391 / 2, abs=1e-4)
     assert fastest < run(spin).window().repeats < slowest
     assert run(DRIFT.altered(theta=0.0)).window().repeats == 0
-
-
-def test_the_same_sample_again_changes_nothing():
-    assert errors(filled([sample(0), sample(1, low=-1, high=1), sample(1)])) == [0, 1]
 
 
 @given(st.integers(1, 400), st.data())
@@ -124,9 +120,9 @@ def test_a_run_that_goes_on_from_the_past_keeps_that_past(count, data):
 
 
 def test_a_sample_between_rows_leaves_with_its_frame():
-    history = filled([sample(0, 0), sample(10, 10)])
+    history = filled([sample(0, 0), sample(10, low=-9, high=10), sample(10)])  # again
     history.add(sample(13, 13, low=-99), is_row=False)
-    assert history.window().low["energy_error"][:, 0].tolist() == [0, 10, 13]
+    assert history.window().low["energy_error"][:, 0].tolist() == [0, -9, 13]
     assert len(history.trails) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]

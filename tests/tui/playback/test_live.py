@@ -1,9 +1,9 @@
 """A live source, driven by a clock that the test moves and watched by a recorder that keeps everything."""
 
+import itertools
 import math
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -24,13 +24,10 @@ FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks a
 class Keeper:
     """A recorder in memory, as strict as the real one."""
 
-    path, bytes, failed = Path("kept.mcap"), 0, None
-
     def __init__(self):
         self.samples: list[Sample] = []
         self.events: list[Event] = []
         self.seconds = 0.0
-        self.closed = False
 
     def event(self, event: Event, clock: float) -> None:
         assert clock >= self.seconds
@@ -46,20 +43,14 @@ class Keeper:
                 return
         self.samples.append(sample)
 
-    def close(self) -> None:
-        self.closed = True
-
 
 class Bench(Lab):
     """A lab recorded in memory, with a clock of its own work."""
 
     def __init__(self, scene=DEFAULT_SCENE, speed=1.0, second_per_look=0.0):
-        self.work, self.second_per_look, self.keeper = 0.0, second_per_look, Keeper()
-        super().__init__(scene, speed, self.keeper, self.shown)
-
-    def shown(self) -> float:
-        self.work += self.second_per_look
-        return self.work
+        self.keeper = Keeper()
+        looks = itertools.count()
+        super().__init__(scene, speed, self.keeper, lambda: second_per_look * next(looks))
 
 
 def states(sample: Sample) -> list[tuple[float, float]]:
@@ -91,16 +82,10 @@ def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_l
     assert playhead.at(now - 9.0).position == playhead.position  # a clock set back
 
 
-@given(st.integers(-40, 40))
-def test_speeds_stay_within_their_limits_and_double_exactly_within_them(times):
-    expected = 2.0 ** min(max(times, -10), 20)
-    assert doubled(1.0, times) == -doubled(-1.0, times) == expected
-
-
-@pytest.mark.parametrize("h", [0.05, 0.013, 1 / 30])
-def test_after_a_minute_simulated_and_running_time_differ_by_less_than_a_frame(h):
-    sample = Bench(DEFAULT_SCENE.altered(h=h)).run(60)
-    assert abs(sample.t - 60) < max(1 / FPS, h)
+def test_speeds_stay_within_their_limits_and_double_exactly_within_them():
+    for times in range(-40, 41):
+        expected = 2.0 ** min(max(times, -10), 20)
+        assert doubled(1.0, times) == -doubled(-1.0, times) == expected
 
 
 def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
@@ -111,7 +96,7 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     bench.live.pause(False)
     bench.live.set_speed(4)
     bench.run(1)
-    bench.live.set_stepping(Stepping(0.01))
+    bench.live.set_stepping(Stepping(0.013))
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
     # the recording clock stands while paused and does not care for speed
     assert bench.keeper.seconds == pytest.approx(4.0, abs=1 / 30)  # from sample to sample
@@ -130,33 +115,27 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
-    bench.run(5)
+    bench.run(1)
     assert bench.live.pace < 0.9
     assert bench.live.playhead.position == pytest.approx(bench.live.sample.t)
     bench.live.set_speed(1)
-    bench.run(5)
+    bench.run(1)
     assert bench.live.pace == pytest.approx(1.0)
 
 
-def test_a_step_is_one_step_and_pauses():
+def test_after_steps_it_is_paused_and_goes_on_with_the_same_bits_and_records_nothing_twice():
     bench = Bench()
-    before = bench.run(1).step
+    before = bench.run(3).step
     assert bench.live.step(1).step == before + 1
+    assert bench.live.step(-26).step == before - 25
     assert bench.live.playhead.paused
-    assert bench.live.step(-1).step == before
-    assert bench.live.step(-(10**6)).step == 0
-
-
-def test_after_a_step_back_the_run_goes_on_with_the_same_bits_and_nothing_is_recorded_twice():
-    bench = Bench()
-    bench.run(3)
-    bench.live.step(-25)
     bench.live.pause(False)
     sample = bench.run(4)
     assert states(sample) == simulated(DEFAULT_SCENE, sample.step)
     steps = [(sample.run, sample.step) for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
     assert {run for run, _ in steps} == {1}
+    assert bench.live.step(-(10**6)).step == 0
 
 
 def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
@@ -195,7 +174,7 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
 
 
 def test_a_restart_keeps_the_step_size_but_not_its_sign():
-    live = Bench().live
+    live = Live(DEFAULT_SCENE)
     live.set_stepping(Stepping(-0.1))
     live.restart()
     assert (live.stepping.h, live.sample.run, live.sample.step) == (0.1, 2, 0)
@@ -222,15 +201,6 @@ def test_the_events_are_those_up_to_the_sample_in_the_past_too():
     assert [event.kind for event in bench.live.events] == ["start"]
     bench.live.step(20)
     assert [event.kind for event in bench.live.events] == ["start", "set_h", "pause"]
-
-
-def test_a_recorder_that_comes_later_learns_how_the_run_began_and_is_closed():
-    live, keeper = Live(SCENES["spin"]), Keeper()
-    live.record(keeper)
-    (start,) = keeper.events
-    assert (start.kind, start.scene, keeper.samples[0].step) == ("start", SCENES["spin"], 0)
-    live.close()
-    assert keeper.closed
 
 
 FAILING = """
@@ -277,7 +247,7 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
 @pytest.mark.parametrize("change", [{"omega": 1e8}, {"theta": 1e6}, {"length": 9.81, "h": 50.0}])
 def test_extreme_starts_neither_crash_nor_read_anything_but_finite_numbers(change):
     bench = Bench(DEFAULT_SCENE.altered(**change), speed=64)
-    bench.run(10)
+    bench.run(3)
     for sample in bench.keeper.samples:
         for reading in sample.readings:
             assert math.isfinite(reading.energy_error)
