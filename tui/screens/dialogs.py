@@ -66,12 +66,12 @@ class TextScreen(ModalScreen[None], Once[None]):
 
     def __init__(self, title: str, text: str) -> None:
         super().__init__()
+        self.title = title
         self.text = text
-        self.text_title = title
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(id="text") as scroll:
-            scroll.border_title = self.text_title
+            scroll.border_title = self.title
             scroll.border_subtitle = "arrows scroll, Esc closes"
             yield Static(self.text, markup=False)
 
@@ -92,9 +92,10 @@ def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
     """Yield a line for each key, or for each group of keys."""
     for group, members in groupby(bindings, key=lambda each: each.group or each):
         keys = [key_text(each) for each in members]
-        text = " ".join(keys) if len(keys) < 4 else f"{keys[0]} … {keys[-1]}"
+        if len(keys) > 3:
+            keys = [keys[0], "…", keys[-1]]
         does = group.description if isinstance(group, Binding.Group) else purpose(group)
-        yield f"{text:<{KEY_WIDTH - 1}} {does}"
+        yield f"{' '.join(keys):<{KEY_WIDTH - 1}} {does}"
 
 
 def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> str:
@@ -111,7 +112,9 @@ def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> st
             lines = [f"{left:<{COLUMN_WIDTH}}{right}".rstrip() for left, right in pairs]
         parts.append("\n".join(filter(None, [owner.BINDING_GROUP_TITLE, *lines, owner.HELP])))
     scene = source.scene
-    now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
+    now = ""
+    if source.stepping.h != scene.h:
+        now = f"h = {step_text(source)}"
     return "\n\n".join([*parts, scene_card(scene, now), glossary(), *map(method_card, scene.cast)])
 
 
@@ -160,25 +163,25 @@ class CastForm(Form[Scene]):
         self._scene = scene
         known = dict.fromkeys((*METHODS, *scene.cast))
         self._methods = [each for each in known if scene.model in each.models]
-        self._title = f"Methods for the model {scene.model}, one to {MAX_METHODS}"
         self.cast = scene.cast
 
     def compose(self) -> ComposeResult:
         listed = OptionList(*map(self._line, self._methods), id="cast")
-        listed.border_title = self._title
+        listed.border_title = f"Methods for the model {self._scene.model}, one to {MAX_METHODS}"
         listed.border_subtitle = "Space takes or leaves a method, Enter starts, Esc cancels"
         yield listed
 
     def _line(self, method: Method) -> Text:
         """As "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit: not taken."""
-        digit = str(self.cast.index(method) + 1) if method in self.cast else " "
+        digits = {each: at for at, each in enumerate(self.cast, 1)}
+        name = f"{digits.get(method, ' ')} {method.letter} {method.label:<22}"
         forces = f"{counted(method.force_evaluations, 'force')} a step"
-        kind = "symplectic" if method.symplectic else "not symplectic"
-        name = f"{digit} {method.letter} {method.label:<22}"
+        kind = "symplectic"
+        if not method.symplectic:
+            kind = "not symplectic"
         return Text(f"{name} order {method.order:<2} {forces:<16} {kind}")
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take or leave a method that was clicked."""
         self._toggle(event.option_index)
 
     def action_take(self) -> None:

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple, cast
 
-from rich.cells import cell_len
 from rich.markup import escape
 from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
@@ -20,7 +19,7 @@ class Entry(NamedTuple):
     """A line of the palette."""
 
     text: str
-    action: str | Callable[[], object]
+    action: str
     key: str = ""
 
 
@@ -36,7 +35,7 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
         ours = {each.action for each in bindings_of(type(node))}
         if enabled and binding.action in ours - done:
             done.add(binding.action)
-            press = partial(screen.app.simulate_key, binding.key)
+            press = f"app.simulate_key({binding.key!r})"
             yield Entry(purpose(binding), press, key_text(binding))
     if not screen.app.is_web:  # it may name a file
         yield Entry("copy the command for this moment", "copy_command")
@@ -53,13 +52,12 @@ class LabCommands(Provider):
         """Yield the text of each entry, with its key in the last column, and what runs it."""
         screen = cast(SourceScreen, self.screen)
         room = min(screen.size.width - 8, 100) - KEY_WIDTH
-        for text, run, key in entries(screen):
-            if cell_len(text) > room:
+        for text, action, key in entries(screen):
+            if len(text) > room:
                 text = f"{text[: room - 1]}…"
-            if isinstance(run, str):
-                run = partial(screen.run_action, run)
             # once the screen is in front again
-            yield f"{text:<{room}}{key:>{KEY_WIDTH}}", partial(screen.call_later, run)
+            run = partial(screen.call_later, screen.run_action, action)
+            yield f"{text:<{room}}{key:>{KEY_WIDTH}}", run
 
     async def discover(self) -> Hits:
         for text, run in self._lines():

@@ -25,8 +25,6 @@ from tui.screens.base import SourceScreen
 from tui.views.view import Pane
 from tui.words.numbers import seconds
 
-LONG = 100_000  # steps; a quarter of a second
-MIN_BAR = 24  # columns
 _SECONDS = Binding.Group("back, forward 1 s")
 _ENDS = Binding.Group("to the start, to the end")
 _TENTHS = Binding.Group("back, forward 10 %")
@@ -46,7 +44,7 @@ class SeekBar(Pane):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         assert isinstance(source, Replay)
-        text = facts(source, self.room.width - MIN_BAR - 3)
+        text = facts(source, self.room.width - 27)  # the bar has 24 columns or more
         self._length = source.length
         self._columns = max(self.room.width - len(text) - 3, 1)
         row = bar(source.playhead.position, source.length, source.ticks, self._columns)
@@ -73,15 +71,13 @@ def bar(position: float, length: float, ticks: Sequence[float], width: int) -> R
     """Return the bar: heavy up to the position, and a tick for each event."""
 
     def column(clock: float) -> int:
-        return min(int(clock / length * width), width - 1) if length > 0 else 0
+        return min(int(clock / (length or 1.0) * width), width - 1)
 
     here = column(position)
-    line = ["━"] * here + ["█"] + ["─"] * (width - here - 1)
-    for at in map(column, ticks):
-        if at != here:
-            line[at] = "┿" if at < here else "┼"
-    text = "".join(line)
-    return [(text[:here], TEXT), (text[here], WARN), (text[here + 1 :], FRAME)]
+    marked = set(map(column, ticks))
+    played = "".join("┿" if at in marked else "━" for at in range(here))
+    ahead = "".join("┼" if at in marked else "─" for at in range(here + 1, width))
+    return [(played, TEXT), ("█", WARN), (ahead, FRAME)]
 
 
 def facts(replay: Replay, room: int) -> str:
@@ -99,7 +95,9 @@ def facts(replay: Replay, room: int) -> str:
         "event": (bisect_right(replay.ticks, position), len(replay.ticks)),
     }
     parts = [f"{name} {at:>{len(str(last))}}/{last}" for name, (at, last) in numbers.items()]
-    for part in ["loop", *parts] if replay.looping else parts:
+    if replay.looping:
+        parts.insert(0, "loop")
+    for part in parts:
         if len(text) + len(part) + 2 <= room:
             text += f"  {part}"
     return text
@@ -143,7 +141,6 @@ class ReplayScreen(SourceScreen):
         self.seek(message.position)
 
     def action_change(self) -> None:
-        """Answer a key of the lab."""
         self.notify("A recording cannot be changed: f continues it live, and then it can.")
 
     def seek(self, position: float) -> None:
@@ -169,7 +166,7 @@ class ReplayScreen(SourceScreen):
             self.notify("Loading earlier samples ...", timeout=2)
         while not replay.fill():
             await asyncio.sleep(0)
-        if replay.sample.step > LONG:
+        if replay.sample.step > 100_000:  # a quarter of a second
             self.notify(f"Simulating {replay.sample.step} steps ...", timeout=2)
         try:
             if has_own(replay.scene):

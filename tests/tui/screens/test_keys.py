@@ -214,7 +214,7 @@ async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_
         assert theatre.stage.shown.quantity == "theta_error"
         await theatre.pilot.click("EventList", offset=(5, 2))
         await theatre.pilot.pause()
-        assert theatre.app.screen.text_title == "Events"
+        assert theatre.app.screen.title == "Events"
         await theatre.press("escape")
         run = theatre.source.sample.run
         await theatre.pilot.click("PhasePane", offset=(5, 0))
