@@ -4,12 +4,10 @@ import asyncio
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.message import Message
 from textual.widget import Widget
 
 from engine.methods.own import OwnMethodError
@@ -33,38 +31,32 @@ _TENTHS = Binding.Group("back, forward 10 %")
 class SeekBar(Pane):
     """The position in the replay, and its events; a click or a drag on it goes there."""
 
-    @dataclass
-    class Sought(Message):
-        """The user wants to see this moment."""
-
-        position: float  # s of the recording
-
     _columns = 1  # of the bar
-    _length = 0.0  # s of the recording
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         assert isinstance(source, Replay)
         text = facts(source, self.room.width - 27)  # the bar has 24 columns or more
-        self._length = source.length
         self._columns = max(self.room.width - len(text) - 3, 1)
         row = bar(source.playhead.position, source.length, source.ticks, self._columns)
         return Picture([[(" ", TEXT), *row, (f"  {text}", TEXT)]])
 
-    def on_mouse_down(self, event: events.MouseDown) -> None:
+    async def on_mouse_down(self, event: events.MouseDown) -> None:
         self.capture_mouse()
-        self._seek(event)
+        await self._seek(event)
 
-    def on_mouse_move(self, event: events.MouseMove) -> None:
+    async def on_mouse_move(self, event: events.MouseMove) -> None:
         if self.app.mouse_captured is self:
-            self._seek(event)
+            await self._seek(event)
 
     def on_mouse_up(self) -> None:
         self.release_mouse()
 
-    def _seek(self, event: events.MouseEvent) -> None:
+    async def _seek(self, event: events.MouseEvent) -> None:
+        assert isinstance(self.source, Replay)
         column = event.screen_x - self.content_region.x - 1  # clamped: a drag may leave the bar
         share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
-        self.post_message(self.Sought(share * self._length))
+        position = share * self.source.length
+        await self.run_action(f"screen.seek({position - self.source.playhead.position})")
 
 
 def bar(position: float, length: float, ticks: Sequence[float], width: int) -> Row:
@@ -137,22 +129,17 @@ class ReplayScreen(SourceScreen):
     def more(self) -> Iterator[Widget]:
         yield self.line(SeekBar())
 
-    def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
-        self.seek(message.position)
-
     def action_change(self) -> None:
         self.notify("A recording cannot be changed: f continues it live, and then it can.")
 
-    def seek(self, position: float) -> None:
-        self.replay.seek(position)
-        self.show_now()
-
     def action_seek(self, seconds: float) -> None:
-        self.seek(self.replay.playhead.position + seconds)
+        """Go forward, or back."""
+        self.replay.seek(self.replay.playhead.position + seconds)
+        self.show_now()
 
     def action_part(self, share: float) -> None:
         """Go forward by a share of the whole, or back."""
-        self.seek(self.replay.playhead.position + share * self.replay.length)
+        self.action_seek(share * self.replay.length)
 
     def action_reverse(self) -> None:
         self.replay.set_speed(-self.replay.playhead.speed)

@@ -122,7 +122,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         )
 
     async with on_stage(make, (120, 40)) as theatre:
-        theatre.stage.seek(theatre.source.length)
+        theatre.stage.action_part(1)
         await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
         async with asyncio.timeout(20):
             while not isinstance(theatre.stage, LiveScreen):
