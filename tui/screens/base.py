@@ -4,13 +4,12 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.reactive import var
-from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
@@ -28,22 +27,17 @@ from tui.words.command_line import command, reproduces
 from tui.words.events import event_lines, numbered
 from tui.words.plain_text import description
 
+if TYPE_CHECKING:
+    from tui.screens.app import PenduApp
+
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
-MAX_UNDOS = 30  # each may hold a run
 
 _SPEED = Binding.Group("half, double speed")
 _STEPS = Binding.Group("one step back, forward")
 _EVENTS = Binding.Group("previous, next event")
 _METHODS = Binding.Group("show or hide a method")
 _VIEWS = Binding.Group("view: lab, phase, …")
-
-
-class Host(Protocol):
-    """The app, as a screen sees it."""
-
-    fps: int
-    source_screens: list["SourceScreen"]
 
 
 class SourceScreen(SizedScreen[None]):
@@ -111,20 +105,18 @@ class SourceScreen(SizedScreen[None]):
         self.view = self.first_view(source)
         self._view_in_front = create(self.view, source, shown)
         self._lines: list[Pane] = []
-        self._timer: Timer | None = None  # of the frames
         self._frames = 0
         self._missed = 0.0  # s of the clock while the program was stopped
         self._is_late = False  # the next frame shows everything
         self._failure: str | None = None  # that a notice shows
         self._paused_by_dialog = False
-        self._undo: deque[State] = deque(maxlen=MAX_UNDOS)
+        self._undo: deque[State] = deque(maxlen=30)  # each may hold a run
 
     @property
-    def host(self) -> Host:
-        return cast(Host, self.app)
+    def host(self) -> "PenduApp":
+        return cast("PenduApp", self.app)
 
     def first_view(self, source: Source) -> str:
-        """Return the view that is in front at the start."""
         return "lab"
 
     # What is on the screen
@@ -161,10 +153,11 @@ class SourceScreen(SizedScreen[None]):
     # Frames, from the clock to the panes
 
     def on_mount(self) -> None:
+        self.frame_timer = self.set_interval(1 / self.host.fps, self.frame, pause=True)
         self.call_after_refresh(self.begin)
 
     def begin(self) -> None:
-        """Follow the clock from now on; the first paint is done."""
+        """Follow the clock from the first paint on."""
         try:
             self._prepare()
         except OSError as error:
@@ -173,9 +166,7 @@ class SourceScreen(SizedScreen[None]):
         gc.collect()
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
-        if self not in self.host.source_screens:
-            self.host.source_screens.append(self)
-        self._timer = self.set_interval(1 / self.host.fps, self.frame)
+        self.frame_timer.resume()
         for notice in self._notices:
             self.notify(notice, timeout=15)
 
@@ -212,12 +203,6 @@ class SourceScreen(SizedScreen[None]):
         if read:
             for line in self._lines:
                 line.follow(sample, self.shown)
-
-    def end(self) -> None:
-        """Stop following the clock: another screen takes over."""
-        if self._timer is not None:
-            self._timer.stop()
-        self.source.close()
 
     # Time
 
@@ -257,8 +242,9 @@ class SourceScreen(SizedScreen[None]):
 
     def action_mark(self) -> None:
         """Leave a mark at the sample, unless it has one; that of a replay is next to its file."""
-        is_marked = self.source.is_marked
-        text = "Already marked" if is_marked else f"Mark at {self.source.sample.t:.2f} s"
+        text = f"Mark at {self.source.sample.t:.2f} s"
+        if self.source.is_marked:
+            text = "Already marked"
         try:
             self.source.mark()
         except OSError as error:
@@ -302,7 +288,8 @@ class SourceScreen(SizedScreen[None]):
 
     def action_back(self) -> None:
         """Leave the zoom of the chart."""
-        self.change_shown(self.shown.zoomed(None) if self.shown.stretch else self.shown)
+        if self.shown.stretch:
+            self.change_shown(self.shown.zoomed(None))
 
     def action_zoom(self, factor: float) -> None:
         """Show `factor` times the range of time in the chart."""
@@ -321,11 +308,9 @@ class SourceScreen(SizedScreen[None]):
         return State(source.stepping, source.playhead.speed, self.shown, source.run_state)
 
     def keep(self, state: State) -> None:
-        """Keep a state for the next undo."""
         self._undo.append(state)
 
     def restore(self, state: State) -> None:
-        """Bring a state back."""
         self.source.set_speed(state.speed)
         self.shown = state.shown
 

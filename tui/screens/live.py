@@ -221,13 +221,12 @@ class LiveScreen(SourceScreen):
     # The tour
 
     def first_view(self, source: Source) -> str:
-        """Return the view of the scene's shot."""
         self.page = source.scene.name
         return source.scene.shot.view
 
     def begin(self) -> None:
         super().begin()
-        if self.begins_with_tour and self._timer is not None:
+        if self.begins_with_tour:
             self.action_tour()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

@@ -166,5 +166,7 @@ class ReplayScreen(SourceScreen):
         except (OSError, UserError) as error:
             self.warn(f"Cannot start recording: {explained(error)}")
         else:
-            self.end()
+            self.frame_timer.stop()
+            replay.close()
+            self.host.source_screens.append(lab)
             self.app.push_screen(lab)
