@@ -323,11 +323,8 @@ class SourceScreen(SizedScreen[None]):
 
     # Views and dialogs
 
-    def action_view(self, name: str = "") -> None:
+    async def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""
-        self.call_next(self._show_view, name)
-
-    async def _show_view(self, name: str) -> None:
         name = name or following(self.view)
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
@@ -350,9 +347,9 @@ class SourceScreen(SizedScreen[None]):
         from tui.screens.dialogs import help_text
 
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
-        owners = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
-        order = [type(self), *owners] if self.view == "lab" else [*owners, type(self)]
-        self.show_text("Help", help_text(order, self.source, self.app.size.width))
+        owners: list[type[Widget]] = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
+        owners.insert(0 if self.view == "lab" else len(owners), type(self))
+        self.show_text("Help", help_text(owners, self.source, self.app.size.width))
 
     def action_events(self) -> None:
         self.show_text("Events", *numbered(event_lines(self.source)))

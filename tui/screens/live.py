@@ -183,7 +183,7 @@ class LiveScreen(SourceScreen):
         self.start(scene, scene.speed)
         self.shown = self.shown.through(scene)
         if scene.shot.view != self.view:
-            self.action_view(scene.shot.view)
+            self.call_next(self.action_view, scene.shot.view)
 
     # Forms; they are imported when they are needed
 
@@ -286,7 +286,7 @@ class LiveScreen(SourceScreen):
         self.shown = before.shown
         self.live.set_speed(before.speed)
         self.live.pause(False)
-        self.action_view(view)
+        self.call_next(self.action_view, view)
         self.notify(notice, timeout=6)
         self._show_tour()
 
@@ -295,7 +295,7 @@ class LiveScreen(SourceScreen):
         step = self.tour.step
         self.shown = self.shown.through(step.scene, step.shot)
         if self.view != step.shot.view:
-            self.action_view(step.shot.view)
+            self.call_next(self.action_view, step.shot.view)
         self._show_tour()
 
     def _show_tour(self) -> None:
