@@ -4,7 +4,7 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -26,9 +26,6 @@ from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
 from tui.words.events import event_lines, numbered
 from tui.words.plain_text import description
-
-if TYPE_CHECKING:
-    from tui.screens.app import PenduApp
 
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
@@ -113,8 +110,9 @@ class SourceScreen(SizedScreen[None]):
         self._undo: deque[State] = deque(maxlen=30)  # each may hold a run
 
     @property
-    def host(self) -> "PenduApp":
-        return cast("PenduApp", self.app)
+    def host(self) -> Any:
+        """The PenduApp, which imports this module."""
+        return self.app
 
     def first_view(self, source: Source) -> str:
         return "lab"
