@@ -132,9 +132,9 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     low = math.log10(start)
     high = math.log10(end)
     labels: dict[float, str] = {}
+    apart = 8 * (high - low) / columns
     for seconds, text in _TIMES:
         place = math.log10(seconds)
-        apart = 8 * (high - low) / columns
         if low <= place <= high and (not labels or place - max(labels) >= apart):
             labels[place] = text
     if len(labels) < 2:  # so short that it is almost linear
@@ -189,7 +189,7 @@ def in_pi(turns: float, wrap: bool = False) -> str:
 
 def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
     """First and last x of a chart.  Columns keep their place in time while the window moves."""
-    latest = float(x[-1]) if len(x) else 0.0
+    latest = float(x.max(initial=0.0))
     if seconds is None:
         unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
         return 0.0, max(math.ceil(latest / unit) * unit, 1.0)

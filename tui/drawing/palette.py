@@ -21,8 +21,6 @@ NOBODY = -7
 FAINT = 64
 """Added to a method's ink: its fainter colour, for trails."""
 
-CLASSICS = 4  # inks from 0 that belong to methods, by `Method.hue`
-
 
 class Palette(NamedTuple):
     """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
@@ -120,15 +118,16 @@ def palette(theme: str) -> Palette:
 
 def inks(cast: Cast) -> tuple[int, ...]:
     """Return the ink of each method of a cast: the classics' own, or the next free one."""
-    free = itertools.count(CLASSICS)
+    free = itertools.count(4)
     return tuple(next(free) if method.hue is None else method.hue for method in cast)
 
 
 def ink_of(method: Method, cast: Cast) -> int:
     """Return a method's ink in a cast; outside of it QUIET, or a classic's own."""
-    in_cast = {each.key: ink for each, ink in zip(cast, inks(cast), strict=True)}
-    outside = QUIET if method.hue is None else method.hue
-    return in_cast.get(method.key, outside)
+    for each, ink in zip(cast, inks(cast), strict=True):
+        if each.key == method.key:
+            return ink
+    return QUIET if method.hue is None else method.hue
 
 
 def faint(ink: int) -> int:

@@ -254,9 +254,13 @@ class _Plot:
             if beyond[at, place]:
                 at = int(np.flatnonzero(beyond[:, place] & ~gone[:, place])[-1])
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
-                row = self.rows - 1 if value < 0 and not self.log else 0
+                row = 0
+                arrow = "↑"
+                if value < 0 and not self.log:
+                    row = self.rows - 1
+                    arrow = "↓"
                 number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
-                text = f"{'↓' if row else '↑'}{text}{number}"
+                text = f"{arrow}{text}{number}"
             self._write(self.left + at + 1, row, text, ink)
 
     def _write(self, column: int, row: int, text: str, ink: int) -> None:
@@ -296,8 +300,10 @@ def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Ax
         _, begin, end, _ = shown.stretch
     elif log_time:
         begin = max(10.0 ** math.floor(math.log10(end) - 2.3), min(window.repeats, end / 10))
-    make = log_time_axis if log_time else time_axis
-    return make(begin, end, columns, " run" if window.turned else "")
+    note = " run" if window.turned else ""
+    if log_time:
+        return log_time_axis(begin, end, columns, note)
+    return time_axis(begin, end, columns, note)
 
 
 def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:

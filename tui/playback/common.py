@@ -28,7 +28,9 @@ class Playhead(NamedTuple):
 
     def at(self, now: float) -> "Playhead":
         """Return the playhead at `now` [s] of a clock, which moves nothing by going back."""
-        elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
+        if self.seen is None or self.paused:
+            return self._replace(seen=now)
+        elapsed = max(0.0, now - self.seen)
         return self._replace(position=self.position + elapsed * self.speed, seen=now)
 
 

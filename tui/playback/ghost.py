@@ -56,5 +56,5 @@ class Ghost:
 
     def window(self, until: float, seconds: float | None = None) -> "Window":
         """Its errors up to a simulated time [s]: the last `seconds`, or all."""
-        back = math.inf if seconds is None else seconds + self._window.repeats
+        back = (seconds or math.inf) + self._window.repeats
         return self._window.cut(until - back, until)

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tui.playback.rows import Floats, Row, Rows, Window  # NumPy can wait for the first paint
 
 MAX_WAITING = 64  # rows that are shown without NumPy
-TRAIL = 300  # samples, ten seconds
 
 
 def changes_of(run: "Run") -> list[SteppingChange]:
@@ -53,6 +52,7 @@ class History:
         if self.exact.regime == "libration":
             self._repeats /= 2
         self._capacity = capacity
+        self.step = -1  # of the sample
         self._current: Row | None = None
         self._last_row = -1  # its step
         self._waiting: list[Row] = []
@@ -60,11 +60,6 @@ class History:
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
-
-    @property
-    def step(self) -> int:
-        """The step of the sample; -1 before the first."""
-        return self._current[0] if self._current else -1
 
     @property
     def returned(self) -> Sample | None:
@@ -90,6 +85,7 @@ class History:
         if is_new and sample.step and abs(sample.t) < 1e-6 * abs(h):  # t is rounded
             self._returned = sample
         self.sample = sample
+        self.step = sample.step
         self._current = row
         if is_row and is_new:
             self._last_row = sample.step
@@ -205,12 +201,12 @@ class History:
     def trails(self) -> "Floats":
         """Theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
 
-        At the last TRAIL samples, (samples, methods + 1, 2).
+        At the last 300 samples, ten seconds, (samples, methods + 1, 2).
         """
         current = self._current
         assert current is not None
         if self._trails is None or self._trails[0] is not current:  # read once a frame
-            self._trails = current, self.rows.trails(current, TRAIL)
+            self._trails = current, self.rows.trails(current, 300)
         return self._trails[1]
 
     def thetas(self, index: int, length: int) -> list[float]:

@@ -71,7 +71,9 @@ class Live(Playback):
     @property
     def ghost(self) -> "Ghost | None":
         ghost = self._left or self.laid_under
-        return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
+        if ghost is None or ghost.scene.model != self.scene.model:
+            return None
+        return ghost
 
     @property
     def next_step(self) -> float:
@@ -119,9 +121,9 @@ class Live(Playback):
 
     def _forward(self, steps: int) -> None:
         """Go so many steps forward, or to the next row, which depends on the run, not on frames."""
-        # a processor may be too slow for the speed
-        spacing = min(abs(self.playhead.speed / self.stepping.h) / ROW_RATE, 10_000)
-        spacing = max(1, round(spacing))
+        # at most 10 000 steps apart: a processor may be too slow for the speed
+        steps_a_row = abs(self.playhead.speed / self.stepping.h) / ROW_RATE
+        spacing = max(1, round(min(steps_a_row, 10_000)))
         with self._standing_still():
             self._run.forward(min(steps, spacing - self._run.step % spacing))
         if self._run.step % spacing == 0 and not self.failure:

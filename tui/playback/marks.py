@@ -27,8 +27,9 @@ class Marks:
     """The marks of one recording, in FILE.marks.json; of a bundled one, in the library."""
 
     def __init__(self, recording: Path) -> None:
-        is_bundled = recording.parent == library.GOLDEN
-        folder = library.folder() / "bundled" if is_bundled else recording.parent
+        folder = recording.parent
+        if folder == library.GOLDEN:
+            folder = library.folder() / "bundled"
         self.path = folder / (recording.name + library.MARKS)
         self._marks = _read(self.path)
 

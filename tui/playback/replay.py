@@ -257,5 +257,5 @@ def pieces(start: float, end: float) -> list[tuple[float, float]]:
     """Return what to read of [start, end]: the last DENSE seconds, and short pieces before."""
     middle = max(start, end - DENSE)
     count = min(MAX_PIECES, math.ceil(middle - start))
-    edges = [start + (middle - start) * n / count for n in range(count + 1)] if count else []
+    edges = [start + (middle - start) * n / max(count, 1) for n in range(count + 1)]
     return [(begin, min(begin + 1.0, until)) for begin, until in pairwise(edges)] + [(middle, end)]
