@@ -29,9 +29,27 @@ class Axis:
         return max([5, *map(len, self.labels.values())])
 
 
-def row_at(height: float, rows: int) -> int:
-    """Return the row of characters, from the top, at a height above the lower edge."""
-    return min(max(rows - 1 - int(height), 0), rows - 1)
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Two axes at a field of characters."""
+
+    x_axis: Axis
+    y_axis: Axis
+    columns: int
+    rows: int
+    left: int  # first column
+
+    def right(self, x: ArrayLike) -> Floats:
+        """Distances from the left edge, in characters."""
+        return self.columns * self.x_axis.share(x)
+
+    def up(self, y: ArrayLike) -> Floats:
+        """Distances from the lower edge, in characters."""
+        return self.rows * self.y_axis.share(y)
+
+    def row(self, y: float) -> int:
+        """The row of characters, from the top, that a value is in."""
+        return max(self.rows - 1 - int(self.up(y)), 0)
 
 
 def nice(value: float) -> float:

@@ -11,7 +11,7 @@ from typing import Self
 
 import numpy as np
 
-from tui.drawing.axes import Axis, Floats, log_axis, log_x_axis, row_at
+from tui.drawing.axes import Floats, Frame, log_axis, log_x_axis
 from tui.drawing.canvas import Canvas
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.drawing.picture import Picture
@@ -38,15 +38,8 @@ class Series:
         return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
-@dataclass(frozen=True, slots=True)
-class LogLog:
+class LogLog(Frame):
     """Two logarithmic axes in a picture that has a line of words above and one below."""
-
-    x_axis: Axis
-    y_axis: Axis
-    columns: int
-    rows: int
-    left: int  # of the first column
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
@@ -70,14 +63,11 @@ class LogLog:
             inside = (up >= self.y_axis.low) & (up <= self.y_axis.high)
             x = across[inside]
             y = up[inside]
-        right = self.columns * self.x_axis.share(x)
-        return right.tolist(), (self.rows * self.y_axis.share(y)).tolist()
+        return self.right(x).tolist(), self.up(y).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return column and row of the picture in which a point on the axes lies."""
-        right = self.columns * float(self.x_axis.share(math.log10(x)))
-        up = self.rows * float(self.y_axis.share(math.log10(y)))
-        return self.left + int(right), 1 + row_at(up, self.rows)
+        return self.left + int(self.right(math.log10(x))), 1 + self.row(math.log10(y))
 
 
 def loglog_chart(
@@ -98,7 +88,7 @@ def loglog_chart(
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         last = width - len(one.mark)
         cells = [
-            (min(axes.left + int(right), last), 1 + row_at(up, axes.rows))
+            (min(axes.left + int(right), last), max(axes.rows - int(up), 1))
             for right, up in zip(x, y, strict=True)
         ]
         if not one.dotted:

@@ -12,11 +12,11 @@ from engine.methods import Cast
 from tui.drawing.axes import (
     Axis,
     Floats,
+    Frame,
     linear_axis,
     log_axis,
     log_time_axis,
     per_column,
-    row_at,
     time_axis,
     time_span,
 )
@@ -143,7 +143,8 @@ def time_chart(
     sides = [run.columns(edges, shown.log, log_time) for run in runs]
     if shown.log:
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
-    plot = _Plot(Canvas(width, height), x_axis, y_axis, columns, rows, shown.log)
+    left = width - columns - ROOM
+    plot = _Plot(x_axis, y_axis, columns, rows, left, Canvas(width, height), shown.log)
     plot.draw_axes()
     plot.draw_marks(changes, levels, log_time)
     for run, (low, high) in reversed([*zip(runs, sides, strict=True)]):
@@ -152,10 +153,10 @@ def time_chart(
     if shown.log:
         values = 10.0**high
         for column, value in _crossings(high, times, window.repeats):
-            plot.canvas.label(plot.left + column, plot.row(value), CROSSING, TEXT)
+            plot.canvas.label(left + column, plot.row(value), CROSSING, TEXT)
     picture = plot.canvas.picture()
     ends = (x_axis.low, x_axis.high)
-    return TimePlot(picture, shown.places(cast), plot.left, times.tolist(), values, ends, log_time)
+    return TimePlot(picture, shown.places(cast), left, times.tolist(), values, ends, log_time)
 
 
 def _runs(
@@ -178,23 +179,11 @@ def _runs(
 
 
 @dataclass(frozen=True, slots=True)
-class _Plot:
+class _Plot(Frame):
     """A canvas with axes along its left edge and the lower one."""
 
     canvas: Canvas
-    x_axis: Axis
-    y_axis: Axis
-    columns: int
-    rows: int
     log: bool
-
-    @property
-    def left(self) -> int:
-        """Column of the first moment."""
-        return self.canvas.columns - self.columns - ROOM
-
-    def row(self, value: float) -> int:
-        return row_at(float(self.rows * self.y_axis.share(value)), self.rows)
 
     def draw_axes(self) -> None:
         canvas = self.canvas
@@ -208,7 +197,7 @@ class _Plot:
             canvas.label(left - 1, row, "┤", FRAME)
         end = 0  # of the label before
         for value, text in self.x_axis.labels.items():
-            column = left + min(int(self.columns * self.x_axis.share(value)), self.columns - 1)
+            column = left + min(int(self.right(value)), self.columns - 1)
             begin = min(column - (len(text) - 1) // 2, canvas.columns - len(text))
             if begin >= end:
                 canvas.label(column, self.rows, "┬", FRAME)
@@ -222,7 +211,7 @@ class _Plot:
         for x, text in changes:
             value = math.log10(max(x, FLOOR)) if log_time else x
             if self.x_axis.low < value < self.x_axis.high:
-                at = 2 * (self.left + self.columns * float(self.x_axis.share(value)))
+                at = 2 * (self.left + float(self.right(value)))
                 canvas.line(at, 0, at, 4 * self.rows, FRAME, dotted=True)
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
                 canvas.label(begin, self.rows - 1, text, QUIET)
@@ -239,8 +228,8 @@ class _Plot:
         beyond = (high > limit) | (low < -LARGEST)
         gone = beyond & np.roll(beyond, 1, axis=0)
         gone[0] = False
-        bottom = self.rows * self.y_axis.share(np.where(gone, np.nan, low))
-        top = self.rows * self.y_axis.share(np.where(gone, np.nan, high))
+        bottom = self.up(np.where(gone, np.nan, low))
+        top = self.up(np.where(gone, np.nan, high))
         for place, ink in enumerate(run.inks):
             x, y = _outline(bottom[:, place], top[:, place])
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
