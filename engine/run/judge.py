@@ -14,6 +14,7 @@ verdict is a function of scene, stepping and step alone.
 import copy
 import math
 from collections.abc import Sequence
+from itertools import permutations
 from typing import Any, Self
 
 from engine.methods import Cast, Method
@@ -141,14 +142,15 @@ class Judge:
 
     def _progress(self) -> Progress | None:
         """How far it is to the first verdict, or then to the last; None if it can come any time."""
-        if self._orbit and not self._orbit.is_regular:
-            progress = Progress(self._orbit.steps, limits.LONG, "steps")
-        else:
-            few = len(self._energy.bins) < limits.MIN_BINS
-            steps = limits.MIN_BINS * self._width if few else self._many
-            need = limits.MIN_PERIODS if self._orbit else math.ceil(steps * self._h / self._period)
-            progress = Progress(int(self._periods), need, "swings")
-        return progress if progress.have < progress.need else None
+        steps = self._many
+        if self._orbit:
+            steps = limits.LONG
+        elif len(self._energy.bins) < limits.MIN_BINS:
+            steps = limits.MIN_BINS * self._width
+        need = math.ceil(steps * self._h / self._period)
+        if self._orbit and self._orbit.is_regular:
+            need = limits.MIN_PERIODS
+        return Progress(int(self._periods), need, "swings") if self._periods < need else None
 
     def _trend(self, verdict: Verdict) -> Judgement:
         """Return a judgement with the recent slope, if there is evidence for one.
@@ -303,9 +305,8 @@ class Judges:
         self._model = model
         self._period = period
         self._judges: list[Judge] = []
-        # pairs of a method that leaves and a bounded one that it was below, and has passed
+        # pairs of a method that leaves and a bounded one whose error is the larger
         self._below: frozenset[tuple[int, int]] = frozenset()
-        self._passed: frozenset[tuple[int, int]] = frozenset()
 
     @property
     def judgements(self) -> list[Judgement]:
@@ -321,7 +322,7 @@ class Judges:
 
     def restart(self, steps: Sequence[float], points: Sequence[LookPoint | None]) -> None:
         """Judge anew from these look points on, each method with its own step size [s]."""
-        self._below = self._passed = frozenset()
+        self._below = frozenset()
         self._judges = [
             Judge(h=h, period=self._period, method=method, model=self._model)
             for method, h in zip(self._cast, steps, strict=True)
@@ -343,36 +344,27 @@ class Judges:
             if now.verdict != before:
                 verdict = Milestone("verdict", self._cast[index], step, t, point.error, now.verdict)
                 self.milestones.append(verdict._replace(trend=now.slope, lyapunov=now.lyapunov))
-        for index, other in self._crossings():
-            if point := points[index]:
+        for (index, leaving), (other, bounded) in permutations(enumerate(self._judges), 2):
+            leaves = leaving.judgement.verdict in ("grows", "loses")
+            stays = bounded.judgement.verdict == "bounded" and bounded.peak > limits.ROUNDING
+            if not (leaves and stays):
+                continue
+            if leaving.peak <= bounded.peak:
+                self._below |= {(index, other)}
+            elif (index, other) in self._below and (point := points[index]):
+                self._below -= {(index, other)}
                 crossing = Milestone("errors cross", self._cast[index], step, t, point.error)
                 self.milestones.append(crossing._replace(other=self._cast[other]))
 
     def note(self, kind: MilestoneKind, index: int, step: int, t: float, error: float) -> None:
         """Note what happens to a method once in a run."""
-        if not self.has(kind, index):
-            self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
+        self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
 
     def has(self, kind: MilestoneKind, index: int) -> bool:
         """Return whether this has happened to a method."""
-        return (kind, self._cast[index]) in ((each.kind, each.method) for each in self.milestones)
+        method = self._cast[index]
+        return any((each.kind, each.method) == (kind, method) for each in self.milestones)
 
     def fail(self, index: int, steps: int) -> None:
         """Note that a method's numbers have ended, so many of its steps after the restart."""
         self._judges[index].fail(steps)
-
-    def _crossings(self) -> list[tuple[int, int]]:
-        """Return the pairs (passing, passed) that are new since the last look."""
-        pairs = [
-            (index, other, leaving.peak > bounded.peak)
-            for index, leaving in enumerate(self._judges)
-            for other, bounded in enumerate(self._judges)
-            if leaving.judgement.verdict in ("grows", "loses")
-            and bounded.judgement.verdict == "bounded"
-            and bounded.peak > limits.ROUNDING
-        ]
-        self._below |= {(index, other) for index, other, above in pairs if not above}
-        above = self._below & {(index, other) for index, other, above in pairs if above}
-        new = above - self._passed
-        self._passed |= new  # once is enough
-        return sorted(new)

@@ -2,6 +2,7 @@
 
 import math
 import random
+from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST
 from engine.run import compiled
+from engine.run.judgement import Milestone
 from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
 from engine.run.rewindable import RewindableRun
@@ -19,7 +21,7 @@ from engine.scenes import SCENES, Scene
 DRIFT = SCENES["drift"]
 
 
-def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
+def moved(scene: Scene, gaps: Iterable[int], loops=PlainLoops) -> Lockstep:
     lockstep = Lockstep(scene, loops=loops, judged=True)
     for gap in gaps:
         lockstep.advance(gap)
@@ -27,19 +29,15 @@ def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
     return lockstep
 
 
-def watched(scene: Scene, seconds: float, every: int = 1) -> Lockstep:
-    lockstep = Lockstep(scene, judged=True)
-    while lockstep.t < seconds:
-        lockstep.advance(every)
-        lockstep.sample()
-    return lockstep
+def milestones(lockstep: Lockstep, kind: str) -> list[Milestone]:
+    return [each for each in lockstep.milestones if each.kind == kind]
 
 
-def tops(scene: Scene, seconds: float) -> dict[str, tuple[int, float, float]]:
+def tops(scene: Scene, steps: int) -> dict[str, tuple[int, float, float]]:
     """Step, time and energy error where each method first is over the top, by every step."""
     lockstep = Lockstep(scene)
     found: dict[str, tuple[int, float, float]] = {}
-    while lockstep.t < seconds:
+    for _ in range(steps):
         lockstep.advance(1)
         for method, reading in zip(scene.cast, lockstep.sample().readings, strict=True):
             if abs(reading.theta) > math.pi:
@@ -50,23 +48,19 @@ def tops(scene: Scene, seconds: float) -> dict[str, tuple[int, float, float]]:
 @pytest.mark.parametrize(
     "name", ["drift", "crossover", "near-separatrix", "rk4-limit", "chaos-loose"]
 )
-@pytest.mark.parametrize("every", [1, 7, 400])
-def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(
-    name: str, every: int
-) -> None:
-    lockstep = watched(SCENES[name], 30.0, every)
-    found = {
-        each.method.key: (each.step, each.t, each.energy_error)
-        for each in lockstep.milestones
-        if each.kind == "over the top"
-    }
-    assert found == tops(SCENES[name], lockstep.t - 1e-9)
+def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(name: str) -> None:
+    steps = math.ceil(30 / SCENES[name].h)
+    expected = tops(SCENES[name], steps)
+    for gap in (1, 7, 400):
+        found = milestones(moved(SCENES[name], [gap] * (steps // gap)), "over the top")
+        last = steps // gap * gap
+        assert {each.method.key: (each.step, each.t, each.energy_error) for each in found} == {
+            key: top for key, top in expected.items() if top[0] <= last
+        }
 
 
 def test_a_pendulum_that_spins_goes_over_no_top() -> None:
-    assert not [
-        each for each in watched(SCENES["spin"], 20).milestones if each.kind == "over the top"
-    ]
+    assert not milestones(moved(SCENES["spin"], [2000]), "over the top")
 
 
 def test_a_rotation_that_beats_with_its_steps_gets_no_early_verdict() -> None:
@@ -86,12 +80,8 @@ def test_verdicts_happen_when_they_are_given() -> None:
         changes += [
             (lockstep.step, m, after[i]) for i, m in enumerate(USUAL_CAST) if after[i] != before[i]
         ]
-    verdicts = [
-        (each.step, each.method, each.verdict)
-        for each in lockstep.milestones
-        if each.kind == "verdict"
-    ]
-    assert verdicts == changes
+    verdicts = milestones(lockstep, "verdict")
+    assert [(each.step, each.method, each.verdict) for each in verdicts] == changes
     assert {(method.key, verdict) for _, method, verdict in changes} >= {
         ("explicit_euler", "grows"),
         ("symplectic_euler", "bounded"),
@@ -101,30 +91,26 @@ def test_verdicts_happen_when_they_are_given() -> None:
 
 
 def test_rk4s_error_passes_verlets_once_for_good() -> None:
-    lockstep = watched(SCENES["crossover"], 120, 7)
-    (passing,) = [each for each in lockstep.milestones if each.kind == "errors cross"]
+    lockstep = moved(SCENES["crossover"], [7] * 86)
+    (passing,) = milestones(lockstep, "errors cross")
     assert passing.other is not None
     assert (passing.method.key, passing.other.key, passing.step) == ("rk4", "velocity_verlet", 167)
     assert passing.t == pytest.approx(33.4)
-    verdicts = {
-        each.method.key
-        for each in lockstep.milestones
-        if each.kind == "verdict" and each.step <= 167
-    }
+    verdicts = {each.method.key for each in milestones(lockstep, "verdict") if each.step <= 167}
     assert {"rk4", "velocity_verlet"} <= verdicts
 
 
 def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
     lockstep = Lockstep(Scene(model="linear", h=1.0), judged=True)
     lockstep.advance(2000)
-    failed = {each.method.key: each for each in lockstep.milestones if each.kind == "failed"}
+    failed = {each.method.key: each.t for each in milestones(lockstep, "failed")}
     readings = lockstep.sample().readings
     ends = {
         m.key: r.diverged_at
         for m, r in zip(USUAL_CAST, readings, strict=True)
         if r.diverged_at is not None
     }
-    assert {key: milestone.t for key, milestone in failed.items()} == ends
+    assert failed == ends
     assert failed
     for method, judgement in zip(USUAL_CAST, lockstep.judgements, strict=True):
         assert (judgement.verdict == "failed") == (method.key in failed)
@@ -174,7 +160,8 @@ def test_a_change_of_the_stepping_in_the_past_forgets_what_came_later() -> None:
     assert verdicts == ["grows", "bounded", "bounded", "loses"]
 
 
-def test_nothing_is_simulated_for_the_judge() -> None:
+@pytest.mark.parametrize("name", ["drift", "near-separatrix", "crossover"])
+def test_nothing_is_simulated_for_the_judge(name: str) -> None:
     """Velocity Verlet evaluates the force once a step, and once more where it begins."""
     verlet = USUAL_CAST[2]
     calls = []
@@ -182,6 +169,6 @@ def test_nothing_is_simulated_for_the_judge() -> None:
     def counting(force, phase, h):
         return verlet.phases(lambda theta: calls.append(theta) or force(theta), phase, h)
 
-    scene = SCENES["crossover"].with_cast((replace(verlet, phases=counting),))
+    scene = SCENES[name].with_cast((replace(verlet, phases=counting),))
     Lockstep(scene, judged=True).advance(600)
     assert sum(type(theta) is float for theta in calls) == 601  # tangent maps take complex numbers

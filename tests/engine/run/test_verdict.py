@@ -52,15 +52,12 @@ def test_verdicts_wait_for_nine_periods_as_a_rule() -> None:
     assert waits[9 * len(waits) // 10] <= 25
 
 
-RESONANCES = [(1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757)]
-
-
-@pytest.mark.parametrize(("theta", "h"), RESONANCES)
-@pytest.mark.parametrize("method", [S, V], ids=lambda method: method.key)
-def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(
-    method, theta: float, h: float
-) -> None:
-    assert course(method, Scene(theta=theta, h=h), 6000) in ([], ["bounded"])
+@pytest.mark.parametrize(
+    ("theta", "h"), [(1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757)]
+)
+def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(theta: float, h: float) -> None:
+    for method in (S, V):
+        assert course(method, Scene(theta=theta, h=h), 6000) in ([], ["bounded"])
 
 
 @pytest.mark.parametrize(
