@@ -108,10 +108,10 @@ class History:
         if with_extremes:
             low = [reading.energy_error_low for reading in readings]
             high = [reading.energy_error_high for reading in readings]
-        x = self._x(sample.step, sample.t)
+        x = self.x(sample.step, sample.t)
         return sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others]
 
-    def _x(self, step: int, t: float) -> float:
+    def x(self, step: int, t: float) -> float:
         """Return the simulated time run through [s] up to a step at t."""
         x = turn = 0.0
         for change in self.changes:
@@ -188,7 +188,7 @@ class History:
         None if no sample up to there is known.
         """
         window = self.window()
-        count = int((window.x <= self._x(change.step, change.t)).sum())
+        count = int((window.x <= self.x(change.step, change.t)).sum())
         if not count:
             return None
         low = -window.low["energy_error"][count:]

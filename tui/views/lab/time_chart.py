@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from textual import events
@@ -10,7 +9,6 @@ from textual import events
 from engine.methods import Cast
 from engine.models.model import ExactMotion, Model
 from engine.run.lockstep import Sample
-from engine.run.stepping import SteppingChange
 from tui.drawing.picture import Picture
 from tui.playback.shown import Quantity, Shown, Stretch
 from tui.playback.source import Source
@@ -67,16 +65,6 @@ def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
     return text
 
 
-def _step_changes(changes: Sequence[SteppingChange]) -> list[tuple[float, str]]:
-    """Return the elapsed times [s] and "h 0.1" of changes after the start."""
-    marks: list[tuple[float, str]] = []
-    elapsed = 0.0
-    for before, change in pairwise(changes):
-        elapsed += abs(change.t - before.t)
-        marks.append((elapsed, f"h {change.stepping.h:.4g}"))
-    return marks
-
-
 class TimeChart(Pane):
     """The pointer reads out a moment, the wheel zooms there."""
 
@@ -119,7 +107,10 @@ class TimeChart(Pane):
         ghost = None
         if source.ghost is not None:
             ghost = source.ghost.window(until, back), source.ghost.scene.cast
-        changes = _step_changes(source.changes)
+        changes = [
+            (source.history.x(change.step, change.t), f"h {change.stepping.h:.4g}")
+            for change in source.changes[1:]
+        ]
         return time_chart(window, self.cast, look, *self.room, ghost=ghost, changes=changes)
 
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:

@@ -111,7 +111,7 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
 async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_is_known(tmp_path):
     async with player(recorded(tmp_path / "long.mcap", 100.0)) as theatre:
         chart = theatre.stage.query_one(TimeChart)
-        theatre.stage.seek(90.0)
+        theatre.stage.action_seek(90.0)
         assert "reading" in str(chart.border_subtitle)
         for _ in range(60):
             theatre.now += 1 / FPS
