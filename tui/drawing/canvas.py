@@ -126,13 +126,14 @@ class Canvas:
         if not (-radius < x < self.width + radius and -radius < y < self.height + radius):
             return
         most = radius * radius
-        least = (radius - 1) ** 2 if hollow and radius > 1 else -1.0
-        dots = [
-            (i, j)
-            for j in range(floor(y - radius), floor(y + radius) + 2)
-            for i in range(floor(x - radius), floor(x + radius) + 2)
-            if least < (i + 0.5 - x) ** 2 + (j + 0.5 - y) ** 2 <= most
-        ]
+        least = -1.0
+        if hollow and radius > 1:
+            least = (radius - 1) ** 2
+        columns = range(floor(x - radius), floor(x + radius) + 1)
+        rows = range(floor(y - radius), floor(y + radius) + 1)
+        across = [(i, (i + 0.5 - x) ** 2) for i in columns]
+        along = [(j, (j + 0.5 - y) ** 2) for j in rows]
+        dots = [(i, j) for j, down in along for i, right in across if least < right + down <= most]
         self.points(dots, ink)
 
     def label(self, column: int, row: int, text: str, ink: int) -> None:
@@ -183,7 +184,7 @@ def _row(text: str, inks: bytes) -> Row:
     """Return characters, each with its ink, in pieces of one ink."""
     return tuple(
         [
-            (text[slice(*span.span())], NOBODY if span[1] is None else span[1][0] + NOBODY)
+            (text[span.start() : span.end()], (span[1] or b"\0")[0] + NOBODY)
             for span in _SPANS.finditer(inks)
         ]
     )

@@ -92,6 +92,8 @@ class Rows:
 
     def number_after(self, step: int) -> int:
         """Return the number of the first row after a step; of old steps, that of their wide row."""
+        if step >= self.last_step(self.count):
+            return self.count
         recent = self._recent["step"][self._slots(self._first, self.count)]
         number = self._first + int(np.searchsorted(recent, step, "right"))
         if number > self._first or not self._first:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from engine.models.model import Model
 from engine.run.lockstep import Sample
@@ -10,27 +11,26 @@ from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
 
-def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
-    """Return the frame, or pi where a method is shown that may leave it.
+class Reach(NamedTuple):
+    """How far [rad] methods may swing: those that stay, and all that are shown.
 
-    A method that is unstable at its h gets all the room at once.
+    The frame is the exact motion's amplitude times a power of 1.3, so that it hardly ever changes;
+    pi where that is large.  Largest errors only grow during a run, so it never jumps back and
+    forth.  A method that is unstable at its h gets all the room at once.
     """
+
+    frame: float
+    widest: float
+
+
+def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> Reach:
     staying = _staying(scene, stepping, sample, shown)
-    return _frame_of(scene, sample, staying) if len(staying) == len(shown) else math.pi
-
-
-def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
-    """Return the half width [rad] that the methods which stay cannot leave with their energy.
-
-    It is the exact motion's amplitude times a power of 1.3, so that it hardly ever changes; pi
-    where that is large.  Largest errors only grow during a run, so it never jumps back and forth.
-    """
-    return _frame_of(scene, sample, _staying(scene, stepping, sample, shown))
-
-
-def _frame_of(scene: Scene, sample: Sample, staying: Sequence[int]) -> float:
     largest = max((sample.readings[place].max_energy_error for place in staying), default=0.0)
-    return _frame(scene.equations, scene.theta, scene.omega, largest)
+    frame = _frame(scene.equations, scene.theta, scene.omega, largest)
+    widest = math.pi
+    if len(staying) == len(shown):
+        widest = frame
+    return Reach(frame, widest)
 
 
 @lru_cache(maxsize=8)

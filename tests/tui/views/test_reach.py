@@ -8,13 +8,13 @@ from engine.methods import USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import Lab
-from tui.views.reach import amplitude, frame, reach
+from tui.views.reach import amplitude, reach
 
 
 def reaches(scene, seconds, shown):
     """Second by second."""
     lab = Lab(scene)
-    return [reach(scene, lab.live.stepping, lab.run(1), shown) for _ in range(seconds)]
+    return [reach(scene, lab.live.stepping, lab.run(1), shown).widest for _ in range(seconds)]
 
 
 @pytest.mark.parametrize(
@@ -36,14 +36,14 @@ def test_no_method_ever_swings_beyond_it(name):
     lab = Lab(SCENES[name])
     for _ in range(300):
         sample = lab.run(1 / 10)
-        bound = reach(SCENES[name], lab.live.stepping, sample, (1, 2, 3))
+        bound = reach(SCENES[name], lab.live.stepping, sample, (1, 2, 3)).widest
         assert max(abs(reading.theta) for reading in sample.readings[1:]) <= bound
 
 
 def test_a_method_beyond_its_limit_gets_all_the_room_at_once():
     lab = Lab(SCENES["gentle"])
     lab.live.set_stepping(Stepping(0.7))  # z = 2.2
-    assert reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,)) == math.pi
+    assert reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,)).widest == math.pi
 
 
 def test_the_frame_holds_what_stays_and_leaves_out_what_goes():
@@ -52,5 +52,5 @@ def test_the_frame_holds_what_stays_and_leaves_out_what_goes():
     assert size == pytest.approx(0.1)
     lab = Lab(scene)
     for _ in range(30):
-        half = frame(scene, lab.live.stepping, lab.run(1), range(4))
-        assert half == pytest.approx(1.3 * size)  # although Explicit Euler is far out
+        found = reach(scene, lab.live.stepping, lab.run(1), range(4))
+        assert found.frame == pytest.approx(1.3 * size)  # although Explicit Euler is far out

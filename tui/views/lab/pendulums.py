@@ -13,7 +13,7 @@ from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FRAME, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
-from tui.views.reach import frame, reach
+from tui.views.reach import reach
 from tui.views.view import Held, Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
@@ -32,6 +32,10 @@ class Bob(NamedTuple):
     ghost: bool = False  # the exact swing: dotted and hollow
     length: float = 1.0  # of the rod, over that at rest
     diverged: bool = False  # its numbers ended here: crossed out
+
+    def enlarged(self, scale: int) -> "Bob":
+        trail = [scale * theta for theta in self.trail]
+        return self._replace(theta=scale * self.theta, trail=trail)
 
 
 def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float = pi) -> Picture:
@@ -153,7 +157,7 @@ class Pendulum(Pane):
         self._drag.clear()
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        places = self.places
+        shown = places = self.places
         title = "Pendulums"
         exact = "dotted: exact"
         if self._place is not None:
@@ -162,31 +166,22 @@ class Pendulum(Pane):
             places = [self._place]
             title = self.cast[self._place].label
             exact = ""
-        scale = self._scale(source, sample, places)
-        if scale > 1:
-            title += f", angles ×{scale}"
-        self.write_titles(title, exact)
+        frame, widest = reach(source.scene, source.stepping, sample, shown)
+        if source.ghost is not None:
+            widest = max(widest, source.ghost.widest)
         bobs = self._bobs(source, sample, places)
-        widest = MAGNIFIED
         if self._drag:
             widest = pi  # the pointer needs the room above the pivot, too
-        elif scale == 1:
-            widest = reach(source.scene, source.stepping, sample, self.places)
-            if source.ghost is not None:
-                widest = max(widest, source.ghost.widest)
-        if scale > 1:
-            for at, bob in enumerate(bobs):
-                trail = [scale * theta for theta in bob.trail]
-                bobs[at] = bob._replace(theta=scale * bob.theta, trail=trail)
+        elif not self.shown.overview:
+            half = self.shown.theta or frame
+            largest = max((abs(sample.readings[each].theta) for each in places), default=pi)
+            scale = int(MAGNIFIED / half)
+            if scale > 1 and largest <= half:  # too small to be seen
+                widest = MAGNIFIED
+                title += f", angles ×{scale}"
+                bobs = [bob.enlarged(scale) for bob in bobs]
+        self.write_titles(title, exact)
         return pendulum_picture(*self.room, bobs, widest)
-
-    def _scale(self, source: Source, sample: Sample, places: Sequence[int]) -> int:
-        """Return by how much to enlarge angles that are too small to be seen."""
-        if self.shown.overview or self._drag:
-            return 1
-        half = self.shown.theta or frame(source.scene, source.stepping, sample, self.places)
-        largest = max((abs(sample.readings[each].theta) for each in places), default=pi)
-        return max(1, int(MAGNIFIED / half)) if largest <= half else 1
 
     def _bobs(self, source: Source, sample: Sample, places: Sequence[int]) -> list[Bob]:
         scene = source.scene

@@ -15,7 +15,7 @@ from tui.drawing.picture import Picture
 from tui.playback.live import has_own
 from tui.playback.source import Source
 from tui.views.phase.viewport import Viewport
-from tui.views.reach import amplitude, frame
+from tui.views.reach import amplitude, reach
 from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
@@ -62,8 +62,8 @@ class PhasePane(Chooser[State]):
         scene = self.source.scene
         half = math.pi
         if self.sample is not None and not self.shown.overview:
-            stepping = self.source.stepping
-            half = self.shown.theta or frame(scene, stepping, self.sample, self.places)
+            found = reach(scene, self.source.stepping, self.sample, self.places)
+            half = self.shown.theta or found.frame
         line = self.shown.line
         fence = abs(line.value) if line and line.quantity == "omega" else 0.0
         return Viewport.portrait(*self._cells, scene, half, fence)

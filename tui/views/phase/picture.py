@@ -98,8 +98,11 @@ def phase_picture(
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*_on_screen(viewport, *closed), point.ink)
-    for point in points:
-        _draw_point(canvas, viewport, point)
+    if points:
+        x = viewport.x(np.array([point.theta for point in points]))
+        y = viewport.y(np.array([point.omega for point in points]))
+        for point, right, down in zip(points, x.tolist(), y.tolist(), strict=True):
+            _draw_point(canvas, right, down, point)
     write_words(canvas, portrait.words)
     return canvas.picture()
 
@@ -114,7 +117,7 @@ def _scatter(
     x = viewport.x(points[0])
     y = viewport.y(points[1])
     for right, down in dots:
-        canvas.scatter(np.floor(x) + right, np.floor(y) + down, ink)
+        canvas.scatter(x + right, y + down, ink)
 
 
 def _draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
@@ -135,10 +138,8 @@ def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
     return x, y
 
 
-def _draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
+def _draw_point(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     """Draw a disc, and its letter in the first free cell around it or at the edge nearest to it."""
-    x = float(viewport.x(point.theta))
-    y = float(viewport.y(point.omega))
     canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
     if not (math.isfinite(x) and math.isfinite(y)):
         return
@@ -195,7 +196,9 @@ class Section:
             canvas.path(*_on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
         if crosshair is not None:
             _draw_crosshair(canvas, viewport, crosshair)
-        _draw_point(canvas, viewport, PhasePoint(*start, self._ink, self._method.letter))
+        x = float(viewport.x(start[0]))
+        y = float(viewport.y(start[1]))
+        _draw_point(canvas, x, y, PhasePoint(*start, self._ink, self._method.letter))
         write_words(canvas, axes(viewport))
         return canvas.picture()
 
