@@ -166,15 +166,15 @@ class Canvas:
 
     def picture(self) -> Picture:
         text, _ = codecs.charmap_decode(self._bits, "strict", _BRAILLE)
-        inks = bytes(self._inks)
-        if self._letters:
-            characters = list(text)
-            lettered = bytearray(inks)
-            for cell, (letter, ink) in self._letters.items():
-                characters[cell] = letter
-                lettered[cell] = 0 if letter == " " else ink - NOBODY
-            text = "".join(characters)
-            inks = bytes(lettered)
+        lettered = self._inks[:]
+        pieces: list[str] = []
+        end = 0
+        for cell, (letter, ink) in sorted(self._letters.items()):
+            pieces += text[end:cell], letter
+            end = cell + 1
+            lettered[cell] = 0 if letter == " " else ink - NOBODY
+        text = "".join([*pieces, text[end:]])
+        inks = bytes(lettered)
         rows = [slice(self.columns * row, self.columns * (row + 1)) for row in range(self.rows)]
         return Picture(tuple([_row(text[row], inks[row]) for row in rows]))
 
