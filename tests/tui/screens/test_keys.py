@@ -82,7 +82,7 @@ async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_m
         assert theatre.source.sample.t < -0.3
 
 
-async def test_settings_are_undone_one_after_the_other():
+async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_speed():
     async with lab() as theatre:
         await theatre.run(1)
 
@@ -90,10 +90,16 @@ async def test_settings_are_undone_one_after_the_other():
             source = theatre.source
             return source.stepping.h, source.playhead.speed, source.scene, theatre.stage.shown
 
-        before = settings()
-        await theatre.press("plus", "greater_than_sign", "p", "y")
-        await theatre.press(*"uuuuu")
-        assert settings() == before
+        before = [settings()]
+        last = [*SCENES.values()][-1]
+        for keys in (["plus"], [">"], ["P", "end", "enter"], ["y"]):
+            await theatre.press(*keys)
+            before.append(settings())
+        assert settings()[1:3] == (last.speed, last)
+        for earlier in reversed(before[:-1]):
+            await theatre.press("u")
+            assert settings() == earlier
+        assert theatre.source.sample.step == 20
         await theatre.press("u")  # there is nothing left to undo
 
 
@@ -194,18 +200,6 @@ async def test_a_click_on_an_event_goes_there_and_brackets_go_from_one_to_the_ne
         assert "run 1" in [each.message for each in theatre.app._notifications][-1]
 
 
-async def test_a_listed_scene_starts_at_its_own_speed_and_u_brings_back_run_and_speed():
-    async with lab() as theatre:
-        await theatre.run(1)
-        source = theatre.source
-        await theatre.press(">", ">", "<", "P", "end", "enter")
-        last = [*SCENES.values()][-1]
-        assert (source.scene.name, source.playhead.speed) == (last.name, last.speed)
-        await theatre.press("u")
-        assert (source.scene.name, source.playhead.speed) == ("drift", 2.0)
-        assert theatre.source.sample.step == 20
-
-
 async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_what_their_keys_do():
     async with lab() as theatre:
         await theatre.run(1)
@@ -222,10 +216,9 @@ async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
 
 
-@pytest.mark.parametrize("opening", ["question_mark", "ctrl+p", "i"])
-async def test_a_dialog_pauses_the_lab_which_is_afterwards_as_it_was_before(opening):
+async def test_a_dialog_pauses_the_lab_which_is_afterwards_as_it_was_before():
     async with lab() as theatre:
-        for paused in (False, True):
+        for opening, paused in (("question_mark", False), ("ctrl+p", False), ("i", True)):
             theatre.source.pause(paused)
             await theatre.press(opening)
             await theatre.pilot.pause()

@@ -3,16 +3,14 @@
 import asyncio
 
 import pytest
-from textual.command import CommandList
 from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import Screen
-from textual.widgets import Input, OptionList
+from textual.widgets import OptionList
 from textual.widgets._toast import Toast
 
 from tests.tui.harness import lab
 from tui.screens.dialogs import TextScreen
-from tui.screens.palette import Commands, LabCommands
 
 
 async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
@@ -29,35 +27,6 @@ async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
         help_screen.dismiss()
         help_screen.dismiss()
         await theatre.pilot.pause()
-        assert theatre.app.screen is theatre.stage
-
-
-async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypatch):
-    search = LabCommands.search
-
-    async def closed_meanwhile(self, query):
-        async for hit in search(self, query):
-            yield hit
-        await theatre.app.screen.query_one(CommandList).remove()  # as closing does
-        searched.set()
-
-    async with lab() as theatre:
-        await theatre.press("ctrl+p")
-        assert isinstance(theatre.app.screen, Commands)
-        async with asyncio.timeout(20):
-            while not theatre.app.screen.query_one(OptionList).option_count:
-                await theatre.pilot.pause(0.01)
-        searched = asyncio.Event()
-        monkeypatch.setattr(LabCommands, "search", closed_meanwhile)
-        theatre.app.screen.query_one(Input).value = "zzz"  # finds nothing: the list is to be hidden
-        async with asyncio.timeout(20):
-            await searched.wait()
-            while any(
-                worker.node is theatre.app.screen and not worker.is_finished
-                for worker in theatre.app.workers
-            ):
-                await theatre.pilot.pause(0.01)
-        await theatre.press("escape")
         assert theatre.app.screen is theatre.stage
 
 

@@ -174,15 +174,6 @@ def test_the_recording_of_a_killed_lab_is_recovered_and_reported_at_the_next_sta
         assert recording.length > 0
 
 
-def test_without_recording_nothing_is_written(library):
-    with lab(library, "live", "--no-record") as session:
-        session.wait_for("not recorded")
-        session.type("q")
-        assert session.end() == 0
-        assert "saved " not in session.output.decode()
-    assert not library.exists()
-
-
 def test_a_replay_plays_and_goes_on_live(library):
     with lab(library, "replay", "drift", "--start-at", "5") as session:
         session.wait_for("REPLAY")
@@ -225,14 +216,3 @@ def test_a_terminal_that_cannot_move_its_cursor_gets_a_sentence_and_exit_4(libra
 )
 def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, words):
     assert pendu(*arguments).refused(code, words)
-
-
-def test_when_the_folder_goes_away_the_lab_goes_on_and_says_so(library):
-    with lab(library) as session:
-        session.wait_for(RECORDING)
-        for path in library.iterdir():
-            path.unlink()
-        library.rmdir()
-        session.wait_for("NOT RECORDED")
-        session.type("q")
-        assert session.end() == 5

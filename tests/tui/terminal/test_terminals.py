@@ -65,10 +65,6 @@ def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
     assert b"-----" in output  # a frame
 
 
-def test_pixels_can_be_chosen(tmp_path):
-    assert "▀" in seen(tmp_path, "live", "--pixels", "half").decode()
-
-
 def test_no_color_is_no_colour_at_all_and_no_mouse_leaves_the_mouse_alone(tmp_path):
     output = seen(tmp_path, "--no-mouse", NO_COLOR="1")
     assert codes(output) <= {"0", "1", "2", "7", "39", "49", "22", "27"}
