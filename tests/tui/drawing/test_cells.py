@@ -25,40 +25,27 @@ class Drawn(CellWidget):
 
 
 class CellApp(App[None]):
-    """One widget of cells."""
-
     def compose(self) -> ComposeResult:
         yield Drawn()
 
 
-async def test_only_rows_that_changed_are_made_anew():
+async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew():
     app = CellApp()
-    async with app.run_test(size=(4, 4)) as pilot:
+    async with app.run_test(size=(8, 6)) as pilot:
+        await pilot.resize_terminal(4, 4)
+        await pilot.pause()
         cells = app.query_one(Drawn)
+        assert cells.text == "4x4"
         cells.show(Picture([[(letter, TEXT)] for letter in "abcd"]))
         await pilot.pause()
-        assert cells.text == "a\nb\nc\nd"
         before = cells.painted
         cells.show(Picture([[(letter, TEXT)] for letter in "abC"]))
         await pilot.pause()
         assert cells.text == "a\nb\nC"
         kept = [old is new for old, new in zip(before, cells.painted, strict=True)]
         assert kept == [True, True, False, False]
-
-
-async def test_a_row_may_bring_its_own_style():
-    app = CellApp()
-    async with app.run_test(size=(4, 4)):
-        cells = app.query_one(Drawn)
+        # a row may bring its own style
         cells.show(Picture([[("x", Style(color="#010203", reverse=True)), ("y", NOBODY)]]))
         x, y = list(cells.render_line(0))[:2]
         assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
         assert x.style.bgcolor == y.style.bgcolor
-
-
-async def test_a_picture_is_drawn_for_the_room_that_there_is():
-    app = CellApp()
-    async with app.run_test(size=(8, 4)) as pilot:
-        await pilot.resize_terminal(9, 6)
-        await pilot.pause()
-        assert app.query_one(Drawn).text == "9x6"

@@ -10,7 +10,7 @@ import pytest
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from recordings.events import Entry, Event
+from recordings.events import Entry
 from recordings.library import GOLDEN
 from recordings.recorder import Recorder
 from recordings.recording import Recording
@@ -19,7 +19,7 @@ from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
 from tui.cli.options import resolve
 from tui.playback.marks import Mark, Marks
-from tui.playback.replay import DENSE, MAX_PIECES, Replay, pieces
+from tui.playback.replay import Replay, pieces
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -160,21 +160,17 @@ def test_it_shows_the_past_that_the_lab_showed(tmp_path):
 
 
 def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
-    long = pieces(100.0, 30_000.0)
     assert pieces(0.0, 30.0) == [(0.0, 30.0)]
-    assert long[-1] == (30_000.0 - DENSE, 30_000.0)
-    assert long[0] == (100.0, 101.0)
-    assert len(long) == MAX_PIECES + 1
-    whole = pieces(0.0, DENSE + 200)
+    first, *_, last = long = pieces(100.0, 30_000.0)
+    assert (first, last, len(long)) == ((100.0, 101.0), (29_940.0, 30_000.0), 301)
+    whole = pieces(0.0, 260.0)
     assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
 
 
 def test_the_step_size_is_the_one_in_force_at_the_moment(table):
-    seen = {}
-    for clock in (1.0, 3.0, 4.5, 6.0, 11.0):
+    for clock, h in {1.0: 0.05, 3.0: 0.1, 4.5: -0.1, 6.0: 0.02, 11.0: 0.05}.items():
         table.replay.seek(clock)
-        seen[clock] = table.replay.stepping.h
-    assert seen == {1.0: 0.05, 3.0: 0.1, 4.5: -0.1, 6.0: 0.02, 11.0: 0.05}
+        assert table.replay.stepping.h == h
 
 
 def test_the_next_event_and_the_one_before_are_found(table):
@@ -258,15 +254,15 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
     _, first, path = lab
     said = next(each for each in first if each.verdict == "bounded")
     with Recorder(tmp_path / "other.mcap", wall=None) as recorder:
-        for clock, value in itertools.takewhile(
-            lambda entry: entry.value.run == 1, Table(path).recording.entries()
-        ):
-            if isinstance(value, Event):
-                if value.milestone == said:
-                    value = value._replace(milestone=said._replace(verdict="wanders"))
-                recorder.event(value, clock)
-            else:
+        for clock, value in Table(path).recording.entries():
+            if value.run > 1:
+                break
+            if isinstance(value, Sample):
                 recorder.sample(value, clock)
+                continue
+            if value.milestone == said:
+                value = value._replace(milestone=said._replace(verdict="wanders"))
+            recorder.event(value, clock)
     assert verify(tmp_path / "other.mcap").identical
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
@@ -317,8 +313,7 @@ def test_a_file_of_marks_that_is_not_ours_is_no_marks(tmp_path, content):
     assert list(Marks(tmp_path / "a.mcap")) == []
 
 
-def test_a_closed_replay_stands_still(sitting):
-    table = Table(sitting)
+def test_a_closed_replay_stands_still(table):
     here = table.replay.sample
     table.replay.close()
     assert table.run(1.0) == here
