@@ -24,12 +24,13 @@ from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.rows import Window
-from tui.playback.shown import LARGEST, Shown
+from tui.playback.shown import Shown
 
 MIN_COLUMNS = 20
 MIN_ROWS = 5
 ROOM = 4  # columns for the letters at the right end
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
+LARGEST = 1e6  # larger values leave the chart: a method that fails leaves room for the others
 LONG = 60.0  # s; a whole run that is longer has a logarithmic time axis
 CROSSING = "×"
 

@@ -11,12 +11,6 @@ Quantity = str
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
-SHOT = ("quantity", "log", "seconds", "theta", "ring", "line")
-"""What a shot sets of the same name."""
-
-LARGEST = 1e6
-"""Larger values leave the chart, so that a method that fails leaves room for the others."""
-
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
     model = scene.equations
@@ -58,7 +52,12 @@ class Shown(NamedTuple):
             hidden=frozenset(cast - front),
             stretch=None,
             overview=False,
-            **{name: getattr(shot, name) for name in SHOT},
+            quantity=shot.quantity,
+            log=shot.log,
+            seconds=shot.seconds,
+            theta=shot.theta,
+            ring=shot.ring,
+            line=shot.line,
         )
 
     def places(self, cast: Cast) -> list[int]:
