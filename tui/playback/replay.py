@@ -48,7 +48,7 @@ class Replay(Playback):
         self._clock = clock
         first = recording.at(0.0)
         assert first is not None, "a recording without samples is refused before it gets here"
-        self._jump(first)
+        self._show(first, jump=True)
 
     # What is known at the playhead
 
@@ -195,35 +195,27 @@ class Replay(Playback):
         for _ in range(MAX_FOLLOWED):
             if self._place < target and (following := self.recording.next(self._place)):
                 self._show(following)
-        if self._place < target:
-            self._jump(target)
-        elif target < self._place:
-            self._show(target)
+        if target != self._place:
+            self._show(target, jump=self._place < target)
 
-    def _show(self, place: "SamplePlace") -> None:
-        """Show the sample at a place close to the last one."""
-        sample = self.recording.sample(place).value
-        assert isinstance(sample, Sample)
-        if sample.run == self.run.number:
-            self._place = place
-            self.history.add(sample)
-        else:
-            self._jump(place)
+    def _show(self, place: "SamplePlace", jump: bool = False) -> None:
+        """Show the sample at a place.
 
-    def _jump(self, place: "SamplePlace") -> None:
-        """Show the sample at a place: the trails at once, the rest over the next frames."""
+        After a jump or in another run the trails are there at once, the rest over the next frames.
+        """
         self._place = place
         clock, sample = self.recording.sample(place)
         assert isinstance(sample, Sample)
-        run = self.recording.run_of(sample.run)
-        assert run is not None
-        self.run = run
-        self.history = History(run.scene, changes_of(run))
-        for _ in self._read(self.history, max(run.begin, clock - 1.0), clock, sample.step):
-            pass
+        if jump or sample.run != self.run.number:
+            run = self.recording.run_of(sample.run)
+            assert run is not None
+            self.run = run
+            self.history = History(run.scene, changes_of(run))
+            for _ in self._read(self.history, max(run.begin, clock - 1.0), clock, sample.step):
+                pass
+            self.knows_past = False
+            self._reading = self._past()
         self.history.add(sample)
-        self.knows_past = False
-        self._reading = self._past()
 
     def fill(self) -> bool:
         """Read more of the past; return whether all of it that will be read has been."""
