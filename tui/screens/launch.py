@@ -133,8 +133,9 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
 
     assert sys.__stderr__ is not None  # where Textual draws
     if options.theme == "auto" and not os.environ.get("COLORFGBG"):
-        theme = fitting_theme(os.environ)
-        options.theme = theme if theme == "ansi" else background() or theme
+        options.theme = fitting_theme(os.environ)
+        if options.theme != "ansi":
+            options.theme = background() or options.theme
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(screen, terminal)
     try:
@@ -144,11 +145,13 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     codes = [say_goodbye(each.source) for each in app.source_screens]
     if isinstance(result, BaseException):
         raise _sentence(result)
-    return max([app.return_code or Exit.FINE, *codes]) if result is None else result
+    if result is not None:
+        return result
+    return max([app.return_code or Exit.FINE, *codes])
 
 
 def _sentence(error: BaseException) -> UserError:
-    """Return the error as a sentence; of a bug it names the place."""
+    """Return the error as a sentence; that on a bug names the place."""
     error = getattr(error, "error", error)  # a worker's
     try:
         return explained(error)
@@ -168,8 +171,11 @@ def open_lab(
     lecture: "Mapping[str, Scene] | None" = None,
 ) -> int:
     """Record and show a lab, or print it as sentences; return the exit code."""
-    path = None if options.no_record else recording_path(options.record)
-    notices = [] if path is None else recover_leftovers(path.parent)
+    path = None
+    notices: list[str] = []
+    if not options.no_record:
+        path = recording_path(options.record)
+        notices = recover_leftovers(path.parent)
     for notice in notices:
         warn(notice)
     or_next = options.record is None

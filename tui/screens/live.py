@@ -21,7 +21,7 @@ from tui.views.view import Held, SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
 from tui.words.tour import Tour
 
-_STEP = Binding.Group("larger, smaller step h")
+_H = Binding.Group("larger, smaller step h")
 
 
 class LiveScreen(SourceScreen):
@@ -30,16 +30,9 @@ class LiveScreen(SourceScreen):
     BINDING_GROUP_TITLE = "Lab"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(
-            "plus,equals_sign",
-            "larger_h(1)",
-            "Step",
-            True,
-            "+",
-            False,
-            "larger step h",
-            group=_STEP,
+            "plus,equals_sign", "next_h(1)", "Step", True, "+", False, "larger step h", group=_H
         ),
-        Binding("minus", "larger_h(-1)", "Step", True, "-", False, "smaller step h", group=_STEP),
+        Binding("minus", "next_h(-1)", "Step", True, "-", False, "smaller step h", group=_H),
         Binding("p", "next_scene", "Scene", tooltip="next scene"),
         Binding("P,shift+p", "scenes", "choose a scene", show=False),
         Binding("i", "start_values", "Edit", tooltip="edit start values"),
@@ -70,10 +63,7 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def frame(self) -> None:
-        """Pause where reversed time is back at 0, and mark how far each method misses its start.
-
-        Pause at the moment of the scene's shot, too.
-        """
+        """Pause at the moment of the scene's shot, and where reversed time is back at 0."""
         before = self.source.history.returned
         step = self.source.sample.step
         super().frame()
@@ -97,6 +87,7 @@ class LiveScreen(SourceScreen):
             self.show_now()
 
     def _stop_at_start(self, returned: Sample) -> None:
+        """Pause, and mark how far each method misses its start."""
         is_here = returned.step == self.source.sample.step
         if is_here and not self.source.playhead.paused and not self.live.is_marked:
             self.live.pause(True)
@@ -106,7 +97,6 @@ class LiveScreen(SourceScreen):
     # Changes of the run
 
     def start(self, scene: Scene, speed: float | None = None) -> None:
-        """Start a new run, perhaps at another speed."""
         before = self.state
         if self._changed(lambda: self.live.start(scene)):
             self.live.set_speed(speed or before.speed)
@@ -136,7 +126,6 @@ class LiveScreen(SourceScreen):
         super().restore(state)
 
     def on_held(self, message: Held) -> None:
-        """Show the pendulums where the pointer holds them."""
         self.held = message.theta
         self.show_now()
 
@@ -160,7 +149,7 @@ class LiveScreen(SourceScreen):
     def action_restart(self) -> None:
         self._changed(self.live.restart)
 
-    def action_larger_h(self, direction: int) -> None:
+    def action_next_h(self, direction: int) -> None:
         """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
         self.set_stepping(self.live.stepping.next(up=direction > 0))
 
@@ -173,8 +162,10 @@ class LiveScreen(SourceScreen):
 
     def action_next_scene(self) -> None:
         names = list(self.lecture)
-        following = names.index(self.page) + 1 if self.page in names else 0
-        self.action_start_scene(names[following % len(names)])
+        index = 0
+        if self.page in names:
+            index = (names.index(self.page) + 1) % len(names)
+        self.action_start_scene(names[index])
 
     def action_start_scene(self, name: str) -> None:
         """Start a scene of the lecture, or a listed one, with its shot."""
@@ -182,8 +173,7 @@ class LiveScreen(SourceScreen):
         self.page = name
         self.start(scene, scene.speed)
         self.shown = self.shown.through(scene)
-        if scene.shot.view != self.view:
-            self.call_next(self.action_view, scene.shot.view)
+        self.call_next(self.action_view, scene.shot.view)
 
     # Forms; they are imported when they are needed
 
@@ -235,7 +225,6 @@ class LiveScreen(SourceScreen):
         return super().check_action(action, parameters)
 
     def action_tour(self) -> None:
-        """Begin the tour, go on where it was left, or leave it."""
         if self.is_on_tour:
             self._leave_tour("T goes on with the tour; u brings back the run before it.")
             return
@@ -259,7 +248,6 @@ class LiveScreen(SourceScreen):
             self._show_tour()
 
     def action_tour_back(self) -> None:
-        """Go back to the question, or to the shot before."""
         self.tour.back()
         self._show_shot()
 
@@ -291,11 +279,9 @@ class LiveScreen(SourceScreen):
         self._show_tour()
 
     def _show_shot(self) -> None:
-        """Show the shot of the step, and its words."""
         step = self.tour.step
         self.shown = self.shown.through(step.scene, step.shot)
-        if self.view != step.shot.view:
-            self.call_next(self.action_view, step.shot.view)
+        self.call_next(self.action_view, step.shot.view)
         self._show_tour()
 
     def _show_tour(self) -> None:

@@ -66,10 +66,14 @@ def bar(position: float, length: float, ticks: Sequence[float], width: int) -> R
         return min(int(clock / (length or 1.0) * width), width - 1)
 
     here = column(position)
-    marked = set(map(column, ticks))
-    played = "".join("┿" if at in marked else "━" for at in range(here))
-    ahead = "".join("┼" if at in marked else "─" for at in range(here + 1, width))
-    return [(played, TEXT), ("█", WARN), (ahead, FRAME)]
+    played = ["━"] * here
+    ahead = ["─"] * (width - here - 1)
+    for at in map(column, ticks):
+        if at < here:
+            played[at] = "┿"
+        elif at > here:
+            ahead[at - here - 1] = "┼"
+    return [("".join(played), TEXT), ("█", WARN), ("".join(ahead), FRAME)]
 
 
 def facts(replay: Replay, room: int) -> str:

@@ -15,9 +15,6 @@ from tui.cli.time_limit import PLAIN_SCREEN
 from tui.terminal.check import is_gone
 
 MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
-LOOK_INTERVAL = 1.0  # s between looks at the terminal
-MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
-MAX_CLOSE_TIME = 3.0  # s to finish the recording without the loop
 
 
 class Job:
@@ -31,11 +28,9 @@ class Job:
         self._taken_at = 0.0  # s, the terminal
 
     def ask(self, *_: object) -> None:
-        """Note a request to stop."""
         self._asked_at = time.monotonic()
 
     def go_on(self, *_: object) -> None:
-        """Note that the program has been continued."""
         self._continued_at = time.monotonic()
 
     def stop(self) -> None:
@@ -94,7 +89,8 @@ class SignalThread(Thread):
 
     def run(self) -> None:
         while True:
-            ready, _, _ = select.select([self._pipe], [], [], LOOK_INTERVAL)
+            # without a signal, look at the terminal each second
+            ready, _, _ = select.select([self._pipe], [], [], 1.0)
             numbers = os.read(self._pipe, 4096) if ready else b""
             called = [self._handlers[number] for number in numbers if number in self._handlers]
             if is_gone() if self._has_terminal else os.getppid() != self._server:
@@ -103,10 +99,10 @@ class SignalThread(Thread):
                 for handler in called:
                     self._loop.call_soon_threadsafe(handler)
             if self._leave in called:
-                time.sleep(MAX_LEAVE_TIME)
+                time.sleep(5.0)  # the loop has ended the program by then, or is stuck
                 closing = Thread(target=self._end, daemon=True)  # may wait for what the loop holds
                 closing.start()
-                closing.join(MAX_CLOSE_TIME)
+                closing.join(3.0)
                 os._exit(Exit.INTERRUPTED)
 
     def _end(self) -> None:

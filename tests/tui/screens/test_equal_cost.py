@@ -60,7 +60,7 @@ def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused_before_anything
     lab.notify = lambda message, **_: refusals.append(message)
     actions = {
         "n": lab.action_equal_cost,
-        "-": lambda: lab.action_larger_h(-1),
+        "-": lambda: lab.action_next_h(-1),
         "r": lab.action_restart,
     }
     for act in acts:
