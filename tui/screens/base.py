@@ -140,7 +140,8 @@ class SourceScreen(SizedScreen[None]):
         return line
 
     def watch_shown(self) -> None:
-        self.show_now()
+        if self.is_mounted:  # a command may set it before
+            self.show_now()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Keep the visitor of a browser from this computer's files and shell."""
