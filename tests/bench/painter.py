@@ -46,7 +46,7 @@ async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.pause()
-        stage._timer.stop()
+        stage.frame_timer.stop()
         await pilot.press(*([key] if key else []))
         for frame in range(1, (BEGIN + SECONDS) * FPS):
             now = frame / FPS

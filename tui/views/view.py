@@ -57,9 +57,7 @@ class Zoomed(Message):
 
 
 class Box(Container):
-    """A container hidden by its children, which saves Textual a style lookup per paint."""
-
-    BLANK = True
+    BLANK = True  # hidden by its children, which saves Textual a style lookup per paint
 
 
 class View(Box):
@@ -97,7 +95,7 @@ class View(Box):
                 pane.follow(sample, shown)
 
     def zoom(self, factor: float) -> None:
-        """Zoom by `factor`, in views that have a chart of time."""
+        """Zoom the chart of time, in views that have one."""
 
 
 class Pane(CellWidget):

@@ -47,12 +47,14 @@ def placed(
 
 def nearest(places: Placed, x: int, y: int) -> Point | None:
     """Return the point nearest to a cell, if there is one within 6 columns or 3 rows."""
-    near = [
-        (distance, at)
-        for at, (column, row, _) in enumerate(places)
-        if (distance := math.hypot(column - x, 2 * (row - y))) <= 6
-    ]
-    return places[min(near)[1]][2] if near else None
+
+    def distance(place: tuple[int, int, Point]) -> float:
+        return math.hypot(place[0] - x, 2 * (place[1] - y))
+
+    near = min(places, key=distance, default=None)
+    if near is not None and distance(near) <= 6:
+        return near[2]
+    return None
 
 
 def accuracy_series(

@@ -26,7 +26,6 @@ from tui.words.accuracy import front_words, growth_lines, point_words
 
 MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 
-
 Chart = Literal["energy", "theta", "time"]
 """Error over cost, or the theta error over time."""
 NEXT: dict[str, Chart] = {"time": "theta", "theta": "energy", "energy": "time"}
@@ -201,8 +200,9 @@ class AccuracyPane(Chooser[Point]):
             here = self.cursor.steps
         elif self.index < len(self.here):
             here = self.here[self.index]
-        further = [point for point in points[::right] if (point.steps - here) * right > 0]
-        self.cursor = further[0] if further else points[::right][-1]
+        ahead = points[::right]
+        further = (point for point in ahead if (point.steps - here) * right > 0)
+        self.cursor = next(further, ahead[-1])
         self.draw()
 
     def place_under(self, event: events.MouseEvent) -> Point | None:
@@ -215,6 +215,4 @@ class AccuracyPane(Chooser[Point]):
 
 
 class AccuracyView(StudyView):
-    """The chart over the whole screen."""
-
     PANE = AccuracyPane

@@ -20,8 +20,6 @@ from tui.words.numbers import angle, decimal, scientific
 
 
 class TableLine(NamedTuple):
-    """What the cells of a line are made from."""
-
     method: Method
     reading: Reading
     judgement: Judgement
@@ -56,7 +54,9 @@ def _verdict(line: TableLine, width: int) -> str:
         judgement = Judgement("failed")
     far = "{}/{}".format(*judgement.progress or ("", ""))
     text = f"{SIGNS.get(judgement.verdict, '')} {judgement.verdict} {far}".strip(" /")
-    return text if len(text) <= width else judgement.verdict
+    if len(text) > width:
+        return judgement.verdict
+    return text
 
 
 COLUMNS = (
@@ -83,7 +83,9 @@ def extra_columns(model: Model) -> list[Column]:
         def cell(line: TableLine, width: int) -> str:
             value = extra.value(line.reading.extra)
             text = f"{value:.3g}"
-            return text if len(text) <= width else scientific(value, width, 1, "-")
+            if len(text) > width:
+                text = scientific(value, width, 1, "-")
+            return text
 
         return Column(8, extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7), cell)
 
@@ -143,7 +145,9 @@ def _ink(column: Column, text: str, line: TableLine) -> int:
     if column.head == "verdict":
         inks = {"=": GOOD} | dict.fromkeys("+-!~", WARN)
         return inks.get(text[0], QUIET)
-    return TEXT if line.reading.diverged_at is None else WARN
+    if line.reading.diverged_at is not None:
+        return WARN
+    return TEXT
 
 
 class ErrorTable(Pane):
@@ -162,7 +166,9 @@ class ErrorTable(Pane):
 
         ends = accumulate(map(len, self._head))
         head = next((text for text, end in zip(self._head, ends, strict=True) if event.x < end), "")
-        self.tooltip = head_text(head.strip()) if event.y == 0 else None
+        self.tooltip = None
+        if event.y == 0:
+            self.tooltip = head_text(head.strip())
 
     async def on_click(self, event: events.Click) -> None:
         if 0 < event.y <= len(self.places):

@@ -29,7 +29,7 @@ class EventList(Pane):
     def _ink(self, line: EventLine) -> int:
         if line.method is not None:
             return ink_of(line.method, self.cast)
-        return TEXT if line.kind == "mark" else QUIET
+        return {"mark": TEXT}.get(line.kind, QUIET)
 
     def _fitted(self, text: str, line: EventLine) -> str:
         """Return a text that fits: with letters for methods, or cut off with … at the end."""
@@ -37,7 +37,9 @@ class EventList(Pane):
         if line.method and len(text) > width:
             for method in self.cast:
                 text = text.replace(short_name(method), method.letter)
-        return text if len(text) <= width else f"{text[: width - 1]}…"
+        if len(text) > width:
+            text = f"{text[: width - 1]}…"
+        return text
 
     async def on_click(self, event: events.Click) -> None:
         offset = event.get_content_offset(self)

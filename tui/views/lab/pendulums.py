@@ -85,10 +85,11 @@ def _write(canvas: Canvas, letters: Sequence[_Letter]) -> None:
     """Write letters with a blank between those that would touch."""
     groups: list[list[_Letter]] = []
     for each in letters:
-        before = groups[-1][-1] if groups else None
-        if not before or before[0] != each[0] or each[1] - before[1] >= 2:
-            groups.append([])
-        groups[-1].append(each)
+        row, column, *_ = each
+        if groups and groups[-1][-1][0] == row and column - groups[-1][-1][1] < 2:
+            groups[-1].append(each)
+        else:
+            groups.append([each])
     for group in groups:
         first = (group[0][1] + group[-1][1]) // 2 - len(group) + 1
         first = max(min(first, canvas.columns - 2 * len(group) + 1), 0)
@@ -198,11 +199,13 @@ class Pendulum(Pane):
             bob = Bob(
                 reading.theta,
                 colours[place],
-                trail=source.history.thetas(place, 15) if model.rigid else (),  # half a second
-                letter=scene.cast[place].letter if self._place is None else "",
                 length=model.length(reading.extra),
                 diverged=reading.diverged_at is not None,
             )
+            if model.rigid:
+                bob = bob._replace(trail=source.history.thetas(place, 15))  # half a second
+            if self._place is None:
+                bob = bob._replace(letter=scene.cast[place].letter)
             bobs.append(bob)
         if self.shown.exact or self._place is None:
             theta = source.exact.at(sample.t).theta

@@ -46,14 +46,17 @@ def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
     """Return what the chart shows, and for how long back [s]."""
     name, magnitude = _names(shown.quantity, model)
     cycle = ""
+    span = "all"
     if shown.stretch is not None:
         span = f"{shown.stretch.begin:.5g} to {shown.stretch.end:.5g} s"
-    else:
-        span = "all" if shown.seconds is None else about(shown.seconds)
-        if exact.period:
-            cycles = {"libration": " per half swing", "rotation": " per turn"}
-            cycle = cycles.get(exact.regime, "")
-    return f"max {magnitude}{cycle}, {span}" if shown.log else f"{name}, {span}"
+    elif shown.seconds is not None:
+        span = about(shown.seconds)
+    if not shown.log:
+        return f"{name}, {span}"
+    if exact.period and shown.stretch is None:
+        cycles = {"libration": " per half swing", "rotation": " per turn"}
+        cycle = cycles.get(exact.regime, "")
+    return f"max {magnitude}{cycle}, {span}"
 
 
 def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:

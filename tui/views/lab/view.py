@@ -31,7 +31,9 @@ def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[st
 
     Pendulums and events are to the left, charts and phase space to the right.
     """
-    events = max(5, -(-rows // 5)) if rows >= TWO_ROWS else 0
+    events = 0
+    if rows >= TWO_ROWS:
+        events = max(5, -(-rows // 5))
     bottom = rows - events
     tiles: list[Region] = []
     others: dict[str, Region] = {}

@@ -65,7 +65,9 @@ class PhasePane(Chooser[State]):
             found = reach(scene, self.source.stepping, self.sample, self.places)
             half = self.shown.theta or found.frame
         line = self.shown.line
-        fence = abs(line.value) if line and line.quantity == "omega" else 0.0
+        fence = 0.0
+        if line and line.quantity == "omega":
+            fence = abs(line.value)
         return Viewport.portrait(*self._cells, scene, half, fence)
 
     @property
@@ -76,7 +78,9 @@ class PhasePane(Chooser[State]):
         from tui.views.phase.picture import caption, method_points, phase_picture
         from tui.views.phase.portrait import Portrait
 
-        below = "click: start, wheel: zoom" if self.is_live else "wheel: zoom"
+        below = "wheel: zoom"
+        if self.is_live:
+            below = f"click: start, {below}"
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         self._carry_ring(source, sample)
         portrait = Portrait.of(self.viewport, source.scene.equations)
@@ -95,7 +99,9 @@ class PhasePane(Chooser[State]):
         radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         if self.neighbours is None or self.neighbours.radius != radius:
             self.neighbours = Neighbours(radius)
-        steps = 1 if has_own(scene) else 100  # a frame; they cost 5 ms
+        steps = 100  # a frame; they cost 5 ms
+        if has_own(scene):
+            steps = 1
         try:
             with limited("the ring"):
                 self.ring = self.neighbours.follow(

@@ -29,7 +29,7 @@ BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
 GAP = 2  # dots between orbits of a section
 NAME, CELL = 22, 14  # columns of the table
 # columns, rows from a point to its letter
-BESIDE = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
+BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 Floats = NDArray[np.float64]
 
 
@@ -48,22 +48,24 @@ def method_points(
     source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None
 ) -> list[PhasePoint]:
     """Return the points that are shown of a sample, the exact one first."""
+    points = []
     exact = source.exact.at(sample.t)
-    points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
+    if shown.exact and math.isfinite(exact.theta):
+        points.append(PhasePoint(*exact, EXACT, "x"))
     trails = source.history.trails
     cast = source.scene.cast
     for place in shown.places(cast):
         reading = sample.readings[place]
-        points.append(
-            PhasePoint(
-                reading.theta,
-                reading.omega,
-                inks(cast)[place],
-                cast[place].letter,
-                trail=(trails[:, place, 0], trails[:, place, 1]),
-                ring=ring.rings[place] if ring else None,
-            )
+        point = PhasePoint(
+            reading.theta,
+            reading.omega,
+            inks(cast)[place],
+            cast[place].letter,
+            trail=(trails[:, place, 0], trails[:, place, 1]),
         )
+        if ring:
+            point = point._replace(ring=ring.rings[place])
+        points.append(point)
     return points
 
 
@@ -143,10 +145,12 @@ def _draw_point(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
     if not (math.isfinite(x) and math.isfinite(y)):
         return
-    inside = 0 <= x < canvas.width and 0 <= y < canvas.height
+    places = BESIDE
+    if not (0 <= x < canvas.width and 0 <= y < canvas.height):
+        places = (0, 0), *BESIDE
     column = int(min(max(x, 0), canvas.width - 1)) // 2
     row = int(min(max(y, 0), canvas.height - 1)) // 4
-    for right, down in BESIDE if inside else ((0, 0), *BESIDE):
+    for right, down in places:
         if canvas.is_free(column + right, row + down):
             canvas.label(column + right, row + down, point.letter, point.ink)
             return
@@ -175,7 +179,9 @@ class Section:
         x = np.floor(self._viewport.x(points[0]))
         y = np.floor(self._viewport.y(points[1]))
         inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)
-        most = 0.6 if self._method.symplectic else 0.3  # of its dots in a gap of others'
+        most = 0.3  # of its dots in a gap of others'
+        if self._method.symplectic:
+            most = 0.6
         for each in range(x.shape[1]):
             at = inside[:, each]
             i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
@@ -219,7 +225,9 @@ def place_text(model: Model, state: State, width: int) -> str:
     """Return a state, with its energy relative to the separatrix and its regime if there is one."""
     theta, omega = state
     half_turns = round(theta / math.pi)
-    angle = in_pi(half_turns) if theta == half_turns * math.pi else f"{theta:.15g}"
+    angle = f"{theta:.15g}"
+    if theta == half_turns * math.pi:
+        angle = in_pi(half_turns)
     text = f"theta {angle}  omega {omega:.15g}"
     if model.has_separatrix:
         text += f"  E/Es {energy_share(model, theta, omega)}  {regime(model, theta, omega)}"
@@ -247,7 +255,9 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
     for place in shown.places(scene.cast):
         method = scene.cast[place]
         reading = source.sample.readings[place]
-        area = area_text(ring.area_ratios[place]) if ring else ("-", "-")
+        area = ("-", "-")
+        if ring:
+            area = area_text(ring.area_ratios[place])
         off = scientific(model.theta_error(reading.theta, exact.theta), CELL, 3)
         numbers = cells(*area, off, scientific(reading.energy_error, CELL, 3))
         name = f" {mark(place, method)} {method.label}".ljust(NAME)
@@ -260,16 +270,18 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
         return f" {why}"
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
-    step = neighbours.step if neighbours.ring_of(source.scene, source.sample.run) else 0
+    step = 0
+    if neighbours.ring_of(source.scene, source.sample.run):
+        step = neighbours.step
     change = change_before(source.changes, step)
     left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
     radius = f"radius {neighbours.radius:g} rad"
     if left != 1:
         return f" Ring, {radius}: the true motion leaves {left:.9f} of its area"
-    behind = source.sample.step - step
-    return f" Ring of neighbouring starts, {radius}" + (
-        f": {behind} steps behind" if behind else ""
-    )
+    text = f" Ring of neighbouring starts, {radius}"
+    if behind := source.sample.step - step:
+        text += f": {behind} steps behind"
+    return text
 
 
 def area_text(ratio: float) -> tuple[str, str]:

@@ -56,7 +56,9 @@ class SectionPane(PhasePane):
         if self.shows_section and (why := source.scene.why_not_mapped):
             self.notify(why, severity="warning")
             self.shows_section = False
-        return self._map(source) if self.shows_section else super().picture(source, sample)
+        if self.shows_section:
+            return self._map(source)
+        return super().picture(source, sample)
 
     def _map(self, source: Source) -> Picture:
         method = self.cast[self.index]
@@ -76,7 +78,9 @@ class SectionPane(PhasePane):
         start = self.cursor or State(source.scene.theta, source.scene.omega)
         plot = self._section.picture(_orbit(method, model, h, start)[0], start, self.cursor)
         _, kind = _orbit(method, model, h, self.aim or start)
-        where = f"{self.aim.theta:g}, {self.aim.omega:g}" if self.aim else "start"
+        where = "start"
+        if self.aim:
+            where = f"{self.aim.theta:g}, {self.aim.omega:g}"
         return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
 
     def add(self, result: Points) -> None:

@@ -37,8 +37,9 @@ def note(cell: Any) -> str:
         return "…"
     if cell["fate"] == CHAOTIC:
         return _outcome(cell)
-    detail = f"step {cell['steps'] + 1}" if is_lost(cell) else f"{cell['error']:.0e}"
-    return f"{_outcome(cell)}, {detail}"
+    if is_lost(cell):
+        return f"{_outcome(cell)}, step {cell['steps'] + 1}"
+    return f"{_outcome(cell)}, {cell['error']:.0e}"
 
 
 def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: float) -> str:
@@ -50,17 +51,20 @@ def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: fl
     where = f"{grid.methods[index].label} at h {grid.z[z] / w0:.3g} s, {degrees:.3g}°:"
     if cell["fate"] == UNKNOWN:
         return f"{where} not computed yet"
-    holds = not is_lost(cell)
     outcome = _outcome(cell)
-    if holds:
+    here = "held"
+    there = "lost"
+    if is_lost(cell):
+        here, there = there, here
+        if cell["fate"] != CHAOTIC:
+            outcome = f"lost at step {cell['steps'] + 1}, {outcome}"
+    else:
         outcome += f", energy error {cell['error']:.1e}"
-    elif cell["fate"] != CHAOTIC:
-        outcome = f"lost at step {cell['steps'] + 1}, {outcome}"
-    other = np.flatnonzero(np.isin(row["fate"], HELD) != holds)
+    other = np.flatnonzero(np.isin(row["fate"], HELD) != (here == "held"))
     if not len(other):
-        return f"{where} {outcome}; {'held' if holds else 'lost'} at every h on this map"
+        return f"{where} {outcome}; {here} at every h on this map"
     nearest = grid.z[other[np.abs(other - z).argmin()]]
-    return f"{where} {outcome}; {'lost' if holds else 'held'} at h {nearest / w0:.3g} s"
+    return f"{where} {outcome}; {there} at h {nearest / w0:.3g} s"
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
@@ -136,7 +140,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
         here = self.here(index)
         if self.cursor is not None:
             here = self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]
-        aim = self.aim(index)
+        words = ""
+        if aim := self.aim(index):
+            words = note(self.cells[aim[0], index, aim[1]])
         return panel(
             self.grid,
             self.cells,
@@ -146,12 +152,14 @@ class StabilityPane(Chooser[tuple[int, int]]):
             self._colours,
             here=here,
             w0=self.source.scene.w0,
-            note=note(self.cells[aim[0], index, aim[1]]) if aim else "",
+            note=words,
         )
 
     @property
     def _colours(self) -> Palette | None:
-        return None if self.app.no_color or self.app.native_ansi_color else palette(self.app.theme)
+        if self.app.no_color or self.app.native_ansi_color:
+            return None
+        return palette(self.app.theme)
 
     @property
     def _panel_size(self) -> tuple[int, int]:
@@ -194,6 +202,4 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
 
 class StabilityView(StudyView):
-    """The map over the whole screen."""
-
     PANE = StabilityPane

@@ -96,8 +96,10 @@ def panel(
     title = f"{name}{method.label}: {note}".rstrip(": ")
     if len(title) > columns:
         title = name + note
-    bold = Style(bold=True) if palette else NOBODY
-    return [[(title[:columns].ljust(columns), bold)], *map_rows, [(axis, NOBODY)]]
+    ink: Ink = NOBODY
+    if palette:
+        ink = Style(bold=True)
+    return [[(title[:columns].ljust(columns), ink)], *map_rows, [(axis, NOBODY)]]
 
 
 def _signed(ink: Ink, sign: str, palette: Palette | None) -> Cell:
@@ -144,10 +146,12 @@ def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
 
 
 def _axis(grid: Grid, width: int, w0: float | None) -> str:
-    symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
+    symbol = "h"
+    if w0 is None:
+        symbol, w0 = "z", 1.0
     line = ""
-    for value, text in number_ticks(grid.z[0] / scale, grid.z[-1] / scale, max(width // 6, 2)):
-        place = _place(grid, value * scale, float(grid.theta[0]), width, 1)
+    for value, text in number_ticks(grid.z[0] / w0, grid.z[-1] / w0, max(width // 6, 2)):
+        place = _place(grid, value * w0, float(grid.theta[0]), width, 1)
         if place is not None and len(line) <= place[1] <= width - len(text) - 2:
             line = line.ljust(place[1]) + text
     return f"{line} {symbol}".ljust(width)
@@ -193,11 +197,15 @@ def character(score: float, steps: int) -> str:
         return " "
     if score < 1:
         survived = round(math.expm1(score * math.log1p(steps)))
-        return "." if survived < 10 else str(len(str(survived)) - 1)
+        if survived < 10:
+            return "."
+        return str(len(str(survived)) - 1)
     digits = 12 * (score - 1)
     if digits > 4:
         return "#"
-    return "+" if digits > 1 else "-"
+    if digits > 1:
+        return "+"
+    return "-"
 
 
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
@@ -217,7 +225,9 @@ def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
         (f"{signs[LIMIT]} linear limit   {signs[THRESHOLD]} global chaos above   ", NOBODY)
     ]
     orbit: list[Cell] = [(f"{signs[CATCHING]} stable 2-cycle   y: amplitude [°]", NOBODY)]
-    return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
+    if columns >= 80:
+        return [held + lost, lines + orbit]
+    return [held, lost, lines, orbit]
 
 
 def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
