@@ -8,8 +8,6 @@ from typing import Self
 
 from rich.style import Style
 
-from tui.drawing.palette import NOBODY
-
 Ink = int | Style
 """What colours a character: a number that the palette of the theme knows, or a style of its own."""
 
@@ -33,14 +31,9 @@ class Picture:
         return [y for y, (old, new) in enumerate(pairs) if old != new]
 
     @classmethod
-    def of_line(cls, text: str, ink: Ink = NOBODY) -> Self:
-        return cls((((text, ink),),))
-
-    @classmethod
     def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
         """Wrap and centre a text; lines that do not fit are cut off."""
         lines = textwrap.wrap(text, max(columns, 1))[:rows]
         above = (rows - len(lines)) // 2
-        page = [""] * above + [" " * ((columns - len(line)) // 2) + line for line in lines]
-        page += [""] * (rows - len(page))
-        return cls(tuple(((line.ljust(columns), ink),) for line in page))
+        page = [""] * above + lines + [""] * (rows - above - len(lines))
+        return cls(tuple(((line.center(columns), ink),) for line in page))

@@ -111,6 +111,7 @@ class _Run(NamedTuple):
         return largest, largest
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an error may be infinite
 def time_chart(
     window: Window,
     cast: Cast,

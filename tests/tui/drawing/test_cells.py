@@ -17,7 +17,7 @@ class Drawn(CellWidget):
     painted: ClassVar[list[Strip]] = []
 
     def draw(self) -> None:
-        self.show(Picture.of_line(f"{self.room.width}x{self.room.height}", TEXT))
+        self.show(Picture([[(f"{self.room.width}x{self.room.height}", TEXT)]]))
 
     def render_lines(self, crop):
         Drawn.painted = [*super().render_lines(crop)]
