@@ -92,7 +92,10 @@ class Canvas:
         stride = 3 if dotted else 1
         dots = range(low, high + 1, stride) if step >= 0 else range(high, low - 1, -stride)
         # it may begin and end before or beyond the middle of a dot
-        shares = [min(max((at + 0.5 - start) / (step or 1.0), 0.0), 1.0) for at in dots]
+        shares = [(at + 0.5 - start) / (step or 1.0) for at in dots]
+        if shares:
+            shares[0] = min(max(shares[0], 0.0), 1.0)
+            shares[-1] = min(max(shares[-1], 0.0), 1.0)
         along = zip(dots, shares, strict=True)
         if steep:
             self.points([(x0 + share * dx, at) for at, share in along], ink)

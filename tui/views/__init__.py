@@ -10,8 +10,6 @@ if TYPE_CHECKING:  # the process that computes for a view starts sooner without 
 
 
 class ViewEntry(NamedTuple):
-    """A view: its title, and where its widget is."""
-
     title: str
     module: str  # imported when the view is first shown
     widget: str
@@ -27,7 +25,6 @@ VIEWS: dict[str, ViewEntry] = {
 
 
 def create(name: str, source: "Source", shown: "Shown") -> "View":
-    """Return a new view of this name."""
     entry = VIEWS[name]
     widget: type[View] = getattr(import_module(entry.module), entry.widget)
     return widget(source, shown, name)

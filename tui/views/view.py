@@ -30,15 +30,11 @@ Place = TypeVar("Place")
 
 @dataclass
 class SceneChosen(Message):
-    """The user wants a run of this scene."""
-
     scene: Scene
 
 
 @dataclass
 class StepSizeChosen(Message):
-    """The user wants to continue with this step size."""
-
     stepping: Stepping
 
 
@@ -99,8 +95,6 @@ class View(Box):
 
 
 class Pane(CellWidget):
-    """Draws a source at one sample."""
-
     MOVES: ClassVar[bool] = False
     """Whether it follows every frame, and not only five a second."""
     NEEDS_NUMPY: ClassVar[bool] = False

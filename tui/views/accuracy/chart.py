@@ -30,7 +30,6 @@ BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
 def accuracy_chart(
     series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int
 ) -> Picture:
-    """Draw the lines of `accuracy_series` on their axes."""
     return loglog_chart(series, width, height, x_label=COSTS[cost], y_label=ERROR_LABELS[kind])
 
 

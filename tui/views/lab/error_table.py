@@ -77,8 +77,6 @@ COLUMNS = (
 
 
 def extra_columns(model: Model) -> list[Column]:
-    """Return the columns that only this model has."""
-
     def column(extra: ExtraColumn) -> Column:
         def cell(line: TableLine, width: int) -> str:
             value = extra.value(line.reading.extra)

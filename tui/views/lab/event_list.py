@@ -12,8 +12,6 @@ from tui.words.insight import short_name
 
 
 class EventList(Pane):
-    """As many of the last events as there is room for."""
-
     def __init__(self) -> None:
         super().__init__()
         self.border_title = "Events (E)"

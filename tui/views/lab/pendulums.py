@@ -23,8 +23,6 @@ _Letter = tuple[int, int, str, int]  # row, column, letter, ink
 
 
 class Bob(NamedTuple):
-    """One pendulum to draw."""
-
     theta: float  # rad from the downward vertical
     ink: int
     trail: Sequence[float] = ()  # rad; where it was, drawn faintly

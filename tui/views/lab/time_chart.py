@@ -43,7 +43,6 @@ def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
 
 
 def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
-    """Return what the chart shows, and for how long back [s]."""
     name, magnitude = _names(shown.quantity, model)
     cycle = ""
     span = "all"
@@ -69,8 +68,6 @@ def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
 
 
 class TimeChart(Pane):
-    """The pointer reads out a moment, the wheel zooms there."""
-
     NEEDS_NUMPY = True
 
     def __init__(self, ahead: int = 0) -> None:

@@ -109,8 +109,6 @@ class CellLayout(Layout):
 
 
 class Stage(Box):
-    """What is above the table."""
-
     def __init__(self, layout: CellLayout, *panes: Widget) -> None:
         super().__init__(*panes)
         self._layout = layout

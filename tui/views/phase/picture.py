@@ -34,8 +34,6 @@ Floats = NDArray[np.float64]
 
 
 class PhasePoint(NamedTuple):
-    """Where a method is, with its trail and its ring of neighbouring starts."""
-
     theta: float  # rad
     omega: float  # rad/s
     ink: int
@@ -157,7 +155,6 @@ def _draw_point(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
 
 
 def starts(viewport: Viewport, count: int) -> Points:
-    """Return so many starts all over a viewport."""
     across = viewport.theta_at(0.0), viewport.theta_at(2.0 * viewport.columns)
     return spread(count, across, (viewport.omega_at(4.0 * viewport.rows), viewport.omega_at(0.0)))
 

@@ -112,8 +112,6 @@ class Facts(Pane):
 
 
 class PhaseView(StudyView):
-    """The portrait or a section, and the table below it."""
-
     PANE = SectionPane
 
     def compose(self) -> ComposeResult:

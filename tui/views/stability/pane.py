@@ -32,7 +32,6 @@ def _outcome(cell: Any) -> str:
 
 
 def note(cell: Any) -> str:
-    """Return the outcome of a swing in a few words."""
     if cell["fate"] == UNKNOWN:
         return "…"
     if cell["fate"] == CHAOTIC:

@@ -49,7 +49,6 @@ def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> 
 
 
 def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:
-    """Put panels of one size next to each other."""
     rows: list[Row] = []
     for first in range(0, len(panels), across):
         for left, *others in zip(*panels[first : first + across], strict=True):
@@ -137,7 +136,6 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
 
 
 def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
-    """Return round amplitudes [°] by their row."""
     degrees = {}
     for each in range(0, 180, 45 if rows >= 5 else 90):
         if place := _place(grid, grid.z[0], math.radians(each), width, rows):
@@ -209,7 +207,6 @@ def character(score: float, steps: int) -> str:
 
 
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
-    """Explain colours, characters and lines."""
     held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
     lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
     signs = _WITHOUT_COLOUR
