@@ -13,6 +13,11 @@ def cells(picture: Picture) -> dict[tuple[int, int], tuple[str, object]]:
     }
 
 
+def places(picture: Picture, ink: object) -> set[tuple[int, int]]:
+    """Return the (column, row) of all that is in an ink."""
+    return {(column, row) for (row, column), (_, each) in cells(picture).items() if each == ink}
+
+
 def inks(picture: Picture) -> set[object]:
     """Return the inks of all that is not blank."""
     return {ink for _, ink in cells(picture).values()}

@@ -24,8 +24,6 @@ from tui.views.accuracy.chart import (
 from tui.views.view import Chooser, StepSizeChosen, StudyView
 from tui.words.accuracy import front_words, growth_lines, point_words
 
-MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
-
 Chart = Literal["energy", "theta", "time"]
 """Error over cost, or the theta error over time."""
 NEXT: dict[str, Chart] = {"time": "theta", "theta": "energy", "energy": "time"}
@@ -74,7 +72,8 @@ class AccuracyPane(Chooser[Point]):
         if here != self.here:
             self.here = here
             known = {*self.steps, *(steps for _, steps in self.points)}
-            if wanted := [each for each in sorted({*here} - known) if 1 < each <= MAX_STEPS]:
+            wanted = [each for each in sorted({*here} - known) if 1 < each <= 2_000_000]
+            if wanted:  # more steps would take more than some seconds
                 self.compute(measured, scene, self.time, wanted, group="here")
         if self.chart == "time" and self._grown != (start, own):
             self._grown = (start, own)

@@ -22,8 +22,6 @@ from tui.views.view import Box, Pane, View
 CHART = 52  # columns at least: a title fits above it
 NARROW = 28 + CHART  # columns below which there is no chart
 PANE = Size(26, 9)  # of one pendulum at least: the names of the usual cast fit above it
-TWO_ROWS = 20  # rows from which on there are events, and phase space below the chart
-THREE_ROWS = 45  # rows from which on there are two charts
 
 
 def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[str, Region]]:
@@ -32,7 +30,7 @@ def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[st
     Pendulums and events are to the left, charts and phase space to the right.
     """
     events = 0
-    if rows >= TWO_ROWS:
+    if rows >= 20:  # room for phase space below the chart, too
         events = max(5, -(-rows // 5))
     bottom = rows - events
     tiles: list[Region] = []
@@ -53,7 +51,7 @@ def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[st
         others["events"] = Region(0, bottom, side, rows - bottom)
     if columns >= NARROW:
         stack = ["chart"]
-        if rows >= THREE_ROWS:
+        if rows >= 45:
             stack.append("second_chart")
         if events:
             stack.append("phase")

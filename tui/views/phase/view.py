@@ -20,7 +20,6 @@ from tui.views.phase.picture import Section, fact_rows, starts
 from tui.views.view import Pane, StudyView
 from tui.words.orbit import sentence
 
-MIN_ROWS = 18  # of the screen, with the table
 STARTS = 300  # of a section
 ORBIT_STEPS = 2000  # some ms
 
@@ -127,5 +126,5 @@ class PhaseView(StudyView):
         super().follow(sample, shown, read)
 
     def _make_room(self) -> None:
-        has_room = self.size.height >= MIN_ROWS
+        has_room = self.size.height >= 18
         self.query_one(Facts).display = has_room and not self.pane.shows_section

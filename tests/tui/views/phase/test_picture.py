@@ -7,7 +7,7 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
-from tests.tui.drawn import cells
+from tests.tui.drawn import cells, places
 from tui.drawing.palette import EXACT, FAINT
 from tui.views.phase.picture import SPARSE, PhasePoint, phase_picture
 from tui.views.phase.portrait import Portrait
@@ -16,10 +16,6 @@ from tui.views.phase.viewport import Viewport
 DRIFT = SCENES["drift"]
 SMALL = Viewport.portrait(46, 15, DRIFT)
 PORTRAIT = Portrait.of(SMALL, DRIFT.equations)
-
-
-def dots(picture, ink: int) -> set[tuple[int, int]]:
-    return {(column, row) for (row, column), (_, colour) in cells(picture).items() if colour == ink}
 
 
 def test_the_portrait_and_nothing_for_what_is_not_a_number():
@@ -53,7 +49,7 @@ def test_points_are_drawn_where_their_state_is_with_their_letters_beside_it(thet
     assert {(point.letter, point.ink) for point in points} <= set(shown)
     picture = phase_picture(PORTRAIT, [points[2]])
     column, row = int(SMALL.x(theta)) // 2, int(SMALL.y(omega)) // 4
-    mine = dots(picture, 2)
+    mine = places(picture, 2)
     assert (column, row) in mine
     assert cells(picture)[row, column + 2][0] == "v"
     assert all(abs(c - column) <= 2 and abs(r - row) <= 1 for c, r in mine)
@@ -64,7 +60,7 @@ def test_a_trail_is_faint_and_where_the_method_was():
     picture = phase_picture(PORTRAIT, [PhasePoint(1.5, 3.0, 1, "s", (theta, omega))])
     pairs = zip(theta.tolist(), omega.tolist(), strict=True)
     expected = {(int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4) for a, b in pairs}
-    assert dots(picture, 1 + FAINT) == expected
+    assert places(picture, 1 + FAINT) == expected
 
 
 def test_a_moving_point_takes_the_place_of_a_word():
@@ -84,9 +80,9 @@ def ring_around(theta: float, radius: float):
 def test_a_ring_is_closed_and_over_the_top_it_does_not_cross_the_picture():
     picture = ring_around(1.0, 0.5)
     for row in range(int(SMALL.y(1.2)) // 4, int(SMALL.y(-1.2)) // 4 + 1):
-        columns = [column for column, at in dots(picture, 3) if at == row]
+        columns = [column for column, at in places(picture, 3) if at == row]
         assert min(columns) < SMALL.x(0.8) / 2 < SMALL.x(1.2) / 2 < max(columns)
-    columns = {column for column, _ in dots(ring_around(math.pi, 0.5), 3)}
+    columns = {column for column, _ in places(ring_around(math.pi, 0.5), 3)}
     assert {column < 8 for column in columns} == {True, False}
     assert not any(8 <= column <= 37 for column in columns)
 
@@ -95,7 +91,7 @@ def test_the_crosshair_meets_at_its_state_and_the_orbit_passes_there():
     state = SMALL.at_cell(30, 4)
     plain = cells(phase_picture(PORTRAIT, []))
     picture = phase_picture(PORTRAIT, [], crosshair=state, orbit=state)
-    assert (30, 4) in dots(picture, EXACT)
+    assert (30, 4) in places(picture, EXACT)
     changed = [place for place, cell in cells(picture).items() if plain.get(place) != cell]
     assert sum(column == 30 for _, column in changed) > SMALL.rows / 2
     assert sum(row == 4 for row, _ in changed) > SMALL.columns / 2

@@ -10,6 +10,7 @@ from engine.models.model import State
 from engine.phase_space.section import iterate, orbit, pieces
 from engine.scenes import SCENES, Scene
 from tests.tui import drawn
+from tests.tui.drawn import places
 from tests.tui.harness import lab, until
 from tui.drawing.palette import FRAME, faint
 from tui.views.phase.picture import Section, starts
@@ -23,11 +24,6 @@ MINE, OTHERS = 2, faint(2)
 REST = orbit(VELOCITY_VERLET, MODEL, H, (0.0, 0.0), 1)
 
 
-def cells(picture, ink: int) -> set[tuple[int, int]]:
-    shown = drawn.cells(picture).items()
-    return {(column, row) for (row, column), (_, colour) in shown if colour == ink}
-
-
 def section(model=MODEL) -> Section:
     return Section(VIEWPORT, model, VELOCITY_VERLET, MINE)
 
@@ -37,7 +33,7 @@ def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
     points = iterate(VELOCITY_VERLET, MODEL, H, (np.array([0.0]), np.array([7.0])), 500)
     assert np.ptp(points[0]) > 2 * math.pi
     drawing.add(points)
-    found = cells(drawing.picture(REST, (0.0, 0.0)), OTHERS)
+    found = places(drawing.picture(REST, (0.0, 0.0)), OTHERS)
     theta = np.remainder(points[0] + math.pi, math.tau) - math.pi
     dots = zip(VIEWPORT.x(theta[:, 0]), VIEWPORT.y(points[1][:, 0]), strict=True)
     expected = {(int(x) // 2, int(y) // 4) for x, y in dots if 0 <= x < 140 and 0 <= y < 96}
@@ -49,20 +45,20 @@ def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
 def test_an_orbit_that_leaves_no_gap_to_those_before_is_not_drawn():
     drawing = section()
     for theta, is_drawn in ((1.6, True), (1.61, False), (2.0, True), (0.3, True)):
-        before = cells(drawing.picture(REST, (0.0, 0.0)), OTHERS)
+        before = places(drawing.picture(REST, (0.0, 0.0)), OTHERS)
         drawing.add(iterate(VELOCITY_VERLET, MODEL, 0.05, (np.array([theta]), np.zeros(1)), 500))
-        assert (cells(drawing.picture(REST, (0.0, 0.0)), OTHERS) != before) == is_drawn
+        assert (places(drawing.picture(REST, (0.0, 0.0)), OTHERS) != before) == is_drawn
 
 
 def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
     drawing = section()
     picture = drawing.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 1000), START)
-    mine = cells(picture, MINE)
+    mine = places(picture, MINE)
     assert {column > 35 for column, _ in mine} == {True, False}
     middle = int(VIEWPORT.x(0.0)) // 2, int(VIEWPORT.y(0.0)) // 4
     assert middle not in mine  # islands go around it
-    assert len(cells(picture, FRAME)) > 20
-    assert not cells(section(SCENES["linear"].equations).picture(REST, START), FRAME)
+    assert len(places(picture, FRAME)) > 20
+    assert not places(section(SCENES["linear"].equations).picture(REST, START), FRAME)
 
 
 @pytest.mark.filterwarnings("error")
