@@ -44,19 +44,16 @@ def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
         return Judgement("loses" if energies[0] > 0 else "grows")
     floor = max(_last_digit(energies), limits.ROUNDING)
     first = _outliers(energies, floor)
-    if np.ptp(energies[first:]) <= 2 * floor:
-        uncertainty = floor * unit / float(times[-1] - times[first])
-        return Judgement("bounded", slope=0.0, uncertainty=uncertainty, first=first)
     record = _Record(times[first:], energies[first:], floor)
+    if early := record.transient():
+        first += early
+        record = _Record(times[first:], energies[first:], floor)
+    judgement = record.conclude()
     signed = np.sign(energies[0]) * energies[first:]
-    if absolute and signed.max() > limits.MULTIPLIED * signed.min() > 0:
+    multiplied = absolute and signed.max() > limits.MULTIPLIED * signed.min() > 0
+    if multiplied and judgement.verdict not in ("grows", "loses"):
         logarithms = np.sign(energies[0]) * np.log(signed)
         judgement = _Record(times[first:], logarithms, limits.ROUNDING).conclude()
-    else:
-        if early := record.transient():
-            first += early
-            record = _Record(times[first:], energies[first:], floor)
-        judgement = record.conclude()
     scale = unit / float(times[-1] - times[first])
     return judgement._replace(
         slope=record.line.amplitude * scale,
@@ -126,6 +123,7 @@ class _Record:
         self._count = count = min(MAX_BINS, len(times) // 2)
         self._at = (times - times[0]) / (times[-1] - times[0])
         self._floor = floor
+        self._constant = np.ptp(energies) <= 2 * floor
         energies = energies - float(energies.mean())
         self._times = times = _means(self._at, count)
         self._means = _means(energies, count)
@@ -238,6 +236,8 @@ class _Record:
         """Return the verdict that the best curves of each kind allow."""
         few = self.independent < limits.MIN_INDEPENDENT or self._cycles < limits.MIN_CYCLES
         least = limits.CURVE_OF_FEW if few else limits.TREND
+        if self._constant:
+            return Judgement("bounded")
         if self._has_settled and self._settled.sigmas > least:
             return Judgement("caught")
         rise = self.line.amplitude
