@@ -82,10 +82,10 @@ def _outliers(energies: Any, floor: float) -> int:
     early = int(len(energies) * limits.TRANSIENT)
     at = np.arange(len(energies))
     rest = energies - np.polyval(np.polyfit(at[early:], energies[early:], 1), at)
-    middle = (rest[early:].min() + rest[early:].max()) / 2
-    width = float(np.ptp(rest[early:]))
-    outside = np.flatnonzero(np.abs(rest[:early] - middle) > width / 2 + max(width / 2, floor))
-    return int(outside[-1]) + 1 if len(outside) else 0
+    low, high = rest[early:].min(), rest[early:].max()
+    margin = max((high - low) / 2, floor)
+    outside = (rest[:early] < low - margin) | (rest[:early] > high + margin)
+    return int(np.flatnonzero(outside).max(initial=-1)) + 1
 
 
 class _Fit(NamedTuple):
@@ -143,10 +143,9 @@ class _Record:
         self.line = fits[0]
         self._moving = max(fits[: len(moving)])
         self._settled = max(fits[len(moving) :])
-        approach = fits.index(self._settled) - len(moving)
-        self._settling = 1.0  # time to a 20th of the way
-        if approach < len(_SETTLING):
-            self._settling = 3 / float(_SETTLING[approach])
+        ends = [*(3 / _SETTLING), *np.ones(len(steps))]
+        # time to a 20th of the way
+        self._settling = float(ends[fits.index(self._settled) - len(moving)])
         self.rest = energies - np.polyval(np.polyfit(self._at, energies, 1), self._at)
         error = max(self.line.deviation, floor / len(times))
         self.independent = min(len(self._at), 24 * float(np.mean(self.rest**2)) / error**2)

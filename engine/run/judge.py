@@ -142,15 +142,18 @@ class Judge:
 
     def _progress(self) -> Progress | None:
         """How far it is to the first verdict, or then to the last; None if it can come any time."""
-        steps = self._many
-        if self._orbit:
-            steps = limits.LONG
-        elif len(self._energy.bins) < limits.MIN_BINS:
-            steps = limits.MIN_BINS * self._width
-        need = math.ceil(steps * self._h / self._period)
+        steps_a_period = self._period / self._h
         if self._orbit and self._orbit.is_regular:
-            need = limits.MIN_PERIODS
-        return Progress(int(self._periods), need, "swings") if self._periods < need else None
+            need: float = limits.MIN_PERIODS
+        elif self._orbit:
+            need = limits.LONG / steps_a_period
+        elif len(self._energy.bins) < limits.MIN_BINS:
+            need = limits.MIN_BINS * self._width / steps_a_period
+        else:
+            need = self._many / steps_a_period
+        if self._periods >= need:
+            return None
+        return Progress(int(self._periods), math.ceil(need), "swings")
 
     def _trend(self, verdict: Verdict) -> Judgement:
         """Return a judgement with the recent slope, if there is evidence for one.
@@ -161,6 +164,7 @@ class Judge:
         moves = verdict in ("grows", "loses")
         if not moves and (self._orbit or verdict != "too early"):
             return Judgement()
+        # growth that has slowed down has no slope before 32 bins show that it is caught
         bins = self._energy.bins
         recent = self._energy.recent(0.5) if len(bins) >= MAX_BINS / 2 else bins
         folded = [Bin(step, self._fold(low), self._fold(high)) for step, low, high in recent]
