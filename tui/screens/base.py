@@ -128,12 +128,11 @@ class SourceScreen(SizedScreen[None]):
         yield self.line(InsightLine())
         yield KeyLine()
 
-    def more(self) -> Iterable[Widget]:
-        """The widgets above the insight line."""
+    def more(self) -> Iterable[Widget]:  # above the insight line
         return ()
 
     def line(self, line: Pane) -> Pane:
-        """Register a line of this screen; it is refreshed five times a second."""
+        """Register a line; it is refreshed five times a second."""
         self._lines.append(line)
         line.source = self.source
         line.sample = self.source.sample
@@ -192,7 +191,7 @@ class SourceScreen(SizedScreen[None]):
         self.notify(text, severity="warning", timeout=15)
 
     def show_now(self) -> None:
-        """Show everything now, or with the next frame if the terminal is behind."""
+        """Show everything, with the next frame if the terminal is behind."""
         self._is_late = is_writing(self.app)
         if not self._is_late:
             self._follow(self.source.sample)
@@ -225,7 +224,6 @@ class SourceScreen(SizedScreen[None]):
         self.show_now()
 
     def action_step(self, n: int) -> None:
-        """Pause and go n steps forward, or back if n is negative."""
         self.source.step(n)
         self.show_now()
 
@@ -302,7 +300,6 @@ class SourceScreen(SizedScreen[None]):
 
     @property
     def state(self) -> State:
-        """What an undo would bring back."""
         source = self.source
         return State(source.stepping, source.playhead.speed, self.shown, source.run_state)
 
@@ -336,7 +333,6 @@ class SourceScreen(SizedScreen[None]):
         self.show_now()
 
     def show_text(self, title: str, *paragraphs: str) -> None:
-        """Lay a text over the screen."""
         from tui.screens.dialogs import TextScreen
 
         self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
@@ -355,9 +351,9 @@ class SourceScreen(SizedScreen[None]):
 
     def action_describe(self) -> None:
         """Describe in words what runs and what is on screen."""
-        titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
-        panes = [Content.from_markup(title).plain for title in titles if title]
-        on_screen = "; ".join([VIEWS[self.view].title, *panes])
+        titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
+        panes = [Content.from_markup(title).plain for title in titles]
+        on_screen = "; ".join(filter(None, [VIEWS[self.view].title, *panes]))
         self.show_text("In words", *description(self.source), f"On screen: {on_screen}.")
 
     def action_screenshot(self) -> None:

@@ -5,10 +5,14 @@ import re
 import pytest
 from rich.color import Color
 
+from engine.scenes import DEFAULT_SCENE
 from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tests.tui.monkey import small_studies
 from tui.drawing.palette import PALETTES, TEXT
+from tui.playback.live import Live
+from tui.screens.app import PenduApp
+from tui.screens.live import LiveScreen
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.views import VIEWS
 
@@ -82,7 +86,6 @@ async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):
             assert all(colour.is_default for colour in colours(theatre.app))
 
 
-async def test_an_empty_no_color_means_nothing(monkeypatch):
+def test_an_empty_no_color_means_nothing(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "")
-    async with lab() as theatre:
-        assert not theatre.app.no_color
+    assert not PenduApp(LiveScreen(Live(DEFAULT_SCENE))).no_color

@@ -40,15 +40,11 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
-async def test_a_new_run_of_a_lab_whose_time_runs_backwards_runs_forwards():
+async def test_methods_are_taken_in_the_order_that_is_chosen_and_a_new_run_is_no_reversed_one():
     async with lab() as theatre:
         await theatre.press("b", "i", "enter")
         await theatre.pilot.pause()
         assert (theatre.source.stepping.h, theatre.source.sample.run) == (0.05, 2)
-
-
-async def test_methods_are_taken_in_the_order_that_is_chosen():
-    async with lab() as theatre:
         await theatre.press(
             "M", *["space", "down", "down", "space", "end", "up", "space", "home", "space", "enter"]
         )

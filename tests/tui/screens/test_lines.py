@@ -4,6 +4,7 @@ import pytest
 
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.recording import Recording
 from tests.tui.harness import after, eventful
 from tui.playback.common import Playhead, RecordingStatus
 from tui.playback.live import Live
@@ -52,9 +53,6 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
     assert text(status_row(live, 80)) == (
         " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 72 s"
     )
-
-
-def test_a_start_without_a_name_is_shown_in_numbers():
     live = taped()
     live.start(DEFAULT_SCENE.altered(theta=3.0))
     assert "171.9° 0 rad/s" in text(status_row(live, 80))
@@ -98,8 +96,6 @@ def test_the_bar_shows_what_was_played_and_what_was_done():
 
 
 def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
-    from recordings.recording import Recording
-
     path = eventful(tmp_path / "eventful.mcap")
     replay = Replay(Recording.open(path), clock=lambda: 0.0)
     replay.seek(6.0)

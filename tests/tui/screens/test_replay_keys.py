@@ -98,18 +98,6 @@ async def test_a_click_and_a_drag_on_the_bar_go_there(path):
         assert replay.playhead.position == pytest.approx(12)
 
 
-async def test_f_goes_on_live_from_the_replayed_moment(path):
-    async with player(path) as theatre:
-        await theatre.press("right", "right", "right")
-        here = theatre.source.sample
-        await theatre.press("f")
-        await theatre.pilot.pause(0.1)
-        assert isinstance(theatre.stage, LiveScreen)
-        assert theatre.source.sample.step == here.step
-        assert theatre.source.sample.readings[3].theta == here.readings[3].theta
-        assert " LIVE " in theatre.text(StatusLine)
-
-
 async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
     path = recorded(tmp_path / "drift.mcap", 20.0)
 
@@ -132,7 +120,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         assert "over the top" in theatre.text(EventList)
 
 
-async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
+async def test_f_goes_on_live_from_the_replayed_moment_unless_the_lab_could_not_record(path):
     def go_live(live: Live) -> LiveScreen:
         raise UserError("/nowhere is not writable: choose another folder.")
 
@@ -141,9 +129,17 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
         await theatre.press("right", "f")
         await theatre.pilot.pause(0.1)
         assert isinstance(theatre.stage, ReplayScreen)
+        assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
-        assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
+        here = theatre.source.sample
+        theatre.stage._go_live = lambda live: LiveScreen(live, lambda: theatre.now)
+        await theatre.press("f")
+        await theatre.pilot.pause(0.1)
+        assert isinstance(theatre.stage, LiveScreen)
+        assert theatre.source.sample.step == here.step
+        assert theatre.source.sample.readings[3].theta == here.readings[3].theta
+        assert " LIVE " in theatre.text(StatusLine)
 
 
 async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_it_is(path):

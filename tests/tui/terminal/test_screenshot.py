@@ -10,10 +10,9 @@ from tests.tui.harness import lab
 async def test_s_saves_a_picture_among_the_recordings(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "new"))
     async with lab(size=(80, 24)) as theatre:
-        await theatre.run(1)
         await theatre.press("s")
     (picture,) = (tmp_path / "new").iterdir()
-    assert "t 1.00 s" in text_of(picture.read_text(encoding="utf-8"))
+    assert "t 0.00 s" in text_of(picture.read_text(encoding="utf-8"))
     assert library.listing(tmp_path / "new") == []  # a picture is no recording
 
 
