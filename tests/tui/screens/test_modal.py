@@ -30,19 +30,18 @@ async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
         assert theatre.app.screen is theatre.stage
 
 
-@pytest.mark.parametrize("opening", ["question_mark", "i", "ctrl+p"])
-async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal(opening):
+async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal():
     async with lab() as theatre:
         theatre.app._disable_notifications = False
-        await theatre.press(opening)
-        theatre.app.notify("words that take more than a line")
-        await theatre.pilot.pause()
-        assert theatre.app.screen.query(Toast)
-        for columns in (12, 6, 3, 2, 1):
-            for rows in (1, 30):
-                await theatre.pilot.resize_terminal(columns, rows)
-        await theatre.press("escape")
-        assert theatre.app.screen is theatre.stage
+        for opening in ("question_mark", "i", "ctrl+p"):
+            await theatre.press(opening)
+            theatre.app.notify(f"{opening}: words that take more than a line")
+            await theatre.pilot.pause()
+            assert theatre.app.screen.query(Toast)
+            for size in ((12, 30), (3, 1), (1, 30), (1, 1)):
+                await theatre.pilot.resize_terminal(*size)
+            await theatre.press("escape")
+            assert theatre.app.screen is theatre.stage
 
 
 async def test_a_page_of_scenes_can_be_asked_for_where_there_is_room_for_none():
