@@ -5,7 +5,7 @@ Arguments that cannot be used raise ValueError with a sentence.  NumPy is loaded
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -60,10 +60,10 @@ class Track:
     A method whose numbers overflow stays where it last was finite.
     """
 
-    theta: "Floats"  # rad, not reduced to a turn
-    omega: "Floats"  # rad/s
-    energy: "Floats"  # s⁻², per unit m·L²
-    energy_error: "Floats"  # relative
+    theta: "Floats" = field(repr=False)  # rad, not reduced to a turn
+    omega: "Floats" = field(repr=False)  # rad/s
+    energy: "Floats" = field(repr=False)  # s⁻², per unit m·L²
+    energy_error: "Floats" = field(repr=False)  # relative
     verdict: str
     failed_at: float | None  # s
 
@@ -72,14 +72,16 @@ class Track:
 class Run(Mapping[str, Track]):
     """The methods' tracks, by key or by the start of a key."""
 
-    scene: Scene
-    t: "Floats"  # s
+    scene: Scene = field(repr=False)
+    t: "Floats" = field(repr=False)  # s
     tracks: Mapping[str, Track]
 
     def __getitem__(self, name: str) -> Track:
         found = matching(name, self.scene.cast)
         if len(found) != 1:
-            raise KeyError(name)
+            raise KeyError(
+                f"{name!r} does not name one method of this run; use one of {', '.join(self)}."
+            )
         return self.tracks[found[0].key]
 
     def __iter__(self) -> Iterator[str]:

@@ -32,7 +32,7 @@ def compilable(phases: Phases) -> Phases:
     return phases if other is None else other()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Method:
     """A method and what is claimed of it; tests/engine/methods measure every claim."""
 
@@ -64,6 +64,9 @@ class Method:
     epsilon: float = 2.0**-53  # the relative error of a rounding
     # its evaluations depend on the phase; `force_evaluations` is then an average
     varies: bool = False
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.key})"
 
     @property
     def general(self) -> bool:

@@ -40,7 +40,7 @@ class UserCode:
     steps = 0  # begun; 0 while the file itself runs
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class OwnMethod(Method):
     """A user's method.  The fields that other methods claim are measured."""
 

@@ -66,6 +66,15 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
 
 
+def test_results_print_in_a_few_lines_and_a_method_that_did_not_run_gets_a_sentence():
+    run = simulate(time=60, methods="rk4,verlet")
+    with pytest.raises(KeyError, match="'heun' does not name one .* rk4, velocity_verlet"):
+        run["heun"]
+    for result in (run, recommend(1e-2, methods="rk4,verlet", time=5)):
+        assert "rk4" in repr(result)
+        assert len(repr(result)) < 1000
+
+
 def test_a_run_that_overflows_says_when():
     track = simulate("linear", h=3.0, time=4000, methods=[METHODS["rk4"]], every=100)["rk4"]
     assert track.verdict == "failed"
