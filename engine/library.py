@@ -36,7 +36,9 @@ def _public(method: Method) -> Method:
             "a method of METHODS with general=True."
         )
 
-    return method if method.general else replace(method, phases=refuse)
+    if method.general:
+        return method
+    return replace(method, phases=refuse)
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
@@ -234,13 +236,11 @@ def limits(
     grid = ladder_of(chosen, [theta], None, steps)
     found = {}
     for row in table(chosen, grid, grid.cells()):
-        z = row.failure.z if row.failure else None
-        found[row.method.key] = Limit(
-            linear=row.method.linear_limit,
-            z=z,
-            h=None if z is None else z / chosen.w0,
-            reason=row.failure.reason if row.failure else "",
-        )
+        limit = Limit(linear=row.method.linear_limit, z=None, h=None, reason="")
+        if failure := row.failure:
+            h = failure.z / chosen.w0
+            limit = replace(limit, z=failure.z, h=h, reason=failure.reason)
+        found[row.method.key] = limit
     return found
 
 
@@ -298,7 +298,9 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 
 def _cast(given: Methods) -> Cast:
-    names = given.split(",") if isinstance(given, str) else given
+    names = given
+    if isinstance(given, str):
+        names = given.split(",")
     if not isinstance(names, Iterable):
         raise ValueError(
             f"methods = {given!r} is not a list of methods; use for example 'rk4,verlet'."
@@ -313,7 +315,7 @@ def _method(name: str | Method) -> Method:
     """Return the method of a key or the start of one; a method of the list, or one's own."""
     if isinstance(name, Method) and name.key not in METHODS:
         return name
-    found = matching(name.key if isinstance(name, Method) else str(name))
+    found = matching(getattr(name, "key", str(name)))
     if len(found) == 1:
         return found[0]
     if found:
@@ -325,12 +327,11 @@ def _method(name: str | Method) -> Method:
 def _number(name: str, value: Any) -> float:
     """Return a finite number.  Raises ValueError."""
     try:
-        number = math.nan if isinstance(value, str | bool) else float(value)
+        if not isinstance(value, str | bool) and math.isfinite(value):
+            return float(value)
     except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise ValueError(f"{name} = {value!r} is not a finite number.")
-    return number
+        pass
+    raise ValueError(f"{name} = {value!r} is not a finite number.")
 
 
 def _array(name: str, values: Any) -> "Floats":
@@ -356,7 +357,9 @@ def _size(energies: Any, scale: float | str) -> float:
         return float((energies / largest).std()) * largest or largest
     if isinstance(scale, str) and scale != "first":
         raise ValueError(f"scale = {scale!r} is none of std, first and a number.")
-    size = abs(float(energies[0])) if isinstance(scale, str) else _number("scale", scale)
+    size = abs(float(energies[0]))
+    if not isinstance(scale, str):
+        size = _number("scale", scale)
     if size <= 0:
         raise ValueError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size

@@ -14,7 +14,6 @@ from engine.methods import Method
 from engine.methods.runge_kutta import RK4
 
 Cost = Literal["evaluations", "seconds"]
-DECADES = range(-1, -16, -1)  # powers of ten: the errors at which methods are compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +32,9 @@ def cost_of(point: Point, cost: Cost) -> float:
 
     Unknown are the seconds of an untimed run and the force evaluations of a series.
     """
-    return point.seconds or 0.0 if cost == "seconds" else point.force_evaluations
+    if cost == "seconds":
+        return point.seconds or 0.0
+    return point.force_evaluations
 
 
 def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
@@ -46,8 +47,8 @@ def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest
     for point in points:
         lines.setdefault(point.method, []).append(point)
     found = []
-    for decade in DECADES:
-        target = 10.0**decade
+    for decade in range(1, 16):
+        target = 10.0**-decade
         if any(
             _usable(line[0], kind) and line[0].error(kind) <= target
             for line in map(_coarsest_first, lines.values())
@@ -60,11 +61,9 @@ def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest
         }
         if costs:
             best = min(costs, key=lambda method: costs[method])
-            ours, rk4 = (
-                cost_at(lines[method], kind, "evaluations", target) if method in lines else None
-                for method in (best, RK4)
-            )
-            found.append(Cheapest(target, best, costs[best], rk4 / ours if ours and rk4 else None))
+            ours = cost_at(lines[best], kind, "evaluations", target)
+            rk4 = cost_at(lines.get(RK4, ()), kind, "evaluations", target)
+            found.append(Cheapest(target, best, costs[best], ours and rk4 and rk4 / ours))
     return found
 
 

@@ -14,12 +14,8 @@ from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
 PERIODS = 100  # followed at most; fewer if the error becomes too large
-FEWEST = 10  # periods for a fit
 MAX_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
-STRAIGHT = 0.05  # largest deviation of ln(error) from the fitted line
-WHOLE = 0.15  # largest deviation of the fitted power from an integer
-_LOOKS = 30  # in each period
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +30,9 @@ class Growth:
     @property
     def name(self) -> str:
         """The method and its power of t, if there is one, for people."""
-        power = "" if self.power is None else f" t^{self.power:.2f}"
-        return self.method.label + power
+        if self.power is None:
+            return self.method.label
+        return f"{self.method.label} t^{self.power:.2f}"
 
 
 def duration(scene: Scene) -> float | None:
@@ -61,7 +58,7 @@ def growth(scene: Scene, method: Method) -> Growth:
     errors: list[float] = []
     for number in range(1, PERIODS + 1):
         ends = (number - 1) * width, min(number * width, steps)
-        looks = np.linspace(*ends, _LOOKS).astype(int).tolist()
+        looks = np.linspace(*ends, 30).astype(int).tolist()
         if looks[-1] >= len(theta):  # the numbers have overflowed
             break
         errors.append(max(abs(float(theta[k]) - exact.at(k * scene.h).theta) for k in looks))
@@ -80,11 +77,13 @@ def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
 
 
 def _power(times: Sequence[float], errors: Sequence[float]) -> float | None:
+    """Return the slope of ln error over ln t where it is straight, and near an integer."""
     first = len(errors) * 3 // 10
-    if len(errors) < FEWEST or min(errors) <= 0:
+    if len(errors) < 10 or min(errors) <= 0:
         return None
     x = np.log(times[first:])
     y = np.log(errors[first:])
     slope, start = np.polyfit(x, y, 1)
-    is_power = np.abs(y - slope * x - start).max() < STRAIGHT and abs(slope - round(slope)) < WHOLE
-    return float(slope) if is_power else None
+    if np.abs(y - slope * x - start).max() >= 0.05 or abs(slope - round(slope)) >= 0.15:
+        return None
+    return float(slope)

@@ -14,11 +14,8 @@ from engine.scenes import Z_LIMITS
 
 MAX_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 MAX_TIMES = 300  # the force evaluations of the cheapest method, beyond which none is searched
-PREDICTED = 2.0  # times the affordable steps: a method that needs more by its order is given up
 TOLERANCE = 0.02  # to which the fewest steps are found
 CONFIRMING_COMPARISONS = 10_000
-CONFIRMING_RUNS = 20  # before a method is given up
-IN_VAIN = 2  # doublings of the steps that do not lower the error: then rounding stops it
 REFINED = 1.1  # times the steps must reach the target, too: an error may happen to cross zero
 
 
@@ -47,7 +44,9 @@ class Advice:
     def point(self) -> Point | None:
         """The recommended run; None: nothing reaches the target."""
         best = self.attempts[0]
-        return best.point if best.succeeded else None
+        if best.succeeded:
+            return best.point
+        return None
 
 
 def least_cost(
@@ -128,7 +127,9 @@ def _spend(study: Study, method: Method, kind: ErrorKind, budget: int) -> Attemp
             break
         point = coarser
     flaw = point.flaw(kind)
-    return Attempt(method, point, REASONS[flaw] if flaw in ("lost", "diverged") else None)
+    if flaw in ("lost", "diverged"):
+        return Attempt(method, point, REASONS[flaw])
+    return Attempt(method, point)
 
 
 def _affordable(study: Study, method: Method, budget: int) -> int:
@@ -138,7 +139,9 @@ def _affordable(study: Study, method: Method, budget: int) -> int:
     steps = min(
         (budget - method.first_same_as_last) // method.force_evaluations, int(study.time / smallest)
     )
-    return steps if steps * largest >= study.time else 0
+    if steps * largest < study.time:
+        return 0
+    return steps
 
 
 def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most: int) -> Attempt:
@@ -150,23 +153,26 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     if not steps:
         return Attempt(method, None, _no_h(most))
     best = None
-    in_vain = 0
+    in_vain = 0  # steps were doubled, and rounding kept the error from falling
     while (point := study.run(method, steps)).error(kind) > target:
         if best is None or point.error(kind) < best.error(kind):
             best = point
             in_vain = 0
         else:
             in_vain += point.flaw(kind) == "rounding"
-        if in_vain == IN_VAIN or (in_vain and steps == most_steps):
+        if in_vain == 2 or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
             return Attempt(method, best, _not_within(point))
         flaw = point.flaw(kind)
-        factor = 2.0 if flaw == "rounding" else 4.0
-        if flaw is None:
+        factor = 4.0
+        if flaw == "rounding":
+            factor = 2.0
+        elif flaw is None:  # then the order of the method predicts the steps
             needed = (point.error(kind) / target) ** (1 / method.order)
-            if needed * steps > PREDICTED * most_steps and point.error(kind) < FITTED_BELOW:
-                return Attempt(method, best, _about(method.evaluations(round(needed * steps))))
+            if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
+                about = method.evaluations(round(needed * steps))
+                return Attempt(method, best, f"needs about {about:.1e} evaluations")
             factor = min(max(needed, 1.1), factor)
         too_few = steps
         steps = min(most_steps, math.ceil(steps * factor))
@@ -183,7 +189,7 @@ def _confirmed(
     study: Study, method: Method, kind: ErrorKind, target: float, steps: int, most_steps: int
 ) -> Attempt:
     """Compare more often, and with slightly more steps, and take more steps where that fails."""
-    for _ in range(CONFIRMING_RUNS):
+    for _ in range(20):
         point = study.run(method, steps, CONFIRMING_COMPARISONS)
         refined = study.run(method, math.ceil(steps * REFINED), CONFIRMING_COMPARISONS)
         if max(point.error(kind), refined.error(kind)) <= target:
@@ -200,7 +206,3 @@ def _no_h(most: int) -> str:
 
 def _not_within(point: Point) -> str:
     return f"not within {point.force_evaluations} evaluations"
-
-
-def _about(evaluations: int) -> str:
-    return f"needs about {evaluations:.1e} evaluations"

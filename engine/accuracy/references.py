@@ -12,8 +12,6 @@ from engine.methods.method import Method
 from engine.models.exact_pendulum import exact_pendulum
 from engine.scenes import Scene
 
-MAX_RADIANS = 1e6  # of motion
-ROUNDINGS = 16  # of a step, in those of a force evaluation
 ABSENT = "Taylor's series is for shorter runs of the pendulum, where Numba compiles the methods."
 TAYLOR_20 = Method(
     key="taylor_20",
@@ -58,7 +56,7 @@ def _states(motion: Any, times: Any) -> Any:
 def taylor_points(scene: Scene, time: float, clock: Clock) -> Iterator[Point]:
     """Yield timed points, the loosest tolerance first."""
     fastest = max(scene.w0, abs(scene.omega))
-    if time * fastest > MAX_RADIANS:
+    if time * fastest > 1e6:  # rad of motion, which take too long
         return
     solve = import_module("engine.accuracy.taylor").solve  # needs Numba
     study = Study(scene, time)
@@ -71,7 +69,7 @@ def taylor_points(scene: Scene, time: float, clock: Clock) -> Iterator[Point]:
         energies = scene.equations.energy(np.sin)(states.T)
         energy_error = np.abs(energies - energies[0]).max() / study.energy_scale
         errors = (float(off.max()), float(energy_error), float(off[-1]))
-        flaws = study.flaws(errors, ROUNDINGS * steps)
+        flaws = study.flaws(errors, 16 * steps)  # a step rounds 16 times as often as a force
         runs = max(1, TIMED_STEPS // steps)
         seconds = shortest(partial(solve, *start, times[-1:], tolerance), runs, clock)
         yield Point(TAYLOR_20, time, scene.w0, steps, *errors, flaws, *seconds, tolerance)

@@ -6,10 +6,8 @@ from statistics import fmean
 
 from engine.scenes import Scene
 
-SAMPLES = 400
 # relative; small even next to the separatrix, and far above the exact swing's own error
 NUDGE = 1e-9
-MARGIN = 2  # errors above the floor are then due to the method, but for a fraction
 
 
 def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
@@ -25,16 +23,17 @@ def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     exact = scene.exact()
     if exact.regime == "equilibrium":
         return epsilon, epsilon
-    swing = ((exact.period or time) * sample / SAMPLES for sample in range(SAMPLES + 1))
+    swing = ((exact.period or time) * sample / 400 for sample in range(401))
     start = max(map(exact.at, swing), key=lambda state: abs(state.omega))
     moving = scene.altered(theta=start.theta, omega=start.omega).exact()
     slower = scene.altered(theta=start.theta, omega=start.omega * (1 - NUDGE)).exact()
-    times = [time * sample / SAMPLES for sample in range(SAMPLES + 1)]
+    times = [time * sample / 400 for sample in range(401)]
     widest = max(abs(exact.at(t).theta) for t in times)
     fastest = max(abs(exact.at(t).omega) for t in times)
     # squares of 1e-170 are 0
     pace = scene.w0 * math.sqrt(widest) * math.sqrt(min(widest, 1.0)) / fastest
-    energy = MARGIN * epsilon * max(1.0, pace * pace)
+    # twice: errors above the floor are then due to the method, but for a fraction
+    energy = 2 * epsilon * max(1.0, pace * pace)
     response = [(moving.at(t).theta - slower.at(t).theta) / NUDGE for t in times]
     # changes come at any time of the run
     return energy, energy * math.sqrt(fmean(r * r for r in response))

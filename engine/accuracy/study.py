@@ -25,14 +25,10 @@ Clock = Callable[[], float]  # s
 REPEATS = 5  # of a measurement of seconds
 COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
-COUNTED_STEPS = 2000
-SWINGS = 10
 Z_LADDER = (0.6, 0.0015, 12)  # about ten steps a small swing, to four thousand
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
-ORDER_COMPARISONS = ORDER_STEPS[0]
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
-FITTED = 4  # of the errors that are left, those of the smallest h
 
 
 Flaw = Literal["lost", "rounding", "diverged"]
@@ -85,17 +81,17 @@ class Point:
 
     @property
     def force_evaluations(self) -> int:
-        return self.method.evaluations(self.steps) if self.counted is None else self.counted
+        if self.counted is not None:
+            return self.counted
+        return self.method.evaluations(self.steps)
 
     def error(self, kind: ErrorKind) -> float:
-        return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[
-            kind
-        ]
+        error: float = getattr(self, f"{kind}_error")
+        return error
 
     def flaw(self, kind: ErrorKind) -> Flaw | None:
-        return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[
-            kind
-        ]
+        flaw: Flaw | None = getattr(self.flaws, kind)
+        return flaw
 
 
 class Order(NamedTuple):
@@ -134,7 +130,8 @@ class Study:
         if not diverged:
             refines = partial(self._refines, method, steps, comparisons, errors)
             flaws = self.flaws(errors, steps, refines)
-            counted = self._evaluations(method, steps) if method.varies else None
+            if method.varies:
+                counted = self._evaluations(method, steps)
         return Point(method, self.time, self.scene.w0, steps, *errors, flaws=flaws, counted=counted)
 
     def _refines(
@@ -164,20 +161,21 @@ class Study:
             for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
         ]
         sizes = (self._width, 1.0, self._width)
-        found: list[Flaw | None] = [
-            "lost" if error >= size else None for error, size in zip(errors, sizes, strict=True)
-        ]
+        found: list[Flaw | None] = [None, None, None]
         below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
         if any(below):
             for kind, refined in enumerate(refines()):
-                if found[kind] is None and below[kind] and not refined:
+                if below[kind] and not refined:
                     found[kind] = "rounding"
+        for kind, size in enumerate(sizes):
+            if errors[kind] >= size:
+                found[kind] = "lost"
         return Flaws(*found)
 
     def _evaluations(self, method: Method, steps: int) -> int:
         """Force evaluations of so many steps: counted, of many as an average of the first."""
         start = self.scene.equations.start(self.scene.theta, self.scene.omega)
-        most = min(steps, COUNTED_STEPS)
+        most = min(steps, 2000)
         found = count_evaluations(method, self.scene.equations, start, self.time / steps, most)
         return round(found * steps / most)
 
@@ -241,8 +239,10 @@ def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
 
     The time is that of ten small swings: 20 s for 1 m.
     """
-    time = float(f"{SWINGS * math.tau / scene.w0:.2g}")
-    largest, smallest, rungs = ALL_LADDER if all else Z_LADDER
+    time = float(f"{10 * math.tau / scene.w0:.2g}")
+    largest, smallest, rungs = Z_LADDER
+    if all:
+        largest, smallest, rungs = ALL_LADDER
     return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
 
 
@@ -294,7 +294,7 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
     runs = {
-        method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable]
+        method: [study.run(method, steps, ORDER_STEPS[0]) for steps in usable]
         for method in scene.cast
     }
     return [
@@ -304,8 +304,8 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
 
 
 def _slope(points: Sequence[Point]) -> float | None:
-    """The slope of log theta error over log h, by least squares."""
-    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-FITTED:]
+    """The slope of log theta error over log h, by least squares, of the four smallest h."""
+    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-4:]
     if len(fitted) < 3:
         return None
     line = linear_regression(

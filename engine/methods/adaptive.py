@@ -33,7 +33,9 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
         omega = halves[1] - whole[1]
         if halvings and math.hypot(theta, omega) > tolerance:
             return step(force, step(force, phase, h / 2, halvings - 1), h / 2, halvings - 1)
-        return (halves[0] + theta / 3, halves[1] + omega / 3) if richardson else halves
+        if richardson:
+            return halves[0] + theta / 3, halves[1] + omega / 3
+        return halves
 
     def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         """Steps divided in halves as often as they need it."""

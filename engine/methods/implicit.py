@@ -35,8 +35,9 @@ def implicit(share: float) -> Phases:
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         """Steps whose force is solved for."""
-        has_arrays = any(hasattr(value, "shape") for value in (*phase, h))
-        return (for_arrays() if has_arrays else for_numbers)(force, phase, h)
+        if any(hasattr(value, "shape") for value in (*phase, h)):
+            return for_arrays()(force, phase, h)
+        return for_numbers(force, phase, h)
 
     COMPILABLE[implicit_steps] = for_arrays
     return implicit_steps

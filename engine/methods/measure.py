@@ -23,11 +23,7 @@ LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a mis
 WIDEST_Z = 16
 RUNGS = 2048
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
-ROUNDING = 1e-12
 LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much
-RETURNED = 1e-11  # rad; rounding of 100 steps of a dozen forces
-FLOOR = 1e-14  # rad a step; smaller errors are rounding
-FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
 
 class Measured(NamedTuple):
@@ -73,16 +69,18 @@ def order(phases: Phases, start: Phase = START) -> float | None:
         largest = 0.0
         for step, phase in enumerate(islice(phases(force, start, half / steps), steps), 1):
             largest = max(largest, abs(phase[0] - exact.at(step * half / steps).theta))
-            if not largest < FITTED_BELOW:  # nan, too
+            if not largest < 0.1:  # rad, not yet proportional to a power of h; or nan
                 break
-        if largest <= FLOOR * steps:
+        if largest <= 1e-14 * steps:  # rad: rounding
             break
-        if largest < FITTED_BELOW:
+        if largest < 0.1:
             found.append((math.log(half / steps), math.log(largest)))
     if len(found) < 3:
         return None
     slope = linear_regression(*zip(*found[-6:], strict=True)).slope
-    return slope if slope > 0.5 else None
+    if slope <= 0.5:
+        return None
+    return slope
 
 
 def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
@@ -118,13 +116,16 @@ def determinant(phases: Phases, phase: Phase, h: float) -> float:
 def is_symplectic(phases: Phases) -> bool:
     """Whether a step keeps area wherever it starts."""
     starts = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
-    return all(abs(determinant(phases, start, LARGE_H) - 1) < ROUNDING for start in starts)
+    return all(abs(determinant(phases, start, LARGE_H) - 1) < 1e-12 for start in starts)
 
 
 def is_reversible(phases: Phases) -> bool:
-    """Whether a swing that turns round after 10 s, and takes as long again, meets its start."""
+    """Whether a swing that turns round after 10 s, and takes as long again, meets its start.
+
+    But for the rounding of 100 steps of a dozen forces.
+    """
     return all(
-        out_and_back(phases, start, LARGE_H, 50) < RETURNED
+        out_and_back(phases, start, LARGE_H, 50) < 1e-11  # rad
         for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0))
     )
 

@@ -28,8 +28,7 @@ COMPILABLE: dict[Phases, Callable[[], Phases]] = {}
 
 def compilable(phases: Phases) -> Phases:
     """Return the phases as Numba can compile them."""
-    other = COMPILABLE.get(phases)
-    return phases if other is None else other()
+    return COMPILABLE.get(phases, lambda: phases)()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -91,7 +90,9 @@ class Method:
         """Return its phases if it takes the parts of this model."""
         if self.takes_parts:
             return self.phases
-        return self.on_spring if model.key == "spring" else None
+        if model.key == "spring":
+            return self.on_spring
+        return None
 
     def step(self, force: Any, phase: Phase, h: float) -> Phase:
         """The phase after one step of h [s]."""

@@ -138,8 +138,9 @@ def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
 
 def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
     """Return the method wrapped to raise OwnMethodError if it does not yield phases."""
-    code = getattr(function, "__code__", None)
-    where = f"{file}, line {code.co_firstlineno}" if code else file
+    where = file
+    if code := getattr(function, "__code__", None):
+        where = f"{file}, line {code.co_firstlineno}"
 
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         plain = type(phase[0]) is type(phase[1]) is float
@@ -212,7 +213,9 @@ def _short(value: object) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # the user's __repr__
         text = f"a {type(value).__name__}"
-    return text if len(text) <= 40 else f"a {type(value).__name__}"
+    if len(text) > 40:
+        return f"a {type(value).__name__}"
+    return text
 
 
 def _is_of_force(error: BaseException, force: Force) -> bool:
@@ -239,4 +242,4 @@ def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
     if isinstance(error, TooLongError):
         return f"{where} {error}."
     what = " ".join(str(error).split())[:200]
-    return f"{where} raises {type(error).__name__}{': ' + what if what else ''}."
+    return f"{where} raises {type(error).__name__}{what and f': {what}'}."

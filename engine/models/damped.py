@@ -25,7 +25,6 @@ from engine.models.reference import Reference, compose_verlet
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
 ACCURACY = 1e-10  # rad
-MAX_FRICTION = 100  # over w0: beyond, the pendulum creeps, and its reference takes too many steps
 
 
 class DampedParts(NamedTuple):
@@ -44,7 +43,8 @@ class DampedPendulum(Pendulum):
     key: ClassVar[str] = "damped"
     equation: ClassVar[str] = "theta'' = -w0² sin theta - gamma omega"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("friction", "s⁻¹", "friction", 0.0, 100.0, max_over_w0=MAX_FRICTION),
+        # beyond, the pendulum creeps, and its reference takes too many steps
+        Parameter("friction", "s⁻¹", "friction", 0.0, 100.0, max_over_w0=100),
     )
     second_order: ClassVar[bool] = False
     has_separatrix: ClassVar[bool] = False

@@ -47,10 +47,9 @@ class LinearOscillator(Model):
             s = math.sin(w0 * t)
             return State(theta * c + omega / w0 * s, omega * c - theta * w0 * s)
 
-        rests = theta == 0 == omega
-        return ExactMotion(
-            at, "equilibrium" if rests else "libration", None if rests else math.tau / w0
-        )
+        if theta == 0 == omega:
+            return ExactMotion(at, "equilibrium")
+        return ExactMotion(at, "libration", math.tau / w0)
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
         """Return minus a quarter of the squared amplitude: its curves are ellipses."""

@@ -13,18 +13,14 @@ Step = Callable[[Phase, float], Phase]
 """(phase, h) -> the phase after h [s]."""
 
 _HALF = (
-    *(
-        0.13020248308889008088,
-        0.56116298177510838456,
-        -0.38947496264484728641,
-        0.15884190655515560090,
-    ),
-    *(
-        -0.39590389413323757734,
-        0.18453964097831570709,
-        0.25837438768632204729,
-        0.29501172360931029887,
-    ),
+    0.13020248308889008088,
+    0.56116298177510838456,
+    -0.38947496264484728641,
+    0.15884190655515560090,
+    -0.39590389413323757734,
+    0.18453964097831570709,
+    0.25837438768632204729,
+    0.29501172360931029887,
 )
 WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
 EVERY = 64  # steps from one that is kept to the next
@@ -63,7 +59,9 @@ class Reference:
                     self._kept[n] = phase
             self._last = steps, phase
             rest = t - steps * self._h
-            return self._step(phase, rest) if rest else phase
+            if rest:
+                return self._step(phase, rest)
+            return phase
         except (ValueError, ArithmeticError):
             return phase  # far back, where friction has made it faster than doubles hold
 

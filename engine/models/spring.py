@@ -28,11 +28,8 @@ from engine.models.model import (
 )
 from engine.models.reference import Reference, compose_verlet
 
-STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
 STEP = 0.1  # of the reference, times the spring's frequency
 ACCURACY = 1e-10  # rad
-# times the swing's frequency; a faster spring would take the reference more time than it saves
-STIFFEST = 320
 
 
 class SpringParts(NamedTuple):
@@ -100,8 +97,8 @@ class Spring(Model):
         return max(self.w0, math.sqrt(self.stiffness))
 
     def start(self, theta: float, omega: float) -> Phase:
-        """Stretched, and with no speed along the rod."""
-        length = 1 + STRETCH + (self.w0_squared * math.cos(theta) + omega * omega) / self.stiffness
+        """Stretched by 4 % beyond equilibrium, and with no speed along the rod."""
+        length = 1 + 0.04 + (self.w0_squared * math.cos(theta) + omega * omega) / self.stiffness
         down = -1j * cmath.exp(1j * theta)
         return length * down, 1j * length * omega * down
 
@@ -205,8 +202,11 @@ class Spring(Model):
         return ExactMotion(at, "libration", accuracy=ACCURACY)
 
     def place(self, theta: float, omega: float, t: float) -> Phase:
-        """The reference's position and velocity at a time [s]; nan if the spring is too fast."""
-        if self.fastest > STIFFEST * self.w0:
+        """The reference's position and velocity at a time [s]; nan if the spring is too fast.
+
+        It would take the reference more time than it saves.
+        """
+        if self.fastest > 320 * self.w0:
             return complex(math.nan, math.nan), complex(math.nan, math.nan)
         return _reference(self, theta, omega).at(t)
 

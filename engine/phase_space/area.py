@@ -101,7 +101,9 @@ class Neighbours:
 
     def ring_of(self, scene: Scene, run: int) -> Neighbourhood | None:
         """The ring as far as it has been carried; None if it is not yet of this run."""
-        return self._ring if self._begun == (scene, run) else None
+        if self._begun == (scene, run):
+            return self._ring
+        return None
 
     def follow(
         self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int

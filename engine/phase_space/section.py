@@ -21,8 +21,6 @@ from engine.run.tangent import Stretching
 Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
 
-SETTLED = 1e-4
-"""An orbit whose halves' rotation numbers differ by a larger share has none."""
 LARGEST = 12  # denominator of a fraction that counts as small
 _CHUNK = 8  # steps between two looks at a displacement
 
@@ -106,16 +104,19 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     for at in range(0, steps - _CHUNK + 1, _CHUNK):
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
     # Regular orbits separate in proportion to the steps, fast near the upright position.
-    slack = -math.log(max(abs(model.level(*start)), 1e-16)) if model.turns else 0.0
-    parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + max(slack, 0.0)
+    slack = 0.0
+    if model.turns:
+        slack = max(-math.log(max(abs(model.level(*start)), 1e-16)), 0.0)
+    parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + slack
     chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
-    rotation = None if chaotic or not moves else rotation_number(theta, omega, model.w0, spins)
-    fraction = None if rotation is None else nearest_fraction(abs(rotation))
-    island = (
-        rotation is not None
-        and fraction is not None
-        and _is_island(points, model.w0, rotation, fraction, spins)
-    )
+    rotation = None
+    fraction = None
+    island = False
+    if moves and not chaotic:
+        rotation = rotation_number(theta, omega, model.w0, spins)
+    if rotation is not None:
+        fraction = nearest_fraction(abs(rotation))
+        island = _is_island(points, model.w0, rotation, fraction, spins)
     error = model.reference(*start).error(model.energy()((float(theta[-1]), float(omega[-1]))))
     return OrbitKind(
         steps=steps,
@@ -154,7 +155,9 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
         return None
     rotation = _average(turns)
     change = _average(turns[:half]) - _average(turns[half:])
-    return rotation if abs(change) <= SETTLED * abs(rotation) else None
+    if abs(change) > 1e-4 * abs(rotation):
+        return None
+    return rotation
 
 
 def _average(values: Floats) -> float:
@@ -168,8 +171,8 @@ def nearest_fraction(rotation: float) -> Fraction:
 
     Below 1/LARGEST it is one over the nearest number of whole steps a turn.
     """
-    if 0 < rotation < 1 / LARGEST:
-        return Fraction(1, round(1 / rotation)) if rotation > 1e-9 else Fraction(0)
+    if 1e-9 < rotation < 1 / LARGEST:
+        return Fraction(1, round(1 / rotation))
     return Fraction(rotation).limit_denominator(LARGEST)
 
 

@@ -107,7 +107,9 @@ class Lockstep:
         self._reference = model.reference(scene.theta, scene.omega)
         start_phase = model.start(scene.theta, scene.omega)
         self._invariant = model.invariant()
-        self._invariant_start = self._invariant(start_phase) if self._invariant else 0.0
+        self._invariant_start = 0.0
+        if self._invariant:
+            self._invariant_start = self._invariant(start_phase)
         start = model.observe(start_phase).extra
         self._scales = {
             each.name: start[each.name] or 1.0 for each in model.variables if each.relative
@@ -123,8 +125,9 @@ class Lockstep:
         self._judges: Judges | None = None
         if judged:
             self._judges = Judges(scene.cast, model, self._period)
-        swings = model.turns and exact.regime == "libration"
-        self._bottom = math.tau * round(scene.theta / math.tau) if judged and swings else None
+        self._bottom: float | None = None
+        if judged and model.turns and exact.regime == "libration":
+            self._bottom = math.tau * round(scene.theta / math.tau)
         self._restart()
 
     def copy(self) -> "Lockstep":
@@ -287,10 +290,8 @@ class Lockstep:
         return Sample(self.run, self.step, self.t, readings)
 
     def _read(self, track: _Track) -> Reading:
-        track.run_low, track.run_high = (
-            min(track.run_low, track.low),
-            max(track.run_high, track.high),
-        )
+        track.run_low = min(track.run_low, track.low)
+        track.run_high = max(track.run_high, track.high)
         theta, omega, extra = self._model.observe(track.phase)
         if track.turns:
             theta += track.turns * math.tau

@@ -196,7 +196,7 @@ OVERFLOW = (ValueError, ArithmeticError)
 
 
 def _to_overflow(phases: Iterator[Phase], energy: Energy) -> Iterator[Phase]:
-    """The phases whose energies can be had."""
+    """Yield phases until the energy overflows."""
     with suppress(*OVERFLOW):
         for phase in phases:
             energy(phase)

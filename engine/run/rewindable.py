@@ -8,6 +8,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import NamedTuple
 
 from engine.run.compiled import TieredLoops
@@ -18,7 +19,6 @@ from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 
 COPY_EVERY = 1000  # steps; 4 ms of simulation, so a step back is not felt
-AGE_PER_GAP = 8  # copies n steps old are about n/8 steps apart
 
 
 class _Checkpoint(NamedTuple):
@@ -94,17 +94,17 @@ class RewindableRun:
         begin = self._x[at - 1]
         # x is a sum of floats, and the step must not lag because of that
         step = last.step + int((x - begin) / abs(last.stepping.h) + 1e-6)
-        return min(step, self.changes[at].step) if at < len(self.changes) else step
+        if at < len(self.changes):
+            return min(step, self.changes[at].step)
+        return step
 
     @property
     def home(self) -> float:
         """Return the step at which the simulated time is back at 0; inf if it never is."""
         ahead = -self.t / self.stepping.h
-        return (
-            self.step + round(ahead)
-            if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6
-            else math.inf
-        )
+        if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6:
+            return self.step + round(ahead)
+        return math.inf
 
     def sample(self, resets: bool = True) -> Sample:
         """Return the readings now; a step that is repeated resets no lows and highs."""
@@ -177,12 +177,10 @@ class RewindableRun:
         return _Checkpoint(self._lockstep.copy(), self._applied)
 
     def _thin(self) -> None:
-        steps = [place.lockstep.step for place in self._copies]
-        kept = [0]
-        for at in range(1, len(steps)):
-            last = at == len(steps) - 1
-            if last or steps[at + 1] - steps[kept[-1]] > max(
-                COPY_EVERY, (steps[-1] - steps[at]) // AGE_PER_GAP
-            ):
-                kept.append(at)
-        self._copies = [self._copies[at] for at in kept]
+        """Keep the first copy, the last one, and of those n steps old one in about n/8 steps."""
+        kept = self._copies[:1]
+        for place, following in pairwise(self._copies[1:]):
+            gap = following.lockstep.step - kept[-1].lockstep.step
+            if gap > max(COPY_EVERY, (self.step - place.lockstep.step) // 8):
+                kept.append(place)
+        self._copies = [*kept, self._copies[-1]]

@@ -30,7 +30,9 @@ class Stepping(NamedTuple):
     @property
     def parts(self) -> tuple[int, ...]:
         """Parts that each method divides a step into: at equal cost 4, 4, 4, 1 as a rule."""
-        return _parts(self.cast) if self.equal_cost else (1,) * len(self.cast)
+        if self.equal_cost:
+            return _parts(self.cast)
+        return (1,) * len(self.cast)
 
     @property
     def own(self) -> tuple[float, ...]:

@@ -100,20 +100,18 @@ class Scene:
         object.__setattr__(self, "parameters", self._complete(self.parameters))
         for name, (low, high) in LIMITS.items():
             _check_range(name, getattr(self, name), low, high)
-        for each in MODELS[self.model].parameters if self.model in MODELS else ():
-            _check_range(
-                each.name,
-                self.parameters[each.name],
-                each.min,
-                min(each.max, each.max_over_w0 * self.w0),
-            )
+        known = self.model in MODELS
+        if known:
+            for each in MODELS[self.model].parameters:
+                largest = min(each.max, each.max_over_w0 * self.w0)
+                _check_range(each.name, self.parameters[each.name], each.min, largest)
         check_h(self.h, self.w0, forwards=True)
         if not 0 < self.speed < math.inf:
             raise SceneError(
                 f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time."
             )
         for method in self.cast:
-            if self.model in MODELS and self.model not in method.models:
+            if known and self.model not in method.models:
                 why = f"{method.label} is not for the model {self.model}"
                 raise SceneError(f"{why}; it is for {' and '.join(method.models)}.")
 

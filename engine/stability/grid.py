@@ -103,7 +103,9 @@ def default_grid(cast: Cast = USUAL_CAST) -> Grid:
 
     z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
     """
-    top = 3 if all((method.linear_limit or 0) < 3 for method in cast) else 3.5
+    top = 3.0
+    if any((method.linear_limit or 0) >= 3 for method in cast):
+        top = 3.5
     return Grid(
         (np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * top / 200, 10_000, cast
     )

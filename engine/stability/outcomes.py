@@ -25,9 +25,7 @@ BAND = 0.5
 own bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble).
 """
 
-WOBBLE = 1.1  # times as wide as the linear oscillator: a swing that is wider counts as wobbling
 PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
-CHAOS_STEPS = 2000  # for which neighbours of a wobbling swing are followed
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
@@ -103,7 +101,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
         watched = Watched(*(each[kept] for each in watched))
     cells["error"][index] = watched.worst / watched.start
     if method.symplectic and len(index):
-        wobbling = index[(watched.width > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
+        wobbling = index[(watched.width > 1.1 * reach[index]) | (z[index] > method.linear_limit)]
         if len(wobbling):
             cells["fate"][wobbling] = _unsteady(method, theta[wobbling], z[wobbling], steps)
     return cells
@@ -111,7 +109,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
 
 def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
     """Return the fates of held swings that grow too wide or pass the linear limit."""
-    chaotic = is_chaotic(method, theta, z, min(steps, CHAOS_STEPS))
+    chaotic = is_chaotic(method, theta, z, min(steps, 2000))
     steady = np.where(z > method.linear_limit, CAUGHT, WOBBLES)
     return np.where(chaotic, CHAOTIC, steady)
 

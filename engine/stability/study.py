@@ -38,8 +38,12 @@ def amplitude(scene: Scene) -> float | None:
     if scene.omega == 0 and 0 < abs(scene.theta) < math.pi:
         return abs(scene.theta)
     share = scene.equations.energy()((scene.theta, scene.omega)) / (2 * scene.w0_squared)
-    angle = 2 * math.asin(math.sqrt(share)) if share < 1 else math.pi
-    return angle if 0 < angle < math.pi else None
+    if share >= 1:
+        return None
+    angle = 2 * math.asin(math.sqrt(share))
+    if 0 < angle < math.pi:
+        return angle
+    return None
 
 
 def early_steps(steps: int) -> int:

@@ -68,7 +68,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
 
 def test_results_print_in_a_few_lines_and_a_method_that_did_not_run_gets_a_sentence():
     run = simulate(time=60, methods="rk4,verlet")
-    with pytest.raises(KeyError, match="'heun' does not name one .* rk4, velocity_verlet"):
+    with pytest.raises(KeyError, match=r"'heun' does not name one .* rk4, velocity_verlet"):
         run["heun"]
     for result in (run, recommend(1e-2, methods="rk4,verlet", time=5)):
         assert "rk4" in repr(result)
