@@ -11,6 +11,7 @@ never ask for the force.
 import math
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
+from typing import Any
 
 from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
 from engine.methods.method import Method
@@ -65,59 +66,54 @@ def learned_hamiltonian(w0_squared: float) -> Rates:
     return field
 
 
-def _learned(
-    key: str,
-    label: str,
-    letter: str,
-    other_name: str,
-    field: Callable[[float], Rates],
-    formula: str,
-    note: str,
-    used: str | None = None,
-) -> Method:
+def _learned(*, note: str, **fields: Any) -> Method:
+    return Method(
+        **fields,
+        takes_parts=True,
+        any_numbers=False,
+        models=("pendulum",),
+        note=f"{note} Of this order in what was learned; counted are evaluations of that.",
+    )
+
+
+def _by_rk4(field: Callable[[float], Rates], **fields: Any) -> Method:
     def phases(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
         """RK4 on what was learned."""
         return rk4_on_rates(field(model.w0_squared), phase, h)
 
-    return Method(
-        key=key,
-        label=label,
-        letter=letter,
+    return _learned(
+        **fields,
         phases=phases,
-        takes_parts=True,
-        any_numbers=False,
-        formula=formula,
         order=4,
         force_evaluations=4,
-        other_names=(other_name,),
         reference="Greydanus, Dzamba & Yosinski, Hamiltonian Neural Networks, NeurIPS 32 (2019)",
-        used=used,
-        note=f"{note} Of this order in what was learned; counted are evaluations of that.",
-        models=("pendulum",),
     )
 
 
-RK4_LEARNED_FIELD = _learned(
-    "rk4_learned_field",
-    "Learned field",
-    "j",
-    "learned vector field",
+RK4_LEARNED_FIELD = _by_rk4(
     learned_field,
-    "RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, "
+    key="rk4_learned_field",
+    label="Learned field",
+    letter="j",
+    other_names=("learned vector field",),
+    formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
+    "measurements",
+    used=None,
+    note="It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, "
     "ninefold from 0.2.",
 )
 
-RK4_LEARNED_HAMILTONIAN = _learned(
-    "rk4_learned_hamiltonian",
-    "Learned H",
-    "g",
-    "learned Hamiltonian",
+RK4_LEARNED_HAMILTONIAN = _by_rk4(
     learned_hamiltonian,
-    "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "Its field is as inexact as the learned field, yet it conserves its H: the true energy is off "
+    key="rk4_learned_hamiltonian",
+    label="Learned H",
+    letter="g",
+    other_names=("learned Hamiltonian",),
+    formula="RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 "
+    "measurements",
+    note="Its field is as inexact as the learned field, yet it conserves its H: the true energy is off "
     "by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
-    "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural "
+    used="learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural "
     "Network]",
 )
 
@@ -173,13 +169,11 @@ def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Pha
         yield theta, omega
 
 
-LEARNED_MAP = Method(
+LEARNED_MAP = _learned(
     key="learned_map",
     label="Learned map",
     letter="z",
     phases=learned_map,
-    takes_parts=True,
-    any_numbers=False,
     formula="(theta, omega/w0) + w0 h (two sums of 60 tanh(a theta + b omega/w0 + c)), learned for "
     "w0 h = 0.1",
     order=1,
@@ -188,18 +182,14 @@ LEARNED_MAP = Method(
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
     note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy is off by 35 % from 1 "
-    "rad, 61 % from 1.5, ninefold from 0.2. Of this order in what was learned; counted are "
-    "evaluations of that.",
-    models=("pendulum",),
+    "rad, 61 % from 1.5, ninefold from 0.2.",
 )
 
-LEARNED_SYMPLECTIC_MAP = Method(
+LEARNED_SYMPLECTIC_MAP = _learned(
     key="learned_symplectic_map",
     label="SympNet",
     letter="t",
     phases=learned_symplectic_map,
-    takes_parts=True,
-    any_numbers=False,
     formula="half a kick, a drift, half a kick, by sums of 20 k tanh(a x + c) of theta and of "
     "omega/w0",
     order=2,
@@ -210,9 +200,7 @@ LEARNED_SYMPLECTIC_MAP = Method(
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
     note="It keeps area, so it conserves an energy of its own: within 100 s at w0 h = 0.1 the true "
-    "one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2. Of this order in what was "
-    "learned; counted are evaluations of that.",
-    models=("pendulum",),
+    "one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2.",
 )
 
 FAMILY = (RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN, LEARNED_MAP, LEARNED_SYMPLECTIC_MAP)

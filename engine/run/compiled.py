@@ -111,11 +111,9 @@ class TieredLoops:
         return self._compiled or self._plain
 
     def propagate(self, phase: Phase, h: float, n: int) -> Phase:
-        """Return the phase after n >= 1 steps, and nothing else."""
         return self._loops(n).propagate(phase, h, n)
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
-        """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
         return self._loops(n).advance(phase, h, n, limit)
 
 

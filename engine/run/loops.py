@@ -87,11 +87,9 @@ class PlainLoops:
         self._generator: Iterator[Phase] = iter(())
 
     def propagate(self, phase: Phase, h: float, n: int) -> Phase:
-        """Return the phase after n >= 1 steps, and nothing else."""
         return next(islice(self._phases(phase, h), n - 1, None))
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
-        """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
         if phase is not self._end or h != self._h:
             self._generator = self._phases(phase, h)
             self._h = h

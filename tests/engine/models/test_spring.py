@@ -42,12 +42,6 @@ def test_the_force_is_minus_the_slope_of_the_energy(z):
     assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
 
 
-@given(z=places)
-def test_the_force_is_the_sum_of_its_fast_and_its_slow_part(z):
-    parts = SPRING.parts()
-    assert parts.fast(z) + parts.slow(z) == SPRING.force()(z)
-
-
 @given(b=places, c=st.floats(1e-8, 1e3))
 def test_solve_finds_where_the_fast_force_leads_from_b(b, c):
     parts = SPRING.parts()

@@ -165,26 +165,6 @@ def test_the_nearest_fraction_is_a_small_one():
     assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0"]
 
 
-def period(method, model, h, start):
-    """The mean time of a swing [s]."""
-    points = orbit(method, model, h, start, 10_000)
-    return h / abs(rotation_number(*points, model.w0))
-
-
-@pytest.mark.parametrize("method", [SYMPLECTIC, VERLET], ids=lambda method: method.key)
-@pytest.mark.parametrize("z", [0.1, 1.5])
-def test_small_swings_take_the_period_of_theory(method, z):
-    found = period(method, Pendulum(4.0), z / 2, (1e-4, 0.0))
-    assert found == pytest.approx(z / 2 * math.pi / math.asin(z / 2), rel=1e-6)
-
-
-@pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.0)])
-def test_with_small_steps_a_period_is_nearly_the_exact_one(start):
-    exact = UNIT.exact(*start).period
-    assert period(RK4, UNIT, 0.02, start) == pytest.approx(exact, rel=1e-6)
-    assert period(VERLET, UNIT, 0.02, start) == pytest.approx(exact, rel=2e-4)
-
-
 @pytest.mark.parametrize(
     ("method", "h", "start"),
     [

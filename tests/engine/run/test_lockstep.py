@@ -112,19 +112,6 @@ def test_no_extreme_of_the_energy_is_lost_between_samples(scene, cuts):
         done += n
 
 
-def test_time_reversed_verlet_comes_back_and_its_run_counts_on():
-    lockstep = Lockstep(SCENES["drift"])
-    for h in (0.05, -0.05):
-        lockstep.set_stepping(Stepping(h))
-        lockstep.advance(200)
-    sample = lockstep.sample()
-    assert (sample.step, sample.t) == (400, 0)
-    off = [abs(reading.theta - SCENES["drift"].theta) for reading in sample.readings]
-    explicit, symplectic, verlet, rk4 = off
-    assert verlet < 1e-13  # rounding
-    assert 1e-7 < rk4 < 1e-3 < 0.05 < symplectic < explicit
-
-
 @pytest.mark.parametrize("h", [0.0, math.nan, math.inf, 1e9, -1e9, 1e-12])
 def test_a_useless_step_size_is_refused_and_the_old_one_stays(h):
     lockstep = Lockstep(SCENES["drift"])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping, SteppingChange, change_before
-from engine.scenes import DEFAULT_SCENE, Scene, SceneError
+from engine.scenes import DEFAULT_SCENE, SceneError
 
 STEPPINGS = st.builds(
     lambda h, equal_cost: Stepping(h, equal_cost),  # st.builds would also choose the cast
@@ -100,11 +100,3 @@ def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
     assert at == parts * 0.05
     # where omega²/2 leaves the range
     assert (2.0 ** (parts - 1)) ** 2 / 2 < 1e300 < (2.0**parts) ** 2
-
-
-def test_verlet_beats_rk4_in_energy_at_once_at_equal_cost():
-    lockstep = Lockstep(Scene(theta=1.0))
-    lockstep.set_stepping(Stepping(0.4, equal_cost=True))
-    lockstep.advance(25)
-    _, _, verlet, rk4 = lockstep.sample().readings
-    assert verlet.max_energy_error < rk4.max_energy_error / 10
