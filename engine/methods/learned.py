@@ -99,8 +99,8 @@ RK4_LEARNED_FIELD = _by_rk4(
     formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
     used=None,
-    note="It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, "
-    "ninefold from 0.2.",
+    note="It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from "
+    "1.5, ninefold from 0.2.",
 )
 
 RK4_LEARNED_HAMILTONIAN = _by_rk4(
@@ -111,10 +111,10 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     other_names=("learned Hamiltonian",),
     formula="RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
-    note="Its field is as inexact as the learned field, yet it conserves its H: the true energy is off "
-    "by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
-    used="learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural "
-    "Network]",
+    note="Its field is as inexact as the learned field, yet it conserves its H: the true energy is "
+    "off by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
+    used="learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian "
+    "Neural Network]",
 )
 
 
