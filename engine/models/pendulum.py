@@ -4,7 +4,6 @@ theta'' = -w0² sin theta.  Mass cancels; energies are per unit m·L², in s⁻�
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -24,67 +23,50 @@ class Pendulum(Model):
     has_separatrix: ClassVar[bool] = True
 
     def force(self, sin: Sine = math.sin) -> Force:
-        return acceleration(self.w0_squared, sin)
+        """theta -> -w0² sin theta [rad/s²]."""
+        strength = -self.w0_squared
+
+        def pendulum_force(theta: Any) -> Any:
+            return strength * sin(theta)
+
+        return pendulum_force
 
     def slope(self, theta: float) -> float:
         return -self.w0_squared * math.cos(theta)
 
     def energy(self, sin: Sine = math.sin) -> Energy:
-        return energy_of(self.w0_squared, sin)
+        """(theta, omega) -> omega²/2 + 2 w0² sin²(theta/2) [s⁻²].
+
+        Equal to omega²/2 + w0² (1 - cos theta), which would cancel to nothing near the bottom.
+        """
+        twice = 2 * self.w0_squared
+
+        def pendulum_energy(phase: Phase) -> Any:
+            theta, omega = phase
+            half = sin(theta * 0.5)
+            return omega * omega * 0.5 + twice * half * half
+
+        return pendulum_energy
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         return exact_pendulum(self.w0_squared, theta, omega)
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
-        """Return 1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation."""
-        return separatrix_margin(self.w0, theta, omega, cos)
+        """Return 1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.
 
-
-def acceleration(w0_squared: float, sin: Sine = math.sin) -> Force:
-    """theta -> -w0² sin theta [rad/s²]."""
-
-    strength = -w0_squared
-
-    def pendulum_acceleration(theta: Any) -> Any:
-        return strength * sin(theta)
-
-    return pendulum_acceleration
-
-
-def energy_of(w0_squared: float, sin: Sine = math.sin) -> Energy:
-    """(theta, omega) -> omega²/2 + 2 w0² sin²(theta/2) [s⁻²].
-
-    Equal to omega²/2 + w0² (1 - cos theta), which would cancel to nothing near the bottom.
-    """
-
-    twice = 2 * w0_squared
-
-    def pendulum_energy(phase: Phase) -> Any:
-        theta, omega = phase
-        half = sin(theta * 0.5)
-        return omega * omega * 0.5 + twice * half * half
-
-    return pendulum_energy
+        The product of two numbers of which one is exact near the separatrix, where
+        1 - E/E_separatrix itself would cancel.
+        """
+        c = cos(theta / 2)
+        v = omega / (2 * self.w0)
+        return (c - v) * (c + v)
 
 
 def energy(w0_squared: float, theta: Any, omega: Any, sin: Sine = math.sin) -> Any:
     """The energy of one state, or of arrays [s⁻²]."""
-    return energy_of(w0_squared, sin)((theta, omega))
+    return Pendulum(w0_squared).energy(sin)((theta, omega))
 
 
 def separatrix_energy(w0_squared: float) -> float:
     """2 w0² [s⁻²]: below it the pendulum swings (libration), above it spins (rotation)."""
     return 2 * w0_squared
-
-
-def separatrix_margin(
-    w0: float, theta: Any, omega: Any, cos: Callable[[Any], Any] = math.cos
-) -> Any:
-    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.
-
-    The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
-    itself would cancel.
-    """
-    c = cos(theta / 2)
-    v = omega / (2 * w0)
-    return (c - v) * (c + v)

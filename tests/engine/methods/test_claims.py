@@ -25,7 +25,7 @@ from engine.methods import (
 from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
 from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, composition
-from engine.models.pendulum import Pendulum, acceleration
+from engine.models.pendulum import Pendulum
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
@@ -164,7 +164,7 @@ def test_a_negative_step_undoes_a_step_where_reversible(method, theta, omega):
 )
 def test_one_definition_serves_floats_arrays_complex_and_mpmath(method, kind, sin):
     def propagate(kind, sin):
-        phases = method.phases(acceleration(kind(W0_SQUARED), sin), (kind(0.8), kind(-1.1)), 0.05)
+        phases = method.phases(Pendulum(kind(W0_SQUARED)).force(sin), (kind(0.8), kind(-1.1)), 0.05)
         return [complex(np.ravel(value)[0]) for value in next(islice(phases, 19, None))]
 
     # 20 steps' rounding; their sines may differ in the last bit

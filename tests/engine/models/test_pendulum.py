@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 from engine.models.model import EnergyReference
 from engine.models.pendulum import (
     Pendulum,
-    acceleration,
     energy,
     separatrix_energy,
-    separatrix_margin,
 )
 
 
@@ -27,19 +25,19 @@ def test_the_energy_is_right_to_the_last_digits_everywhere(theta, omega, w0_squa
 @given(theta=st.floats(-10, 10))
 def test_the_acceleration_is_minus_the_slope_of_the_energy(theta):
     slope = energy(9.81, complex(theta, 1e-100), 0.0, np.sin).imag / 1e-100
-    assert acceleration(9.81)(theta) == pytest.approx(-slope, abs=1e-14)
+    assert Pendulum(9.81).force()(theta) == pytest.approx(-slope, abs=1e-14)
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
 def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(theta, omega):
     assert separatrix_energy(9.81) == energy(9.81, math.pi, 0.0) == 2 * 9.81
     margin = 1 - energy(9.81, theta, omega) / separatrix_energy(9.81)
-    assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(margin, abs=1e-14)
+    assert Pendulum(9.81).level(theta, omega) == pytest.approx(margin, abs=1e-14)
 
 
 def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
     # cos²((pi - 1e-6)/2) is 2.5e-13; 1e-9 is what rounding of the angle itself costs: 2e-16 of 1e-6
-    assert separatrix_margin(9.81**0.5, math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
+    assert Pendulum(9.81).level(math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.models.pendulum import acceleration
+from engine.models.pendulum import Pendulum
 from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping
@@ -46,7 +46,7 @@ def test_the_ring_is_carried_by_the_very_step_of_the_method():
     start = np.transpose(neighbourhood.rings[0]).tolist()
     neighbourhood.advance(3, Stepping(0.05))
     for method, ring in zip(USUAL_CAST, neighbourhood.rings, strict=True):
-        runs = [method.phases(acceleration(9.81), tuple(phase), 0.05) for phase in start]
+        runs = [method.phases(Pendulum(9.81).force(), tuple(phase), 0.05) for phase in start]
         expected = np.transpose([list(islice(run, 3))[-1] for run in runs])
         # NumPy's sine and the C library's may differ in the last place
         assert np.array(ring) == pytest.approx(expected, rel=1e-14, abs=1e-14)

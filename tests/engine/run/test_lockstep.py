@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST, method_of
 from engine.models.model import Phase
-from engine.models.pendulum import acceleration, energy
+from engine.models.pendulum import Pendulum, energy
 from engine.run.compiled import available, compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
@@ -58,7 +58,7 @@ def test_the_steps_may_be_cut_and_sampled_anyhow_the_bits_are_the_same(scene, cu
 def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene, n):
     lockstep = Lockstep(scene)
     lockstep.advance(n)
-    force = acceleration(scene.w0_squared)
+    force = Pendulum(scene.w0_squared).force()
     for method, reading in zip(USUAL_CAST, lockstep.sample().readings, strict=True):
         phase: Phase = (scene.theta, scene.omega)
         for _ in range(n):
@@ -148,7 +148,7 @@ def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go
     assert tuple(readings) == others.sample().readings
     last = round(frozen.diverged_at / scene.h) - 1
     assert frozen.diverged_at == (last + 1) * scene.h
-    run = bad.phases(acceleration(scene.w0_squared), (scene.theta, scene.omega), scene.h)
+    run = bad.phases(Pendulum(scene.w0_squared).force(), (scene.theta, scene.omega), scene.h)
     *_, before, beyond = (scene.theta, scene.omega), *islice(run, last + 1)
     assert (frozen.theta, frozen.omega) == before
     # a square beyond 1e300 is out, too

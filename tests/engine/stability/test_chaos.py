@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import SYMPLECTIC_EULER, VELOCITY_VERLET
-from engine.models.pendulum import acceleration
+from engine.models.pendulum import Pendulum
 from engine.scenes import SCENES
 from engine.stability.chaos import GREENE_Z, is_chaotic, parting
 
@@ -33,7 +33,7 @@ def lyapunov(method, theta, omega, z, steps):
 @given(st.floats(-50, 50), st.floats(-50, 50), st.floats(0.01, 10))
 def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(theta, p, z):
     new_p = p - z**2 * math.sin(theta)
-    new_theta, new_omega = SYMPLECTIC_EULER.step(acceleration(1.0), (theta, p / z), z)
+    new_theta, new_omega = SYMPLECTIC_EULER.step(Pendulum(1.0).force(), (theta, p / z), z)
     # Both sides round a handful of sums of numbers up to 150; 1e-12 is some thirty ulp of them.
     assert new_omega * z == pytest.approx(new_p, abs=1e-12)
     assert new_theta == pytest.approx(theta + new_p, abs=1e-12)
@@ -41,7 +41,7 @@ def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(theta, p
 
 @given(st.floats(-3, 3), st.floats(-3, 3), st.floats(0.01, 3))
 def test_velocity_verlet_is_the_same_map_half_a_kick_earlier(theta, omega, z):
-    force = acceleration(1.0)
+    force = Pendulum(1.0).force()
     before = theta, omega - z / 2 * force(theta)
     end, late = SYMPLECTIC_EULER.step(force, before, z)
     conjugate = end, late + z / 2 * force(end)

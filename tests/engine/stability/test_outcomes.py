@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST, VELOCITY_VERLET
 from engine.models.model import Phase
-from engine.models.pendulum import acceleration, energy, energy_of
+from engine.models.pendulum import Pendulum, energy
 from engine.run.ensemble import plain
 from engine.stability.linear import wobble
 from engine.stability.outcomes import (
@@ -26,7 +26,7 @@ from engine.stability.outcomes import (
 )
 
 BY_KEY = {method.key: method for method in GENERAL}
-FORCE = acceleration(1.0)
+FORCE = Pendulum(1.0).force()
 
 
 def after(method, theta, z, steps):
@@ -53,7 +53,7 @@ def failure_of(key, theta, ladder, steps, within=None):
 )
 def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, steps):
     # NumPy's sine, not libm's: an ulp would be chaos later
-    force, value = acceleration(1.0, np.sin), energy_of(1.0, np.sin)
+    force, value = Pendulum(1.0).force(np.sin), Pendulum(1.0).energy(np.sin)
     cells = outcomes(method, *np.array(swings).T, steps)
     for cell, (theta, z) in zip(cells, swings, strict=True):
         start = energy(1.0, theta, 0.0, np.sin)
