@@ -179,8 +179,8 @@ STEPS = (
         speed=2.0,
         shot=Shot(view="stability"),
         watch=(
-            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's "
-            "limit 2."
+            "z = h·sqrt(g/L) goes to the right, the amplitude up. The vertical line is Verlet's "
+            "linear limit, z = 2; @ is here, just beyond it."
         ),
         moment=20.2,
         happened=(
