@@ -148,7 +148,8 @@ class _Record:
         self._settling = float(ends[fits.index(self._settled) - len(moving)])
         self.rest = energies - np.polyval(np.polyfit(self._at, energies, 1), self._at)
         error = max(self.line.deviation, floor / len(times))
-        self.independent = min(len(self._at), 24 * float(np.mean(self.rest**2)) / error**2)
+        effective = 24 * float(np.mean(self.rest**2)) / error**2
+        self.independent = min(float(len(self._at)), effective)
         # an incomplete wobble at the end tilts a line by so much
         self.incomplete = 12 * float(np.std(self.rest)) / len(self._at)
         self._within = max(float(np.mean(energies**2) - np.mean(self._means**2)), 0.0)
