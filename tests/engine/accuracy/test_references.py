@@ -21,6 +21,7 @@ REGIMES = {
 }
 
 
+@pytest.mark.slow
 def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding():
     points = list(taylor_points(SWING, 100.0, time.perf_counter))
     assert len(points) == 17

@@ -4,6 +4,7 @@ import asyncio
 
 import pytest
 from textual.command import CommandList
+from textual.widgets import Input
 
 from engine.scenes import SCENES
 from tests.tui.harness import Theatre, lab
@@ -14,7 +15,8 @@ from tui.words.command_line import command
 
 async def found(theatre: Theatre, words: str) -> None:
     """Type words into the palette and take the first that it finds."""
-    await theatre.press("ctrl+p", *["space" if letter == " " else letter for letter in words])
+    await theatre.press("ctrl+p")
+    theatre.app.screen.query_one(Input).value = words
     options = theatre.app.screen.query_one(CommandList)
     async with asyncio.timeout(20):
         while not (options.option_count and words in str(options.get_option_at_index(0).prompt)):
