@@ -18,17 +18,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 990_000,
-    "characters_of_engine": 316_000,
+    "characters": 977_000,
+    "characters_of_engine": 313_200,
     "characters_of_recordings": 78_685,
-    "characters_of_tui": 595_500,
-    "characters_of_tests": 858_500,
+    "characters_of_tui": 585_200,
+    "characters_of_tests": 841_500,
     "files": 186,
     "long_lines": 0,
-    "parallel_assignments": 22,
-    "conditional_expressions_per_1000_lines": 22,
+    "parallel_assignments": 20,
+    "conditional_expressions_per_1000_lines": 16,
     "long_functions": 0,
-    "numeric_constants": 248,
+    "numeric_constants": 207,
 }
 """Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
