@@ -1,12 +1,13 @@
 """Columns of another program's tables: text of any form, JSON lines, Amber's mdout, an .npz.
 
-Lines are read one by one, so a table may stand between other text.  A table begins below a header
-that has the wanted names, or where the time starts again; one of the tables is returned.
+A table may stand between other text.  It begins below a header that has the wanted names, or where
+the time starts again; one of the tables is returned.
 """
 
 import csv
 import io
 import json
+import math
 import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
@@ -14,6 +15,8 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain, islice, takewhile
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
@@ -73,7 +76,8 @@ class Head(NamedTuple):
         return cls(tuple(groups), tuple(_split(names[group[0]])[1] for group in groups))
 
 
-Record = Head | list[Any]  # or a row: a number for each place, None for a text or a gap
+Record = Head | list[Any] | Any
+"""A head, a row (a number for each place, None for a text or a gap), or an array of rows."""
 
 
 @dataclass
@@ -93,8 +97,6 @@ class Table:
 
     def finish(self, start: float) -> None:
         """Add up columns, leave out what cannot be used, and count it."""
-        import numpy as np
-
         parts = map(np.asarray, self.columns)
         columns: list[Any] = [sum(islice(parts, len(group))) for group in self.head.places]
         times = np.where(np.abs(columns[0]) < LATEST, columns[0], -np.inf)
@@ -121,7 +123,7 @@ def read_table(
     stream: io.BufferedReader,
     wanted: Sequence[str],
     number: int | None = None,
-    start: float = -LATEST,
+    start: float = -math.inf,
 ) -> Table:
     """Return a table of the wanted columns, times first: the last one, or that of this number.
 
@@ -152,16 +154,18 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
     A step back to a later time than the first is a restart from a checkpoint: the same table.  So
     is a header that comes again on each page, as NAMD's.
     """
-    head = Head((), ())
-    table = Table(head, [])
+    table = Table(Head((), ()), [])
+    head = table.head
     first: float | None = None  # usable time
     on_page = 0  # rows since the head
-    for number, record in enumerate(records):
-        if number > MAX_RECORDS:
+    count = 0
+    for record in _blocks(records):
+        count += len(record) if isinstance(record, np.ndarray) else 1
+        if count > MAX_RECORDS:
             raise _unreadable(f"more than {MAX_RECORDS:,} rows; leave some out.")
-        if number > MAX_LINES_BEFORE and not table.columns:
-            raise _unreadable(f"{number:,} lines without a row of these columns; is this a table?")
-        if None in record:
+        if count > MAX_LINES_BEFORE and not table.columns:
+            raise _unreadable(f"{count:,} lines without a row of these columns; is this a table?")
+        if record is None:
             table.skipped["without_numbers"] += 1
             continue
         if isinstance(record, Head):
@@ -169,8 +173,8 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
             begins = head != table.head or on_page >= 64
             on_page = 0
         else:
-            begins = first is not None and -LATEST < record[0] <= first
-            on_page += 1
+            begins = first is not None and -LATEST < record[0, 0] <= first
+            on_page += len(record)
         if begins:
             if first is not None:
                 yield table
@@ -178,12 +182,29 @@ def _tables(records: Iterable[Record]) -> Iterator[Table]:
             table = Table(head, [array("d") for group in head.places for _ in group])
         if isinstance(record, Head):
             continue
-        if first is None and abs(record[0]) < LATEST:
-            first = record[0]
-        for column, value in zip(table.columns, record, strict=True):
-            column.append(value)
+        if first is None and abs(record[0, 0]) < LATEST:
+            first = record[0, 0]
+        for column, values in zip(table.columns, record.T, strict=True):
+            column.frombytes(values.tobytes())
     if first is not None:
         yield table
+
+
+def _blocks(records: Iterable[Record]) -> Iterator[Any]:
+    """Yield heads, arrays of rows whose times increase, and None for a row with a gap."""
+    for record in records:
+        if isinstance(record, Head):
+            yield record
+            continue
+        if isinstance(record, list):
+            yield None if None in record else np.array([record])
+            continue
+        times = record[:, 0]
+        increasing = (times[:-1] < times[1:]).all()
+        if increasing and times[0] > -LATEST and times[-1] < LATEST:
+            yield record
+        else:
+            yield from record[:, None]
 
 
 def _records(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
@@ -227,27 +248,38 @@ class _Text:
         self._width = 0  # fields of a row
 
     def records(self, lines: Iterator[str]) -> Iterator[Record]:
-        for line in lines:
-            if row := self._plain_row(line):
-                yield row
-            elif line.lstrip().startswith("NSTEP ="):
-                yield from _of_objects(_mdout(chain([line], lines)), self._wanted, "kcal/mol")
+        while block := list(islice(lines, 4096)):
+            if any(line.lstrip().startswith("NSTEP =") for line in block):
+                yield from _of_objects(_mdout(chain(block, lines)), self._wanted, "kcal/mol")
                 return
-            elif match := _LEGEND.match(line):
-                number, axis, name = match.groups()
-                self._legend[{"x": 0, "y": -1}[axis] if axis else int(number) + 1] = name
-            else:
-                yield from self._other(line)
+            yield from self._read(block)
         if not self._width:
             raise _missing(self._wanted, [*self._legend.values()] or self._names or self._above)
 
-    def _plain_row(self, line: str) -> list[float] | None:
-        """Return a row like the last."""
-        fields = line.split(self._delimiter)
-        if len(fields) != self._width or '"' in line:
+    def _read(self, lines: list[str]) -> Iterator[Record]:
+        """Read rows like the last at once, and what stands between them line by line."""
+        rows = self._plain_rows(lines)
+        if rows is not None:
+            yield rows
+        elif len(lines) > 1:
+            middle = len(lines) // 2
+            yield from self._read(lines[:middle])
+            yield from self._read(lines[middle:])
+        elif match := _LEGEND.match(lines[0]):
+            number, axis, name = match.groups()
+            self._legend[{"x": 0, "y": -1}[axis] if axis else int(number) + 1] = name
+        else:
+            yield from self._other(lines[0])
+
+    def _plain_rows(self, lines: list[str]) -> Any:
+        """Return an array of the rows, if all lines are rows like the last."""
+        widths = {len(line.split(self._delimiter)) for line in lines}
+        if not self._places or widths != {self._width} or '"' in "".join(lines):
             return None
         try:
-            return [float(fields[place]) for place in self._places]
+            return np.loadtxt(
+                lines, delimiter=self._delimiter, comments=None, usecols=self._places, ndmin=2
+            )
         except ValueError:
             return None
 
@@ -358,20 +390,19 @@ def _mdout(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
 
 
 def _of_arrays(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
-    import numpy as np
-
     try:
         arrays = np.load(io.BytesIO(stream.read()), allow_pickle=False)
         names = list(arrays)
         if head := Head.of(names, wanted):
             found = [np.ravel(arrays[names[place]]) for place in chain(*head.places)]
-            columns = [column.astype(float).tolist() for column in found]
+            rows = min(map(len, found))
+            table = np.column_stack([column[:rows].astype(float) for column in found])
     except Exception as error:  # whatever a broken archive leads to
         raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
     if head is None:
         raise _missing(wanted, names)
     yield head
-    yield from map(list, zip(*columns, strict=False))
+    yield table
 
 
 def _plain(name: str) -> str:

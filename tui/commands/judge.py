@@ -5,10 +5,10 @@ Units in its heads, such as Time (ps), are those of the answer.
 """
 
 import argparse
+import math
 
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from tui.cli.checks import Check, add_check_options, conclude, parse
-from tui.cli.columns import LATEST
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, count, positive
 from tui.cli.report import Report, add_report_options, form_of
@@ -46,7 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--energy", metavar="COLUMN", required=True, help=energies)
     add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
     start = "judge from time T on"
-    add("--from", metavar="T", dest="start", type=float, default=-LATEST, help=start)
+    add("--from", metavar="T", dest="start", type=float, default=-math.inf, help=start)
     relative = "errors are relative to first, std, kinetic:COLUMN, or a number"
     add("--scale", type=scale, default="first", help=relative)
     add("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
