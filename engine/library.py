@@ -6,9 +6,10 @@ Arguments that cannot be used raise ValueError with a sentence.  NumPy is loaded
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from difflib import get_close_matches
+from functools import partial, wraps
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from engine import methods as listed
 from engine import scenes
@@ -27,22 +28,42 @@ if TYPE_CHECKING:
 MAX_READINGS = 10_000_000  # of all methods of a run: 320 MB
 
 
+T = TypeVar("T")
+
+
+class ByMethod(dict[str, T], Generic[T]):
+    """One value for each method, by its key, the start of the key or another name."""
+
+    def __init__(self, methods: Cast, values: Iterable[T]) -> None:
+        super().__init__(zip((method.key for method in methods), values, strict=True))
+        self.methods = methods
+
+    def __missing__(self, name: str) -> T:
+        found = matching(str(name), self.methods)
+        if len(found) != 1:
+            raise KeyError(f"{name!r} does not name one method; use one of {', '.join(self)}.")
+        return self[found[0].key]
+
+
 def _public(method: Method) -> Method:
-    """Return a method whose `phases` take any force, or refuse with a sentence."""
+    """Return a method whose `phases` refuse what they cannot use with a sentence."""
 
-    def refuse(*_: Any) -> NoReturn:
-        raise ValueError(
-            f"{method.label} is made for the scenes of the lab, not for any force and arrays; use "
-            "a method of METHODS with general=True."
-        )
+    @wraps(method.phases)
+    def phases(force: Any, phase: Any, h: float) -> Iterator[Any]:
+        if not method.general:
+            raise ValueError(
+                f"{method.label} is made for the scenes of the lab, not for any force and arrays; "
+                "use a method of METHODS with general=True."
+            )
+        if not _number("h", h):
+            raise ValueError("h = 0 leads nowhere; use a step above zero, or below to go back.")
+        return method.phases(force, phase, h)
 
-    if method.general:
-        return method
-    return replace(method, phases=refuse)
+    return replace(method, phases=phases)
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
-    {method.key: _public(method) for method in listed.METHODS}
+    ByMethod(listed.METHODS, map(_public, listed.METHODS))
 )
 """The methods by key.  `phases(force, (q, p), h)` of those with `general` yields the phases after
 one step of h, after two, and so on without end; q, p and force(q) are numbers or arrays, and
@@ -76,15 +97,10 @@ class Run(Mapping[str, Track]):
 
     scene: Scene = field(repr=False)
     t: "Floats" = field(repr=False)  # s
-    tracks: Mapping[str, Track]
+    tracks: ByMethod[Track]
 
     def __getitem__(self, name: str) -> Track:
-        found = matching(name, self.scene.cast)
-        if len(found) != 1:
-            raise KeyError(
-                f"{name!r} does not name one method of this run; use one of {', '.join(self)}."
-            )
-        return self.tracks[found[0].key]
+        return self.tracks[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.tracks)
@@ -122,25 +138,14 @@ def simulate(
         sample = lockstep.sample()
         t[index] = sample.t
         values[:, :, index] = np.transpose([reading[:4] for reading in sample.readings])
-    tracks = {}
-    for place, method in enumerate(chosen.cast):
-        theta, omega, energy, error = values[:, place]
-        tracks[method.key] = Track(
-            theta=theta,
-            omega=omega,
-            energy=energy,
-            energy_error=error,
-            verdict=lockstep.judgements[place].verdict,
-            failed_at=sample.readings[place].diverged_at,
-        )
-    return Run(chosen, t, tracks)
+    verdicts = [judgement.verdict for judgement in lockstep.judgements]
+    ends = [reading.diverged_at for reading in sample.readings]
+    rows = zip(*values, verdicts, ends, strict=True)
+    tracks = (Track(*row) for row in rows)
+    return Run(chosen, t, ByMethod(chosen.cast, tracks))
 
 
 def _stops(scene: Scene, time: float, every: int) -> list[int]:
-    """Return the steps whose numbers a run keeps.
-
-    Raises ValueError if there are none, or too many.
-    """
     steps = round(min(time, 1e15) / scene.h)
     if steps < 1:
         raise ValueError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
@@ -220,10 +225,12 @@ def limits(
     methods: Methods | None = None,
     steps: int = 1000,
     **numbers: float,
-) -> dict[str, Limit]:
-    """Return where each method loses the swing of a scene within `steps`, by default all that can.
+) -> ByMethod[Limit]:
+    """Return where each method loses the swing of a scene, by default all that can.
 
-    Steps h are tried on a ladder with a rung every 1 %.  `numbers` are those of `simulate`.
+    Steps h are tried on a ladder with a rung every 1 %, with so many `steps` each: `pendu-tui
+    stability --steps 1000` finds the same limits, and more steps find lower ones.  A swing is lost
+    if engine.stability.LOST says so.  `numbers` are those of `simulate`.
     """
     from engine.stability.study import amplitude, ladder_of, table
 
@@ -234,14 +241,14 @@ def limits(
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps = {steps!r} is not a whole number above zero.")
     grid = ladder_of(chosen, [theta], None, steps)
-    found = {}
+    found = []
     for row in table(chosen, grid, grid.cells()):
         limit = Limit(linear=row.method.linear_limit, z=None, h=None, reason="")
         if failure := row.failure:
             h = failure.z / chosen.w0
             limit = replace(limit, z=failure.z, h=h, reason=failure.reason)
-        found[row.method.key] = limit
-    return found
+        found.append(limit)
+    return ByMethod(chosen.cast, found)
 
 
 def recommend(
@@ -256,10 +263,12 @@ def recommend(
 ) -> "list[Attempt]":
     """Return the cheapest run of each method whose error stays up to `target`, the cheapest first.
 
-    By default of all that can, over ten small swings.  Of the best, `method.key`, `point.h` [s],
-    `point.z`, `point.steps_per_swing` and `point.force_evaluations` are the answer; `times` is how
-    many times the cheapest another costs, or `why_not` why there is no such run.  `error` is
-    "theta" [rad], "energy" or "final" (theta at the end); a `safety` of 2 halves the target.
+    By default of all methods that have one, over ten small swings.  Of the best, `method.key`,
+    `point.h` [s], `point.z`, `point.steps_per_swing` and `point.force_evaluations` are the answer;
+    `times` is how many times the cheapest another costs.  `error` is "theta" [rad], "energy" or
+    "final" (theta at the end); a `safety` of 2 halves the target.
+
+    Raises ValueError if no method reaches the target.
     """
     from engine.accuracy.recommend import least_cost
     from engine.accuracy.study import Study, usual
@@ -274,17 +283,28 @@ def recommend(
     seconds = usual(chosen)[0] if time is None else _number("time", time)
     if not 0 < wanted <= target or seconds <= 0:
         raise ValueError("target and time must be above zero, and safety 1 or more.")
-    return least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
+    attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
+    found = [attempt for attempt in attempts if attempt.succeeded]
+    if not found:
+        raise ValueError(
+            f"no method keeps its {error} error within {wanted:g} over {seconds:g} s; "
+            f"{attempts[0].method.label}: {attempts[0].why_not}."
+        )
+    return found
 
 
 def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
-    """Return a scene with these methods and numbers."""
     if isinstance(scene, str):
         if scene not in SCENES:
             raise ValueError(f"there is no scene {scene!r}; choose from {', '.join(SCENES)}.")
         scene = SCENES[scene]
     if not isinstance(scene, Scene):
         raise ValueError(f"scene = {scene!r} is neither a name nor a Scene.")
+    for name in numbers:
+        if name not in scenes.UNITS:
+            near = get_close_matches(name, scenes.UNITS)
+            hint = f"did you mean {near[0]!r}?" if near else f"use {', '.join(scenes.UNITS)}."
+            raise ValueError(f"unknown parameter {name!r}; {hint}")
     changes = {name: _number(name, value) for name, value in numbers.items()}
     return scene.altered(**changes).with_cast(scene.cast if methods is None else _cast(methods))
 
@@ -313,7 +333,7 @@ def _cast(given: Methods) -> Cast:
 
 def _method(name: str | Method) -> Method:
     """Return the method of a key or the start of one; a method of the list, or one's own."""
-    if isinstance(name, Method) and name.key not in METHODS:
+    if isinstance(name, Method) and name.key not in set(METHODS):
         return name
     found = matching(getattr(name, "key", str(name)))
     if len(found) == 1:
@@ -325,7 +345,6 @@ def _method(name: str | Method) -> Method:
 
 
 def _number(name: str, value: Any) -> float:
-    """Return a finite number.  Raises ValueError."""
     try:
         if not isinstance(value, str | bool) and math.isfinite(value):
             return float(value)
@@ -335,14 +354,15 @@ def _number(name: str, value: Any) -> float:
 
 
 def _array(name: str, values: Any) -> "Floats":
-    """Return finite numbers as a one-dimensional array.  Raises ValueError."""
     import numpy as np
 
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a list of numbers, or an array.") from None
-    if array.ndim != 1 or not array.size:
+    if not array.size:
+        raise ValueError(f"{name} is empty; give one for each sample.")
+    if array.ndim != 1:
         raise ValueError(f"{name} must be a list of numbers; their shape is {array.shape}.")
     if not np.isfinite(array).all():
         place = int(np.argmin(np.isfinite(array)))

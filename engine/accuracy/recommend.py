@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from engine.accuracy.study import FITTED_BELOW, REASONS, Clock, ErrorKind, Point, Study, timed
 from engine.methods import Method
 from engine.run.loops import LoopsOf, PlainLoops
-from engine.scenes import Z_LIMITS
+from engine.scenes import Z_LIMITS, SceneError
 
 MAX_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 MAX_TIMES = 300  # the force evaluations of the cheapest method, beyond which none is searched
@@ -60,8 +60,14 @@ def least_cost(
 ) -> Advice:
     """Return each method's cheapest run for a target, by force evaluations or a clock.
 
-    `show` is given the share of methods tried.
+    `show` is given the share of methods tried.  Raises SceneError for a target as large as the
+    swing itself.
     """
+    size = study.sizes[kind]
+    if target >= size:
+        raise SceneError(
+            f"a target of {target:g} is as large as the swing; use less than {size:g}."
+        )
     attempts: list[Attempt] = []
     for attempt in reach(study, kind, target, budget or MAX_EVALUATIONS):
         if clock and attempt.point and attempt.succeeded:

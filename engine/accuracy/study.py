@@ -113,7 +113,9 @@ class Study:
         self._energy_floor, self._theta_floor = rounding_floor(scene, time)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
         self.thetas = [self.exact.at(t).theta for t in times]  # rad
-        self._width = min(math.pi, max(map(abs, self.thetas)))
+        width = min(math.pi, max(map(abs, self.thetas)))
+        self.sizes = {"theta": width, "energy": 1.0, "final": width}
+        """Of the swing itself: an error as large says nothing."""
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
         """Take this many steps; compare `comparisons` or more, and the last, with the truth.
@@ -160,14 +162,13 @@ class Study:
             floor * math.sqrt(roundings)
             for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
         ]
-        sizes = (self._width, 1.0, self._width)
         found: list[Flaw | None] = [None, None, None]
         below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
         if any(below):
             for kind, refined in enumerate(refines()):
                 if below[kind] and not refined:
                     found[kind] = "rounding"
-        for kind, size in enumerate(sizes):
+        for kind, size in enumerate(self.sizes.values()):
             if errors[kind] >= size:
                 found[kind] = "lost"
         return Flaws(*found)

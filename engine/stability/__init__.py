@@ -4,3 +4,14 @@
 asks `chaos` whether they are chaotic.  `grid` tries every step size and amplitude, in strips for
 any executor; `study` makes the table and the map.
 """
+
+BAND = 0.5
+"""How far, as a fraction, energy may go above the highest and below the lowest that the method's
+own bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble).
+"""
+
+LOST = f"""\
+A swing is lost if it goes over the top, if it is chaotic and 10 % wider than on the linear
+oscillator, or, unless the method is symplectic, if its energy leaves the oscillator's band by
+{100 * BAND:.0f} %. Above its linear limit a symplectic method may hold a small swing around two
+other places, with many times its energy: caught, not lost."""

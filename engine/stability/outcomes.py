@@ -1,9 +1,8 @@
 """The pendulum's own stability: which swings a method holds, for how long, and how it loses them.
 
 A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is
-computed with w0 = 1 and h = z.  A symplectic method neither gains nor loses for good: it loses a
-swing that goes over the top, or whose orbit is chaotic.  Any other method also loses it when its
-energy leaves the band.
+computed with w0 = 1 and h = z.  engine.stability.LOST says when a swing is lost; a symplectic
+method's energy leaves its band and comes back.
 """
 
 import math
@@ -17,13 +16,9 @@ from engine.methods import Method
 from engine.models import Pendulum
 from engine.run.ensemble import Floats as Floats
 from engine.run.ensemble import Watched, compiled, plain
+from engine.stability import BAND
 from engine.stability.chaos import is_chaotic
 from engine.stability.linear import wobble
-
-BAND = 0.5
-"""How far, as a fraction, energy may go above the highest and below the lowest that the method's
-own bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble).
-"""
 
 PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
 

@@ -40,7 +40,8 @@ def test_recommend_takes_the_target_by_its_safety_and_any_general_method():
     best, *others = recommend(1e-2, theta=2.0, time=5, safety=2)
     assert best.point.theta_error <= 5e-3
     assert best.times == 1 < others[0].times
-    assert len(others) == len(GENERAL) - 1
+    assert len(others) > 7
+    assert all(attempt.succeeded for attempt in others)
 
 
 def test_the_lists_are_in_their_order_and_read_only():
@@ -68,8 +69,12 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
 
 def test_results_print_in_a_few_lines_and_a_method_that_did_not_run_gets_a_sentence():
     run = simulate(time=60, methods="rk4,verlet")
-    with pytest.raises(KeyError, match=r"'heun' does not name one .* rk4, velocity_verlet"):
-        run["heun"]
+    for results in (run, limits(methods="rk4,verlet", steps=5)):
+        assert results["verlet"] is results["velocity_verlet"]
+        with pytest.raises(KeyError, match=r"'heun' does not name one .* rk4, velocity_verlet"):
+            results["heun"]
+    with pytest.raises(KeyError, match=r"'nope' does not name one .* explicit_euler, "):
+        METHODS["nope"]
     for result in (run, recommend(1e-2, methods="rk4,verlet", time=5)):
         assert "rk4" in repr(result)
         assert len(repr(result)) < 1000
@@ -103,7 +108,7 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         (lambda: judge(TIMES[::-1], WAVE), r"times\[1\] is not later"),
         (lambda: judge(TIMES, [*WAVE[:-1], math.nan]), r"energies\[1999\] is nan"),
         (lambda: judge([TIMES], [WAVE]), r"list of numbers.*\(1, 2000\)"),
-        (lambda: judge([], []), r"list of numbers.*\(0,\)"),
+        (lambda: judge([], []), "times is empty"),
         (lambda: judge("t", "E"), "a list of numbers"),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="last"), "'last' is none of std"),
@@ -122,6 +127,11 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, friction=0.1), "no friction"),
+        (lambda: simulate(time=1, tetha=2.0), "unknown parameter 'tetha'; did you mean 'theta'"),
+        (lambda: METHODS["rk4"].phases(np.sin, (1.0, 0.0), math.nan), "h = nan"),
+        (lambda: METHODS["rk4"].phases(np.sin, (1.0, 0.0), 0.0), "h = 0"),
+        (lambda: recommend(1e-20, time=1, methods="rk4"), "1e-20 over 1 s; RK4: rounding"),
+        (lambda: recommend(10), "a target of 10 is as large as the swing; use less than 1"),
         (lambda: recommend(0), "above zero"),
         (lambda: recommend(1e-3, safety=0.5), "safety 1 or more"),
         (lambda: recommend(1e-3, error="omega"), "none of theta"),

@@ -5,6 +5,7 @@
 
 import argparse
 
+from engine.stability import LOST
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import LIST, angle, count, number, values
 from tui.cli.report import add_report_options, publish, warn
@@ -12,12 +13,14 @@ from tui.cli.scene import add_scene_options, general_scene_of
 from tui.cli.workers import add_worker_options
 from tui.commands.studies import figures
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 examples:
   pendu-tui stability --theta 120deg --h 0.3
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
   pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
+
+{LOST}
 """
 
 STEPS = 10_000

@@ -11,9 +11,10 @@ from engine.methods import Method
 from engine.methods.measure import linear_limit
 from engine.methods.own import OwnMethod
 from engine.scenes import Z_LIMITS, Scene
+from engine.stability import BAND, LOST
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification
-from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
+from engine.stability.outcomes import FATES, UNKNOWN, Cells
 from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
 from tui.cli.errors import UserError, explained
 from tui.cli.files import whole_file
@@ -183,11 +184,7 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 def _words(scene: Scene) -> Iterator[str]:
     yield "\nPendulum: the z from which a swing is lost in so many steps; more steps lower it."
-    yield (
-        "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
-        "with a method that is not symplectic also if its energy leaves the oscillator's band by "
-        f"{100 * BAND:.0f} %."
-    )
+    yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
     swing = amplitude(scene)
     if swing is not None and not math.isclose(swing, scene.theta):
