@@ -14,8 +14,7 @@ from engine.models.model import Phase
 def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet, with omega times exp(-gamma h/2) before and after each step.
 
-    Order 2; around a symplectic method, area shrinks by exp(-gamma h) exactly.
-    Bhatt, Floyd & Moore, J. Sci. Comput. 66 (2016) 1234.
+    Around a symplectic method, area shrinks by exp(-gamma h) exactly.
     """
     force, friction = parts
     theta, omega = phase

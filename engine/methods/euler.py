@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from engine.methods.method import Method
+from engine.methods.method import HAIRER, Method
 from engine.models import FIRST_ORDER
 from engine.models.model import Force, Phase, Rates
 from engine.models.modified_energy import symplectic_euler_modified_energy
@@ -11,8 +11,7 @@ from engine.models.modified_energy import symplectic_euler_modified_energy
 def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Explicit (forward) Euler: both updates from the old state.
 
-    Order 1.  Not symplectic: the step's determinant is 1 + h² w0² cos theta.  Hairer, Lubich &
-    Wanner (2006), I.1.2.
+    The step's determinant is 1 + h² w0² cos theta.
     """
     theta, omega = phase
     while True:
@@ -31,11 +30,7 @@ def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Ph
 
 
 def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Symplectic Euler: kick omega, then drift theta with the new omega.
-
-    Order 1, symplectic.  Not reversible under omega -> -omega.  Hairer, Lubich & Wanner (2006),
-    I.1.2 and VI.3.1.
-    """
+    """Symplectic Euler: kick omega, then drift theta with the new omega."""
     theta, omega = phase
     while True:
         omega = omega + h * force(theta)
@@ -54,7 +49,7 @@ EXPLICIT_EULER = Method(
     force_evaluations=1,
     linear_limit=0.0,
     other_names=("forward Euler",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+    reference=f"{HAIRER}, I.1.2",
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, "
     "Numerical integration]",
     on_rates=explicit_euler_on_rates,
@@ -73,7 +68,7 @@ SYMPLECTIC_EULER = Method(
     symplectic=True,
     linear_limit=2.0,
     other_names=("semi-implicit Euler", "Euler-Cromer"),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+    reference=f"{HAIRER}, I.1.2",
     used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML "
     "Reference, integrator]",
     modified_energy=symplectic_euler_modified_energy,

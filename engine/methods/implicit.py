@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
 
-from engine.methods.method import COMPILABLE, Method, Phases
+from engine.methods.method import COMPILABLE, HAIRER, Method, Phases
 from engine.models.model import Force, Phase
 from engine.models.modified_energy import implicit_midpoint_modified_energy
 from engine.models.spring import SpringParts
@@ -91,7 +91,7 @@ BACKWARD_EULER = Method(
     varies=True,
     linear_limit=math.inf,
     other_names=("implicit Euler",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+    reference=f"{HAIRER}, I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
     note="The mirror of explicit Euler: it loses energy at every h. Newton's iteration, to 1e-12 "
     "rad, takes two evaluations each time, on a usual swing three times; beyond z = 1 there may be "
@@ -112,7 +112,7 @@ IMPLICIT_MIDPOINT = Method(
     reversible=True,
     linear_limit=math.inf,
     other_names=("Gauss method of order 2",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    reference=f"{HAIRER}, II.1.1",
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
     note="It keeps the energy of small swings exactly, at any h, with a phase that is wrong where "

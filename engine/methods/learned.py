@@ -152,8 +152,7 @@ def _module(numbers: str) -> Callable[[float], float]:
 def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
     """The learned symplectic map: half a kick by theta, a drift by omega, half a kick.
 
-    Symplectic whatever the functions are.  Jin et al., Neural Networks 132 (2020) 166, gradient
-    modules.
+    Symplectic whatever the functions are: gradient modules.
     """
     w0 = model.w0
     tau = w0 * h

@@ -7,6 +7,7 @@ against these; for a user's own method they are the claims.
 import cmath
 import math
 from itertools import islice
+from operator import neg
 from statistics import linear_regression
 from typing import Any, NamedTuple
 
@@ -147,7 +148,7 @@ def linear_limit(phases: Phases) -> float:
     if not is_stable(phases, NO_LIMIT_BELOW):
         return 0.0
     rungs = np.arange(int(NO_LIMIT_BELOW * RUNGS), WIDEST_Z * RUNGS) / RUNGS
-    unstable_rungs = rungs[~_stable(phases, rungs)]
+    unstable_rungs = rungs[~is_stable(phases, rungs)]
     if not len(unstable_rungs):
         return math.inf
     unstable = float(unstable_rungs[0])
@@ -161,23 +162,14 @@ def linear_limit(phases: Phases) -> float:
     return stable
 
 
-def is_stable(phases: Phases, z: float) -> bool:
+def is_stable(phases: Phases, z: Any) -> Any:
     """Whether both multipliers of a linear step lie in the closed unit disc, but for rounding.
 
-    They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the z-Transform
-    Method (1964).
+    `z` is a number or an array.  They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and
+    Application of the z-Transform Method (1964).
     """
-    return bool(_stable(phases, z))
-
-
-def _stable(phases: Phases, z: Any) -> Any:
-    """`is_stable` for a z, or for an array of them."""
     zero = 0.0 * z
-    a, c = after(phases, _spring, (zero + 1.0, zero), z, 1)
-    b, d = after(phases, _spring, (zero, zero + 1.0), z, 1)
+    a, c = after(phases, neg, (zero + 1.0, zero), z, 1)
+    b, d = after(phases, neg, (zero, zero + 1.0), z, 1)
     area = a * d - b * c
     return (area <= 1 + LINEAR_ROUNDING) & (abs(a + d) <= 1 + area + LINEAR_ROUNDING)
-
-
-def _spring(theta: Any) -> Any:
-    return -theta

@@ -22,6 +22,8 @@ BoundPhases = Callable[[Phase, float], Iterator[Phase]]
 """The same of a method on a model: (phase, h) -> phases."""
 
 
+HAIRER = "Hairer, Lubich & Wanner, Geometric Numerical Integration (2006)"
+
 COMPILABLE: dict[Phases, Callable[[], Phases]] = {}
 """Of phases that Numba cannot compile, what returns others that it can, the same to the bit."""
 

@@ -7,7 +7,7 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from engine.methods.method import Method
+from engine.methods.method import HAIRER, Method
 from engine.methods.verlet import velocity_verlet
 from engine.models.model import Force, Phase
 
@@ -91,7 +91,7 @@ def _verlet(*, numbers: str, keeps_area: bool, **fields: Any) -> Method:
         symplectic=keeps_area,
         reversible=keeps_area,
         linear_limit=2.0,
-        reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), VIII.5",
+        reference=f"{HAIRER}, VIII.5",
         models=("pendulum",),
         any_numbers=False,
     )

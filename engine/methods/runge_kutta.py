@@ -3,16 +3,15 @@
 import math
 from collections.abc import Iterator
 
-from engine.methods.method import Method
+from engine.methods.method import HAIRER, Method
 from engine.models import FIRST_ORDER
 from engine.models.model import Force, Phase, Rates
 
 
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """The classical Runge-Kutta method of order 4.
+    """The classical Runge-Kutta method.
 
-    Neither symplectic nor reversible: det - 1 ~ h⁶, so it loses a little area on most of the plane
-    and gains some near upright.  Hairer, Lubich & Wanner (2006), II.1.1.
+    det - 1 ~ h⁶: it loses a little area on most of the plane, and gains some near upright.
     """
     theta, omega = phase
     half = h / 2
@@ -31,10 +30,7 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def heun(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Heun's method: the mean of the slopes at both ends of a step of explicit Euler.
-
-    Order 2; det - 1 ~ h⁴.  Hairer, Lubich & Wanner (2006), II.1.1.
-    """
+    """Heun's method: the mean of the slopes at both ends of a step of explicit Euler."""
     theta, omega = phase
     half = h / 2
     while True:
@@ -47,10 +43,7 @@ def heun(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def explicit_midpoint(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """The explicit midpoint rule: the slope in the middle of a step of explicit Euler.
-
-    Order 2; det - 1 ~ h⁴.  Hairer, Lubich & Wanner (2006), II.1.1.
-    """
+    """The explicit midpoint rule: the slope in the middle of a step of explicit Euler."""
     theta, omega = phase
     half = h / 2
     while True:
@@ -61,10 +54,7 @@ def explicit_midpoint(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
-    """The classical Runge-Kutta method on a first-order system.
-
-    Hairer, Lubich & Wanner (2006), II.1.1.
-    """
+    """The classical Runge-Kutta method on a first-order system."""
     while True:
         k1 = rates(phase)
         k2 = rates(_moved(phase, h / 2, k1))
@@ -91,7 +81,7 @@ RK4 = Method(
     force_evaluations=4,
     linear_limit=2 * math.sqrt(2),
     other_names=("classical Runge-Kutta",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    reference=f"{HAIRER}, II.1.1",
     used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
     on_rates=rk4_on_rates,
     models=("pendulum", "linear", "spring", *FIRST_ORDER),
@@ -108,7 +98,7 @@ HEUN = Method(
     force_evaluations=2,
     linear_limit=0.0,
     other_names=("RK2", "improved Euler", "explicit trapezoidal rule"),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    reference=f"{HAIRER}, II.1.1",
     used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical "
     "integration]",
     note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
@@ -124,7 +114,7 @@ EXPLICIT_MIDPOINT = Method(
     force_evaluations=2,
     linear_limit=0.0,
     other_names=("modified Euler",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    reference=f"{HAIRER}, II.1.1",
     used="neurons: Brian 2, rk2 [brian2.readthedocs.io, Numerical integration]",
     note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
 )

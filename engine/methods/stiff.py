@@ -6,7 +6,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from engine.methods.method import Method, Phases
+from engine.methods.method import HAIRER, Method, Phases
 from engine.methods.verlet import velocity_verlet
 from engine.models.mean_field import MeanField, strang
 from engine.models.model import Phase
@@ -14,10 +14,7 @@ from engine.models.spring import SpringParts
 
 
 def respa(inner: Phases, n: int) -> Phases:
-    """r-RESPA, the impulse method: n steps with the fast force between half kicks of the slow.
-
-    Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990.
-    """
+    """r-RESPA, the impulse method: n steps with the fast force between half kicks of the slow."""
 
     def impulse(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
         """Half a slow kick, n fast steps, half a slow kick."""
@@ -36,8 +33,7 @@ def respa(inner: Phases, n: int) -> Phases:
 def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
 
-    Order 1, stable at any h because it damps whatever it does not resolve, and what it does.
-    Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151.
+    Stable at any h because it damps whatever it does not resolve, and what it does.
     """
     z, w = phase
     while True:
@@ -49,7 +45,7 @@ def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
 def mean_field_splitting(parts: MeanField, phase: Phase, h: float) -> Iterator[Phase]:
     """Half a drift; the exact flow of all else, in which theta stands still; half a drift.
 
-    Order 2 and reversible at any nu h; |s| stays.  Hairer, Lubich & Wanner (2006), II.5.
+    |s| stays, at any nu h.
     """
     while True:
         phase = strang(parts, phase, h)
@@ -109,7 +105,7 @@ MEAN_FIELD_SPLITTING = Method(
     symplectic=True,
     reversible=True,
     other_names=("Strang splitting",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.5",
+    reference=f"{HAIRER}, II.5",
     used=None,
     note="Counted are its kicks, of which each takes the two levels exactly over the whole step.",
     models=("mean_field",),

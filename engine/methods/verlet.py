@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from engine.methods.method import Method
+from engine.methods.method import HAIRER, Method
 from engine.models.model import Force, Phase
 from engine.models.modified_energy import (
     position_verlet_modified_energy,
@@ -11,10 +11,7 @@ from engine.models.modified_energy import (
 
 
 def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Velocity Verlet: half a kick, a drift, half a kick; the last force is the next step's first.
-
-    Order 2, symplectic and reversible.  Hairer, Lubich & Wanner (2006), I.1.4.
-    """
+    """Velocity Verlet: half a kick, a drift, half a kick; the last force is used again."""
     theta, omega = phase
     half = h / 2
     a = force(theta)
@@ -27,10 +24,7 @@ def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def position_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Position Verlet: half a drift, a kick, half a drift.
-
-    Order 2, symplectic and reversible.  Hairer, Lubich & Wanner (2006), VI.3.1.
-    """
+    """Position Verlet: half a drift, a kick, half a drift."""
     theta, omega = phase
     half = h / 2
     while True:
@@ -55,7 +49,7 @@ VELOCITY_VERLET = Method(
     reversible=True,
     linear_limit=2.0,
     other_names=("Verlet", "Störmer-Verlet", "leapfrog", "kick-drift-kick"),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4",
+    reference=f"{HAIRER}, I.1.4",
     used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
     modified_energy=velocity_verlet_modified_energy,
     models=("pendulum", "linear", "spring"),
@@ -74,7 +68,7 @@ POSITION_VERLET = Method(
     reversible=True,
     linear_limit=2.0,
     other_names=("drift-kick-drift",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), VI.3.1",
+    reference=f"{HAIRER}, VI.3.1",
     used="planets: REBOUND, integrator leapfrog [rebound.readthedocs.io, Integrators]",
     modified_energy=position_verlet_modified_energy,
     models=("pendulum", "linear", "spring"),

@@ -20,7 +20,7 @@ from engine.models.model import (
     Sine,
     State,
 )
-from engine.models.pendulum import Pendulum, separatrix_energy
+from engine.models.pendulum import Pendulum
 from engine.models.reference import Reference, compose_verlet
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
@@ -80,7 +80,9 @@ class DampedPendulum(Pendulum):
         energy = self.energy()((theta, omega))
         if energy == 0:
             return ExactMotion(at, "equilibrium")
-        regime: Regime = "libration" if energy < separatrix_energy(self.w0_squared) else "rotation"
+        regime: Regime = "rotation"
+        if energy < 2 * self.w0_squared:
+            regime = "libration"
         return ExactMotion(at, regime, accuracy=ACCURACY)
 
     def reference(self, theta: float, omega: float) -> EnergyReference:

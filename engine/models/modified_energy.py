@@ -13,13 +13,25 @@ ModifiedEnergy = Callable[[Model, Phase, float], float]
 """(model, (theta, omega), h [s]) -> modified energy [s⁻²]."""
 
 
-def velocity_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """Return H - h² (2 omega² f'(theta) + f(theta)²)/24 [s⁻²], where f is the force.
+def _modified(moving: float, pulled: float) -> ModifiedEnergy:
+    """Return H + h² (moving omega² f'(theta) + pulled f(theta)²)/24 [s⁻²], where f is the force.
 
     What remains oscillates with h⁴.
     """
-    omega, force, slope, energy = _parts(model, phase)
-    return energy - h * h / 24 * (2 * omega * omega * slope + force * force)
+
+    def modified_energy(model: Model, phase: Phase, h: float) -> float:
+        theta, omega = phase
+        force = float(model.force()(theta))
+        parts = moving * omega * omega * model.slope(theta) + pulled * force * force
+        modified: float = model.energy()(phase) + h * h / 24 * parts
+        return modified
+
+    return modified_energy
+
+
+velocity_verlet_modified_energy = _modified(-2, -1)
+position_verlet_modified_energy = _modified(1, 2)
+implicit_midpoint_modified_energy = _modified(1, -1)  # for small swings a multiple of H
 
 
 def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> float:
@@ -29,24 +41,3 @@ def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> fl
     """
     theta, omega = phase
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)
-
-
-def position_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """H + h² (omega² f'(theta) + 2 f(theta)²)/24 [s⁻²], f being the force."""
-    omega, force, slope, energy = _parts(model, phase)
-    return energy + h * h / 24 * (omega * omega * slope + 2 * force * force)
-
-
-def implicit_midpoint_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """Return H + h² (omega² f'(theta) - f(theta)²)/24 [s⁻²], where f is the force.
-
-    For small swings it is a multiple of H.
-    """
-    omega, force, slope, energy = _parts(model, phase)
-    return energy + h * h / 24 * (omega * omega * slope - force * force)
-
-
-def _parts(model: Model, phase: Phase) -> tuple[float, float, float, float]:
-    """Return omega, the force, its slope and the energy."""
-    theta, omega = phase
-    return omega, float(model.force()(theta)), model.slope(theta), float(model.energy()(phase))

@@ -60,13 +60,3 @@ class Pendulum(Model):
         c = cos(theta / 2)
         v = omega / (2 * self.w0)
         return (c - v) * (c + v)
-
-
-def energy(w0_squared: float, theta: Any, omega: Any, sin: Sine = math.sin) -> Any:
-    """The energy of one state, or of arrays [s⁻²]."""
-    return Pendulum(w0_squared).energy(sin)((theta, omega))
-
-
-def separatrix_energy(w0_squared: float) -> float:
-    """2 w0² [s⁻²]: below it the pendulum swings (libration), above it spins (rotation)."""
-    return 2 * w0_squared

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from engine.accuracy.rounding import rounding_floor
 from engine.accuracy.study import Study, ladder, orders, timed
 from engine.methods import USUAL_CAST
-from engine.models.pendulum import energy
 from engine.run import compiled
 from engine.run.loops import PlainLoops
 from engine.scenes import SCENES, SceneError
@@ -95,14 +94,14 @@ def test_more_evaluations_buy_smaller_errors(points, method):
 @pytest.mark.parametrize("steps", [100, 999, 5000])
 def test_errors_are_the_largest_of_the_run(steps):
     point = Study(DRIFT, 10.0).run(V, steps, comparisons=steps)
-    exact, w0_squared, phase = DRIFT.exact(), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
-    start, path = energy(w0_squared, *phase), []
+    exact, energy, phase = DRIFT.exact(), DRIFT.equations.energy(), (DRIFT.theta, DRIFT.omega)
+    start, path = energy(phase), []
     for _ in range(steps):
         path.append(phase := PlainLoops(V, DRIFT.equations).propagate(phase, 10.0 / steps, 1))
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     assert point.theta_error == max(off)
     assert point.final_error == off[-1]
-    assert point.energy_error == max(abs(energy(w0_squared, *y) - start) / start for y in path)
+    assert point.energy_error == max(abs(energy(y) - start) / start for y in path)
     sampled = Study(DRIFT, 10.0).run(V, steps)
     # between two of 400 comparisons in 5 swings the error moves by some percent of its largest value
     assert 0.97 * point.theta_error <= sampled.theta_error <= point.theta_error

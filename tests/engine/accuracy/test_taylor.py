@@ -6,7 +6,6 @@ from statistics import fmean
 import numpy as np
 import pytest
 
-from engine.models.pendulum import energy
 from engine.run.compiled import available
 from engine.scenes import Scene
 
@@ -21,7 +20,7 @@ def errors(scene, time, tolerance, comparisons=400):
     times = np.linspace(0, time, comparisons + 1)
     states, steps = solve(scene.w0_squared, scene.theta, scene.omega, times, tolerance)
     exact = scene.exact()
-    start, end = (energy(scene.w0_squared, *map(float, states[n])) for n in (0, -1))
+    start, end = map(scene.equations.energy(), states[[0, -1]].tolist())
     off = max(
         abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True)
     )

@@ -7,11 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.model import EnergyReference
-from engine.models.pendulum import (
-    Pendulum,
-    energy,
-    separatrix_energy,
-)
+from engine.models.pendulum import Pendulum
+
+ENERGY = Pendulum(9.81).energy()
 
 
 @given(theta=st.floats(-1e6, 1e6), omega=st.floats(-1e6, 1e6), w0_squared=st.floats(1e-3, 1e3))
@@ -19,19 +17,20 @@ def test_the_energy_is_right_to_the_last_digits_everywhere(theta, omega, w0_squa
     with mp.workdps(700):  # 1 - cos theta cancels, down to the smallest square that a float holds
         expected = float(mp.mpf(omega) ** 2 / 2 + mp.mpf(w0_squared) * (1 - mp.cos(mp.mpf(theta))))
     # A handful of roundings; 1e-300 because the squares of tiny numbers underflow.
-    assert energy(w0_squared, theta, omega) == pytest.approx(expected, rel=1e-15, abs=1e-300)
+    assert Pendulum(w0_squared).energy()((theta, omega)) == pytest.approx(
+        expected, rel=1e-15, abs=1e-300
+    )
 
 
 @given(theta=st.floats(-10, 10))
 def test_the_acceleration_is_minus_the_slope_of_the_energy(theta):
-    slope = energy(9.81, complex(theta, 1e-100), 0.0, np.sin).imag / 1e-100
+    slope = Pendulum(9.81).energy(np.sin)((complex(theta, 1e-100), 0.0)).imag / 1e-100
     assert Pendulum(9.81).force()(theta) == pytest.approx(-slope, abs=1e-14)
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
 def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(theta, omega):
-    assert separatrix_energy(9.81) == energy(9.81, math.pi, 0.0) == 2 * 9.81
-    margin = 1 - energy(9.81, theta, omega) / separatrix_energy(9.81)
+    margin = 1 - ENERGY((theta, omega)) / ENERGY((math.pi, 0.0))
     assert Pendulum(9.81).level(theta, omega) == pytest.approx(margin, abs=1e-14)
 
 
@@ -42,4 +41,4 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix():
     assert Pendulum(9.81).reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
-    assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, separatrix_energy(9.81))
+    assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, 2 * 9.81)

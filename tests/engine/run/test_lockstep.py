@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST, method_of
 from engine.models.model import Phase
-from engine.models.pendulum import Pendulum, energy
+from engine.models.pendulum import Pendulum
 from engine.run.compiled import available, compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
@@ -66,7 +66,7 @@ def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene, n):
                 return  # from there on theta is reduced
             phase = method.step(force, phase, scene.h)
         assert (reading.theta, reading.omega) == phase
-        assert reading.energy == energy(scene.w0_squared, *phase)
+        assert reading.energy == scene.equations.energy()(phase)
 
 
 def test_a_long_rotation_stays_in_the_band_of_its_first_turns():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from engine.methods import GENERAL
 from engine.models import MODELS
-from engine.models.pendulum import Pendulum, energy
+from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -22,6 +22,7 @@ each_model = pytest.mark.parametrize(
 angles = st.floats(-10, 10)
 steps = st.floats(1e-3, 3) | st.floats(-3, -1e-3)
 PENDULUM = Pendulum(9.81)
+energy = PENDULUM.energy()
 
 
 def overflowing(force, phase, h):
@@ -55,10 +56,10 @@ def test_a_method_that_overflows_is_carried_to_its_last_finite_step(theta, n):
         return -9.81 * math.sin(x) if math.isfinite(x) else math.nan
 
     def within(phase):
-        return all(map(math.isfinite, phase)) and energy(9.81, *phase) < math.inf
+        return all(map(math.isfinite, phase)) and energy(phase) < math.inf
 
     path = list(takewhile(within, islice(overflowing(force, (theta, 0.0), 0.1), n)))
-    energies = [energy(9.81, *point) for point in path]
+    energies = [energy(point) for point in path]
     loops = PlainLoops(OVERFLOWING, PENDULUM)
     done, last, value, low, high = loops.advance((theta, 0.0), 0.1, n, math.inf)
     assert (done, last) == (len(path), [(theta, 0.0), *path][-1])
@@ -73,5 +74,5 @@ def test_it_stops_before_the_step_whose_energy_reaches_the_limit(method):
     done, phase, value, _, high = loops.advance((2.0, 0.0), 0.05, 500, highest)
     assert done < 500
     assert high < highest
-    assert done == 0 or energy(9.81, *phase) == value
-    assert energy(9.81, *loops.propagate(phase, 0.05, 1)) == highest
+    assert done == 0 or energy(phase) == value
+    assert energy(loops.propagate(phase, 0.05, 1)) == highest

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST, VELOCITY_VERLET
 from engine.models.model import Phase
-from engine.models.pendulum import Pendulum, energy
+from engine.models.pendulum import Pendulum
 from engine.run.ensemble import plain
 from engine.stability.linear import wobble
 from engine.stability.outcomes import (
@@ -56,7 +56,7 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, step
     force, value = Pendulum(1.0).force(np.sin), Pendulum(1.0).energy(np.sin)
     cells = outcomes(method, *np.array(swings).T, steps)
     for cell, (theta, z) in zip(cells, swings, strict=True):
-        start = energy(1.0, theta, 0.0, np.sin)
+        start = value((theta, 0.0))
         lowest, highest, _ = wobble(method, z)
         survived, worst, expected = 0, 0.0, "holds"
         for phase in islice(method.phases(force, (np.array([theta]), np.zeros(1)), z), steps):
