@@ -22,14 +22,16 @@ def length(seconds: float) -> str:
 
 def few(number: float) -> str:
     """Return a number with three digits, or with all of a whole number."""
-    return f"{number:.0f}" if number >= 100 else f"{number:.3g}"
+    if number >= 100:
+        return f"{number:.0f}"
+    return f"{number:.3g}"
 
 
 def point_words(point: Point, kind: ErrorKind, note: str) -> str:
     """Return a method, its h, its error and its force evaluations, and a note."""
-    flaw = point.flaw(kind)
-    reason = f" ({REASONS[flaw]})" if flaw else ""
-    error = f"{kind} error {point.error(kind):.1e}{reason}"
+    error = f"{kind} error {point.error(kind):.1e}"
+    if flaw := point.flaw(kind):
+        error += f" ({REASONS[flaw]})"
     swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
     text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
     return "; ".join(
@@ -54,29 +56,39 @@ def factor_words(found: Sequence[Cheapest]) -> str:
         for one in found
         if one.saves and one.method is not RK4 and one.saves >= 1.2
     ]
-    return f"Times fewer force evaluations than RK4: {', '.join(savings)}." if savings else ""
+    if not savings:
+        return ""
+    return f"Times fewer force evaluations than RK4: {', '.join(savings)}."
 
 
 def growth_words(found: Sequence[Growth]) -> str:
     """The measured powers of t with which theta errors grow; empty where none follows one."""
     named = ", ".join(growth.name for growth in found if growth.power is not None)
-    return f"over up to {PERIODS} periods, the theta error grows as: {named}" if named else ""
+    if not named:
+        return ""
+    return f"over up to {PERIODS} periods, the theta error grows as: {named}"
 
 
 def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
     """Return the measured powers of t; and when all is `done`, which methods follow none."""
     words = growth_words(found)
     others = ", ".join(growth.method.label for growth in found if growth.power is None)
-    lines = [f"From the start, {words}"] if words else []
-    return [*lines, f"No single power of t: {others}"] if others and done else lines
+    lines = []
+    if words:
+        lines.append(f"From the start, {words}")
+    if others and done:
+        lines.append(f"No single power of t: {others}")
+    return lines
 
 
 def _spans(found: Sequence[Cheapest]) -> str:
     spans = []
     for method, some in ranges(found):
         first, last = _power(some[0].target), _power(some[-1].target)
-        span = f"at {first}" if first == last else f"from {first} to {last}"
-        spans.append(f"{method.label} {span}")
+        if first == last:
+            spans.append(f"{method.label} at {first}")
+        else:
+            spans.append(f"{method.label} from {first} to {last}")
     return ", ".join(spans)
 
 

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from engine.methods import Method
-from engine.run.judgement import Milestone, Verdict
+from engine.run.judgement import Milestone
 from tui.playback.source import Source
 from tui.words.insight import energy_ratio, short_name
 from tui.words.numbers import start, two_digits
 
-VERDICTS: dict[Verdict, str] = {
+VERDICTS: dict[str, str] = {
     "bounded": "stays bounded",
     "loses": "loses energy",
     "grows": "gains energy",
@@ -32,7 +32,9 @@ class EventLine(NamedTuple):
     method: Method | None = None  # of a milestone
 
     def __str__(self) -> str:
-        return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
+        if abs(self.t) < 1e4:
+            return f"{self.t:7.2f} {self.text}"
+        return f"{self.t:7.1e} {self.text}"
 
 
 def event_lines(source: Source) -> list[EventLine]:
@@ -52,28 +54,32 @@ def event_lines(source: Source) -> list[EventLine]:
 
 def numbered(lines: Sequence[EventLine]) -> list[str]:
     """The lines, where there are several runs each with the number of its own."""
-    several = len({line.run for line in lines}) > 1
-    return [f"{line.run:2} {line}" if several else str(line) for line in lines]
+    if len({line.run for line in lines}) == 1:
+        return [str(line) for line in lines]
+    return [f"{line.run:2} {line}" for line in lines]
 
 
 def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
     for event in source.events:
-        text = ""
+        place = (event.run, event.step, event.t)
         if event.kind == "mark":
             marks += 1
-            text = f"mark {marks}: {event.text}" if event.text else f"mark {marks}"
+            text = f"mark {marks}: {event.text or ''}".removesuffix(": ")
+            yield EventLine(*place, text, "mark")
         elif event.scene is not None:
             scene = event.scene
-            name = start(scene.theta, scene.omega) if scene.name == "custom" else scene.name
-            text = f"start {name}, h {scene.h:.4g} s"
+            name = scene.name
+            if name == "custom":
+                name = start(scene.theta, scene.omega)
+            yield EventLine(*place, f"start {name}, h {scene.h:.4g} s", "change")
         elif event.h is not None:
-            way = "time reversed, " if event.h < 0 else ""
-            cost = ", equal cost" if event.equal_cost else ""
-            text = f"{way}h {abs(event.h):.4g} s{cost}"
-        if text:
-            kind: Literal["mark", "change"] = "mark" if event.kind == "mark" else "change"
-            yield EventLine(event.run, event.step, event.t, text, kind)
+            parts = [f"h {abs(event.h):.4g} s"]
+            if event.h < 0:
+                parts.insert(0, "time reversed")
+            if event.equal_cost:
+                parts.append("equal cost")
+            yield EventLine(*place, ", ".join(parts), "change")
 
 
 def _milestone(milestone: Milestone, conserved: bool) -> str:
@@ -81,7 +87,9 @@ def _milestone(milestone: Milestone, conserved: bool) -> str:
     if milestone.other:
         return f"{name}'s error > {short_name(milestone.other)}'s"
     if milestone.kind != "over the top":
-        return f"{name} {VERDICTS['failed' if milestone.kind == 'failed' else milestone.verdict]}"
-    ratio = energy_ratio(milestone, conserved)
-    unit = "E0" if conserved else "E(t)"
-    return f"{name} over the top{f', {two_digits(ratio)} {unit}' if ratio else ''}"
+        return f"{name} {VERDICTS.get(milestone.kind, VERDICTS[milestone.verdict])}"
+    text = f"{name} over the top"
+    if ratio := energy_ratio(milestone, conserved):
+        unit = "E0" if conserved else "E(t)"
+        text += f", {two_digits(ratio)} {unit}"
+    return text

@@ -55,7 +55,9 @@ IRREGULAR = ("chaotic", "wanders", "caught")
 
 
 def _share(value: float) -> str:
-    return f"{two_digits(100 * value)} %" if 1e-6 <= value < 10 else two_digits(value)
+    if 1e-6 <= value < 10:
+        return f"{two_digits(100 * value)} %"
+    return two_digits(value)
 
 
 FORMATS: dict[str, Callable[[Any], str]] = {
@@ -78,8 +80,9 @@ class Insight(NamedTuple):
 
 class _Words(string.Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
-        known = FORMATS.get(format_spec)
-        return known(value) if known else format(value, format_spec)
+        if format_spec in FORMATS:
+            return FORMATS[format_spec](value)
+        return format(value, format_spec)
 
 
 def sentence(found: Insight) -> str:
@@ -94,7 +97,9 @@ def short_name(method: Method) -> str:
     """Return a usual method's last word if it is unique: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
     alone = sum(each.label.endswith(last) for each in USUAL_CAST) == 1
-    return last if alone and method in USUAL_CAST else method.label
+    if alone and method in USUAL_CAST:
+        return last
+    return method.label
 
 
 def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
@@ -175,7 +180,9 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
         return [_so_far(source, hidden)]
     watch = _watch(source, hidden)
     is_outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
-    return [*found, watch] if watch and not is_outdated else found
+    if watch and not is_outdated:
+        found.append(watch)
+    return found
 
 
 def endings(source: Source) -> dict[int, Milestone]:
@@ -193,7 +200,9 @@ def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
     """Return a method's energy over the right one; None where they hardly differ."""
     error = milestone.energy_error
     ratio = 1 + error if conserved else math.exp(min(error, 700.0))
-    return ratio if abs(ratio - 1) > UNCHANGED else None
+    if abs(ratio - 1) > UNCHANGED:
+        return ratio
+    return None
 
 
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
@@ -202,9 +211,10 @@ def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     if milestone.other:
         return Insight("errors cross", (milestone.method, milestone.other), values)
     if milestone.kind == "over the top":
-        ratio = energy_ratio(milestone, conserved)
-        unit = "its initial energy" if conserved else "the true energy"
-        energy = f" with {two_digits(ratio)} times {unit}" if ratio else ""
+        energy = ""
+        if ratio := energy_ratio(milestone, conserved):
+            unit = "its initial energy" if conserved else "the true energy"
+            energy = f" with {two_digits(ratio)} times {unit}"
         values |= {"ratio": ratio, "energy": energy}
     return Insight(milestone.kind, (milestone.method,), values)
 
@@ -223,8 +233,10 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
     """Return the insight on a chaotic, wandering or caught method; None for other verdicts."""
     if judgement.verdict not in IRREGULAR:
         return None
-    seconds = math.log(10) / judgement.lyapunov if judgement.lyapunov else None
-    return Insight(judgement.verdict, (method,), {"error": error, "seconds": seconds})
+    values = {"error": error, "seconds": None}
+    if judgement.lyapunov:
+        values["seconds"] = math.log(10) / judgement.lyapunov
+    return Insight(judgement.verdict, (method,), values)
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -238,13 +250,12 @@ def drift(source: Source, index: int) -> Insight | None:
     loses = judgement.verdict == "loses"
     if conserved and loses and -error > 0.5:  # the share that is lost says more than the rate
         return Insight("lost", (method,), {"share": -error})
-    slope = judgement.slope or 0.0
-    rate = -slope if loses else slope
-    if judgement.verdict not in ("grows", "loses") or rate <= 0:
+    sign, kind = {"grows": (1, "gains"), "loses": (-1, "loses")}.get(judgement.verdict, (0, ""))
+    rate = sign * (judgement.slope or 0.0)
+    if rate <= 0:
         return None
     if judgement.growth and not loses:
         return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
-    kind = "loses" if loses else "gains"
     unit = "E0" if conserved else "the true energy"
     values = {"rate": rate, "unit": unit, "gains": kind}
     if ahead := forecast(source, index):
@@ -278,7 +289,9 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     if other is None or band > MAX_BAND or slow:
         return None
     seconds = (band + error) / rate
-    return (seconds, other) if seconds < 1000 * 86400 else None
+    if seconds < 1000 * 86400:
+        return seconds, other
+    return None
 
 
 def _bands(source: Source) -> list[tuple[float, Method]]:
@@ -310,7 +323,9 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Ins
         if method.key not in hidden:
             speed = (reading.omega - scene.omega) / scene.w0
             miss = math.hypot(reading.theta - scene.theta, speed)
-            text = "failed" if reading.diverged_at is not None else f"{miss:.1g}"
+            text = f"{miss:.1g}"
+            if reading.diverged_at is not None:
+                text = "failed"
             misses.append(f"{method.letter} {text}")
     return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
 

@@ -12,7 +12,9 @@ from engine.scenes import Scene
 
 def counted(number: int, noun: str) -> str:
     """As "1 sample" or "3 samples"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+    if abs(number) != 1:
+        noun += "s"
+    return f"{number} {noun}"
 
 
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
@@ -36,12 +38,16 @@ def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
 
 def angle(theta: float, width: int, decimals: int) -> str:
     """An angle [rad]; beyond a turn as turns and, if there is room, the rest: "-5 turns +0.89"."""
-    turns = round(theta / math.tau) if math.isfinite(theta) else 0
-    text = f"{turns:+d} turn" if abs(turns) == 1 else f"{turns:+d} turns"
-    if abs(theta) <= math.tau or len(text) > width:
-        return decimal(theta, width, max(decimals, 1))
+    in_radians = decimal(theta, width, max(decimals, 1))
+    if not math.tau < abs(theta) < math.inf:
+        return in_radians
+    turns = round(theta / math.tau)
+    text = f"{turns:+d} turns"
+    if abs(turns) == 1:
+        text = f"{turns:+d} turn"
     whole = f"{text} {theta - turns * math.tau:+.2f}"
-    return (whole if len(whole) <= width else text).rjust(width)
+    fitting = (each.rjust(width) for each in (whole, text) if len(each) <= width)
+    return next(fitting, in_radians)
 
 
 def start(theta: float, omega: float) -> str:
@@ -71,14 +77,18 @@ def about(seconds: float) -> str:
     units = {"days": 86400, "h": 3600, "min": 60, "s": 1}
     unit = next((unit for unit, size in units.items() if seconds >= 2 * size), "s")
     value = seconds / units[unit]
-    return f"{value:.0f} {unit}" if value >= 9.95 else f"{value:.2g} {unit}"
+    if value >= 9.95:
+        return f"{value:.0f} {unit}"
+    return f"{value:.2g} {unit}"
 
 
 def two_digits(value: float) -> str:
     """A positive number with about two digits: "0.00029", "0.66", "4.3", "440", "1.3e+06"."""
     if value < 9.95:
         return f"{value:#.2g}"
-    return f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
+    if value < 99_999.5:
+        return f"{value:.0f}"
+    return f"{value:.1e}"
 
 
 def file_size(count: int) -> str:
@@ -90,7 +100,9 @@ def file_size(count: int) -> str:
 
 def factor(value: float) -> str:
     """A factor in full: "4", "262144", "0.125"."""
-    return f"{value:.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"
+    if 1e3 <= abs(value) < 1e9:
+        return f"{value:.0f}"
+    return f"{value:.4g}"
 
 
 def z_text(scene: Scene, digits: int = 4) -> str:

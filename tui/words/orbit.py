@@ -24,7 +24,9 @@ def name(method: Method, kind: OrbitKind) -> str:
         return "undecided"
     if not method.symplectic:
         return "slow spiral"
-    return "over the top" if kind.spins else "regular"
+    if kind.spins:
+        return "over the top"
+    return "regular"
 
 
 def fraction(kind: OrbitKind) -> str:
@@ -36,9 +38,11 @@ def fraction(kind: OrbitKind) -> str:
 
 def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
     """Return what stands below HEADS; a regular orbit's Lyapunov number is 0 as far as known."""
-    rotation = kind.rotation
-    turns = "-" if rotation is None else f"{rotation:.7f}"
-    steps = f"{1 / abs(rotation):.5g}" if rotation else "-"
+    turns = steps = "-"
+    if kind.rotation is not None:
+        turns = f"{kind.rotation:.7f}"
+    if kind.rotation:
+        steps = f"{1 / abs(kind.rotation):.5g}"
     lyapunov = f"0 within {least_lyapunov(kind.steps):.1g}"
     if not math.isfinite(kind.lyapunov):
         lyapunov = "-"
@@ -68,4 +72,6 @@ def sentence(method: Method, kind: OrbitKind) -> str:
     near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {ratio}."
     if spirals:
         return f"It {words}, {near}"
-    return f"Regular: {near}" if method.symplectic else f"A slow spiral: {near}"
+    if method.symplectic:
+        return f"Regular: {near}"
+    return f"A slow spiral: {near}"

@@ -21,8 +21,11 @@ def description(source: Source, only: Cast | None = None) -> list[str]:
     scene = source.scene
     playhead = source.playhead
     kind = "The lab" if source.kind == "LIVE" else "The replay"
-    speed = "in real time" if playhead.speed == 1 else f"at {playhead.speed:.4g} times real time"
-    state = "is paused" if playhead.paused else f"runs {speed} and is"
+    state = f"runs at {playhead.speed:.4g} times real time and is"
+    if playhead.paused:
+        state = "is paused"
+    elif playhead.speed == 1:
+        state = "runs in real time and is"
     at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
     motion = ""
     if source.exact.period is not None:
@@ -50,7 +53,9 @@ def step_text(source: Source) -> str:
     text = f"{abs(h):.4g} s, z = {abs(h) * source.scene.equations.fastest:.3g}"
     if source.stepping.equal_cost:
         text += "; at equal cost, the cheaper methods split it"
-    return f"{text}; time runs backwards" if h < 0 else text
+    if h < 0:
+        text += "; time runs backwards"
+    return text
 
 
 def method_sentence(source: Source, index: int) -> str:
