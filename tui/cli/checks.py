@@ -2,9 +2,9 @@
 
 `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows` is comparisons joined by `and`,
 `or` and parentheses.  Python's parser reads it; nothing is evaluated but the nodes named here.  It
-fails safe: a comparison holds, whatever its sign, where its method has diverged or its value is not
+fails safe: a comparison holds, whatever its sign, where its method has failed or its value is not
 known (None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it
-is, None meaning that the method never diverged.  `verdict` is compared by == or != with a verdict;
+is, None meaning that the method never failed.  `verdict` is compared by == or != with a verdict;
 too_early (or 'too early') is one, so `!= bounded` is careful.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
@@ -165,7 +165,7 @@ def _found(
             return ""
         return f"{name} is {ours:g}"
     if diverged_at is not None:
-        return f"{method or 'the energy'} diverged at {diverged_at:g}"
+        return f"{method or 'the energy'} failed at {diverged_at:g}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return f"{name} is not known"
     if not compare(ours, limit):

@@ -94,7 +94,7 @@ def _simulate(
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
-    """Return the results by method, as in --json.  A method that diverged has no theta to compare.
+    """Return the results by method, as in --json.  A method that failed has no theta to compare.
 
     Where evaluations vary they are counted, by running again, unless the run was interrupted.
     """
@@ -179,15 +179,15 @@ def columns_of(scene: Scene, *trend: Column) -> list[Column]:
         Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
         Column("largest", "max_energy_error", ".2e"),
         *trend,
-        Column("theta error [rad]", "theta_error", ".2e"),
+        Column("last theta error [rad]", "theta_error", ".2e"),
         Column("force evaluations", "force_evaluations", "d"),
     ]
 
 
 def verdict_of(row: Row) -> str:
-    """Return the verdict, how much of the evidence there is, or when the method diverged."""
+    """Return the verdict, how much of the evidence there is, or when the method failed."""
     if row["diverged_at"] is not None:
-        return f"diverged at {row['diverged_at']:g} s"
+        return f"failed at {row['diverged_at']:g} s"
     if row["progress"] is None:
         return str(row["verdict"])
     return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))
