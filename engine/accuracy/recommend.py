@@ -169,7 +169,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         if in_vain == 2 or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
-            return Attempt(method, best, _not_within(point))
+            return Attempt(method, point, _not_within(point))
         flaw = point.flaw(kind)
         factor = 4.0
         if flaw == "rounding":
@@ -178,7 +178,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             needed = (point.error(kind) / target) ** (1 / method.order)
             if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
                 about = method.evaluations(round(needed * steps))
-                return Attempt(method, best, f"needs about {about:.1e} evaluations")
+                return Attempt(method, point, f"needs about {about:.1e} evaluations")
             factor = min(max(needed, 1.1), factor)
         too_few = steps
         steps = min(most_steps, math.ceil(steps * factor))

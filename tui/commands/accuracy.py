@@ -16,6 +16,8 @@ examples:
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
+
+Exit 1: no method reaches the target.
 """
 
 MAX_RUNGS = 1000
@@ -100,4 +102,7 @@ def run(options: argparse.Namespace) -> int:
     if interrupted:
         warn("interrupted; partial results are kept.")
         return Exit.INTERRUPTED
+    if missed := [f"{advice.time:g} s" for advice in found.advice if advice.point is None]:
+        warn(f"no method reaches the target over {', '.join(missed)}.")
+        return Exit.CHECK_FAILED
     return Exit.FINE

@@ -73,12 +73,14 @@ def test_a_budget_is_answered_with_the_smallest_error_for_it():
 
 def test_a_target_that_no_method_reaches_is_reported():
     asked = (*QUICK, "--target", "1e-9", "--budget", "500")
-    answer = pendu(*asked, "--json").json["recommendation"]
-    assert [answer["method"], answer["h"], answer["why_not"]] == [
-        None,
-        None,
-        "no method gets there",
-    ]
+    outcome = pendu(*asked, "--json")
+    assert (outcome.code, outcome.err) == (
+        1,
+        "pendu-tui: no method reaches the target over 5 s.\n",
+    )
+    answer = outcome.json["recommendation"]
+    assert answer["why_not"] == "no method gets there"
+    assert (answer["method"], answer["h"]) == (None, None)
     assert all(attempt["why_not"] for attempt in answer["attempts"])
     assert "No method reaches the target" in pendu(*asked).out
 
@@ -88,7 +90,7 @@ def test_over_several_times_it_shows_where_the_winner_changes():
     two = ("--methods", "verlet,rk4", "--error", "energy", "--time", "10,100,300")
     change = "Velocity Verlet instead of RK4 from 100 s on (not yet at 10 s)."
     assert change in pendu(*COARSE, *two).out
-    assert "BM4 for all these times." in pendu(*COARSE, "--time", "2,4").out
+    assert "Blanes–Moan 4 for all these times." in pendu(*COARSE, "--time", "2,4").out
 
 
 def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
@@ -112,6 +114,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--safety", "0.5"], ["less than 1"]),
         (["--budget", "1.1e9"], ["out of range", "1e+09"]),
         (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
+        (["--target", "10", "--time", "1"], ["a target of 10", "less than 1"]),
         (["--theta", "0"], ["at rest", "no error to measure"]),
         (["--workers", "2", "--cost", "seconds"], ["measured in this process"]),
     ],

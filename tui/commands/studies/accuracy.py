@@ -53,6 +53,11 @@ NUMBERS = (
     *("h", "steps", "force_evaluations", "seconds", "spread"),
     *("theta_error", "energy_error", "final_error"),
 )
+HEADS = {
+    "theta": "largest theta error",
+    "energy": "largest energy error",
+    "final": "last theta error",
+}
 TRUTH = "the exact motion, against which errors are taken"
 
 
@@ -287,7 +292,7 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
         Column("steps a swing", "steps_per_swing", few),
         Column("evaluations", "force_evaluations", "d"),
         *(timed if any(row["seconds"] is not None for row in rows) else ()),
-        Column(f"{kind} error", "error", ".1e"),
+        Column(HEADS[kind], "error", ".1e"),
         Column("times the cheapest", _times),
     ]
     yield Table(columns, rows)
