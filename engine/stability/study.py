@@ -55,10 +55,12 @@ def ladder_of(
     scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
 ) -> Grid:
     """Return a table's grid: amplitudes [rad] on a ladder of z that includes the scene's own."""
-    swing = amplitude(scene)
-    own = () if swing is None else (swing,)
     rungs = np.union1d(LADDER if zs is None else zs, [scene.z])
-    return Grid(np.array(thetas or sorted({*THETAS, *own})), rungs, steps, scene.cast)
+    if thetas is None:
+        own = list(filter(None, [amplitude(scene)]))
+        others = (theta for theta in THETAS if not np.isclose(theta, own, rtol=0.01).any())
+        thetas = sorted([*own, *others])
+    return Grid(np.array(thetas), rungs, steps, scene.cast)
 
 
 def map_of(

@@ -187,7 +187,9 @@ def _words(scene: Scene) -> Iterator[str]:
     yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
     swing = amplitude(scene)
-    if swing is not None and not math.isclose(swing, scene.theta):
+    if swing is None:
+        yield "The start itself does not swing, so it has no row."
+    elif not math.isclose(swing, scene.theta):
         speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
         start = f"{math.degrees(scene.theta):.4g} deg{speed}"
         degrees = f"{math.degrees(swing):.4g} deg"
