@@ -23,6 +23,11 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         sentence = message.removeprefix("argument ")
+        match sentence.split():
+            case ["unrecognized", "arguments:", file] if (
+                "." in file and "-o" in self._option_string_actions
+            ):
+                sentence += f"; to write a file: -o {file}"
         if not sentence.endswith("?"):
             sentence += f"; {self.prog} --help shows the options."
         raise UserError(sentence)
