@@ -178,23 +178,27 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """Judge the energies of any program at increasing times.
 
     Errors and trend are relative to `scale`: "std", the standard deviation of the energies,
-    "first", the first energy, or a number.
+    "first", the first energy, or a number.  Energies that end in nan or inf have `failed`.
     """
     import numpy as np
 
     from engine.run.judge import Judge
 
-    t = _array("times", times)
+    t = _finite("times", _array("times", times))
     e = _array("energies", energies)
     if len(t) != len(e):
         raise ValueError(f"{len(t)} times and {len(e)} energies do not belong together.")
+    end = int(np.flatnonzero(np.isfinite(e)).max(initial=0)) + 1
+    failed = end < len(e)
+    t = t[:end]
+    e = _finite("energies", e[:end])
     later = np.diff(t) > 0
     if not later.all():
         place = int(np.argmin(later)) + 1
         raise ValueError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    found = Judge.read(t, e, absolute=scale != "std")
+    found = Judge.read(t, e, failed=failed, absolute=scale != "std")
     e = e[found.first :]
     size = _size(e, scale)
     slope = found.slope
@@ -364,6 +368,12 @@ def _array(name: str, values: Any) -> "Floats":
         raise ValueError(f"{name} is empty; give one for each sample.")
     if array.ndim != 1:
         raise ValueError(f"{name} must be a list of numbers; their shape is {array.shape}.")
+    return array
+
+
+def _finite(name: str, array: "Floats") -> "Floats":
+    import numpy as np
+
     if not np.isfinite(array).all():
         place = int(np.argmin(np.isfinite(array)))
         raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")

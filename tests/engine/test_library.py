@@ -101,12 +101,20 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         assert (found.verdict, found.trend, found.max_error) == ("bounded", 0, 0)
 
 
+@pytest.mark.parametrize("end", [math.nan, math.inf])
+def test_energies_that_end_in_nan_or_infinity_have_failed(end):
+    found = judge(TIMES, [*WAVE[:-10], *[end] * 10])
+    assert found.verdict == "failed"
+    assert found.trend is None
+    assert found.max_error < 10
+
+
 @pytest.mark.parametrize(
     ("call", "word"),
     [
         (lambda: judge([0, 1, 2], [1, 1]), "3 times and 2 energies"),
         (lambda: judge(TIMES[::-1], WAVE), r"times\[1\] is not later"),
-        (lambda: judge(TIMES, [*WAVE[:-1], math.nan]), r"energies\[1999\] is nan"),
+        (lambda: judge(TIMES, [math.nan, *WAVE[1:]]), r"energies\[0\] is nan"),
         (lambda: judge([TIMES], [WAVE]), r"list of numbers.*\(1, 2000\)"),
         (lambda: judge([], []), "times is empty"),
         (lambda: judge("t", "E"), "a list of numbers"),
