@@ -18,10 +18,10 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 978_500,
+    "characters": 978_900,
     "characters_of_engine": 313_200,
     "characters_of_recordings": 78_685,
-    "characters_of_tui": 586_500,
+    "characters_of_tui": 587_400,
     "characters_of_tests": 841_500,
     "files": 186,
     "long_lines": 0,
