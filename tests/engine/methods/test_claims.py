@@ -17,14 +17,13 @@ from engine.methods import (
     GENERAL,
     METHODS,
     RK4,
-    USUAL_CAST,
     implicit,
     matching,
     measure,
 )
 from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
-from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, composition
+from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
 from engine.models.pendulum import Pendulum
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
@@ -57,21 +56,6 @@ def test_a_method_that_does_not_follow_the_pendulum_has_no_order():
     assert measure.order(upwards) is None
 
 
-def test_three_steps_of_a_third_are_stable_three_times_as_far():
-    thirds = composition(1 / 3, 1 / 3, 1 / 3)
-    assert measure.linear_limit(thirds) == pytest.approx(6, abs=1e-5)  # where rounding turns
-
-
-@given(share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4))  # nearer, rounding decides
-def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(
-    share, beyond
-):
-    for method in GENERAL:
-        assert measure.is_stable(method.phases, share * min(method.linear_limit, 10.0))
-    for method in USUAL_CAST[1:]:
-        assert not measure.is_stable(method.phases, method.linear_limit + beyond)
-
-
 @pytest.mark.parametrize(
     ("method", "island"), [(BLANES_MOAN_4, (3.1686, 5.02)), (BLANES_MOAN_6, (3.1424, 6.34))]
 )
@@ -79,20 +63,6 @@ def test_above_the_first_edge_lies_a_gap_and_then_an_island(method, island):
     gap = np.linspace(method.linear_limit + 1e-6, island[0] - 3e-4, 100)
     assert all(measure.is_stable(method.phases, z) for z in np.linspace(*island, 100))
     assert not any(measure.is_stable(method.phases, z) for z in gap)
-
-
-@each_method
-@pytest.mark.parametrize("start", [(2.5, 0.5), (0.5, 8.0)])
-def test_the_error_falls_with_the_claimed_power_of_h(method, start):
-    # 0.1: the next power of h is felt
-    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)
-
-
-@pytest.mark.parametrize("method", [m for m in GENERAL if m.symplectic], ids=lambda m: m.key)
-@given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
-def test_area_is_kept_where_claimed(method, theta, omega, h):
-    determinant = jacobian(method, PENDULUM, theta, omega, h).determinant
-    assert determinant == pytest.approx(1, abs=1e-14)  # products of a few numbers up to 3
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(0.0, 0.3))

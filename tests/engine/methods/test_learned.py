@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import RK4
 from engine.methods.learned import (
     FAMILY,
     LEARNED_MAP,
@@ -19,7 +18,6 @@ from engine.methods.learned import (
     learned_hamiltonian,
 )
 from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
-from engine.methods.runge_kutta import rk4_on_rates
 from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 from tests.bench import learn
@@ -122,18 +120,3 @@ def test_it_has_the_claimed_order_on_the_learned_field(method):
     steps = (80, 113, 160)
     errors = [abs(end(n) - end(1600)) for n in steps]
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.2)
-
-
-def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4():
-    count, force = 0, PENDULUM.force()
-
-    def rates(phase):
-        nonlocal count
-        count += 1
-        return phase[1], force(phase[0])
-
-    phase = next(islice(rk4_on_rates(rates, (1.0, 0.5), 0.05), 9, None))
-    assert count == 10 * RK4_LEARNED_FIELD.force_evaluations
-    assert phase == pytest.approx(
-        PlainLoops(RK4, PENDULUM).propagate((1.0, 0.5), 0.05, 10), abs=1e-14
-    )

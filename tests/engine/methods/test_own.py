@@ -105,7 +105,6 @@ WRONG = {
                              "line 2: mine ends while the run goes on"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
     "three numbers": (euler(yields="theta, omega, h"), "line 2: mine yields (1.015, -0.11"),
-    "None for a number": (euler(yields="theta, None"), "line 2: mine yields (1.015, None);"),
     "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
     "an array changed in place": (
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
@@ -113,11 +112,7 @@ WRONG = {
         "mine changes an array in place; write theta = theta + x instead of theta += x",
     ),
     "something printed": (euler("print(theta)"), "line 7: `print(theta)` prints, but stdout is for results"),
-    "something printed when loaded": (euler(above="print('hello')"), "line 1: `print('hello')` prints"),
     "an end of the program": (euler("raise SystemExit"), "line 7: `raise SystemExit` raises SystemExit."),
-    "an exception that most programs do not catch": (
-        euler("raise GeneratorExit"), "line 7: `raise GeneratorExit` raises GeneratorExit."
-    ),
     "an except that catches the limit of time": (
         "def mine(force, phase, h):\n    try: yield phase\n    except: pass", "line 3: this would catch Ctrl+C; use"
     ),

@@ -14,7 +14,7 @@ from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MAX_HALV
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from engine.methods.implicit import IMPLICIT_MIDPOINT
 from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
-from engine.methods.stiff import IMEX_EULER, RESPA, respa
+from engine.methods.stiff import IMEX_EULER, RESPA
 from engine.methods.verlet import POSITION_VERLET, velocity_verlet
 from engine.models.damped import DampedPendulum
 from engine.models.mean_field import MeanField
@@ -187,11 +187,6 @@ def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments):
     assert abs(total.compensation) <= math.ulp(1e6) / 2
 
 
-def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold():
-    for phase in islice(VERLET_FLOAT32.phases(FORCE, (2.0, 0.3), 0.05), 100):
-        assert all(type(x) is float and Float32(x) == x for x in phase)
-
-
 def spring_error(method, model, h):
     """The largest energy error within 30 s; inf: it failed."""
     steps, reference = round(30 / h), model.reference(1.0, 0.0)
@@ -215,14 +210,6 @@ def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_on
         spring_error(RESPA, STIFF, share * math.tau / 50) for share in (0.5, 0.618, 0.99)
     )
     assert half < golden < 1 < 10 < whole
-
-
-def test_respa_with_one_inner_step_is_verlet_but_for_rounding():
-    start = STIFF.start(1.0, 0.0)
-    phase = next(islice(respa(velocity_verlet, 1)(STIFF.parts(), start, 0.01), 499, None))
-    expected = PlainLoops(VELOCITY_VERLET, STIFF).propagate(start, 0.01, 500)
-    assert phase == pytest.approx(expected, abs=1e-11)
-    assert phase != expected
 
 
 def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well():

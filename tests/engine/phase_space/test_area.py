@@ -1,6 +1,5 @@
 """Area kept and lost along a run, and a ring of neighbours that keeps up with one."""
 
-import math
 from itertools import islice
 
 import numpy as np
@@ -50,15 +49,6 @@ def test_the_ring_is_carried_by_the_very_step_of_the_method():
         expected = np.transpose([list(islice(run, 3))[-1] for run in runs])
         # NumPy's sine and the C library's may differ in the last place
         assert np.array(ring) == pytest.approx(expected, rel=1e-14, abs=1e-14)
-
-
-def test_running_back_undoes_the_area_of_the_reversible_method():
-    neighbourhood = Neighbourhood(DRIFT, radius=0.05)
-    neighbourhood.advance(50, Stepping(0.05))
-    neighbourhood.advance(50, Stepping(-0.05))
-    euler, _, verlet, _ = neighbourhood.area_ratios
-    assert verlet == pytest.approx(1.0, abs=1e-13)  # rounding
-    assert math.log(euler) > 0.1
 
 
 def test_a_method_that_overflows_keeps_its_last_ring():

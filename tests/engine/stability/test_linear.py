@@ -31,10 +31,6 @@ def test_the_amplification_is_the_textbooks(z):
         assert amplification(BY_KEY[key], z) == pytest.approx(formula(z), rel=1e-12)
 
 
-def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six():
-    assert amplification(BY_KEY["rk4"], math.sqrt(6)) == pytest.approx(0.5, rel=1e-12)
-
-
 @given(z=st.floats(0.05, 1.9))
 def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z):
     cycles = [2 * math.sin(math.pi * p / q) for q in range(2, 21) for p in range(1, q)]

@@ -100,13 +100,6 @@ def test_symplectic_methods_hold_every_swing_at_small_steps(key, theta):
     assert not is_lost(outcomes(BY_KEY[key], np.full(12, theta), ladder, 2000)).any()
 
 
-@pytest.mark.parametrize("theta", [0.1, 1.0, 2.0, 3.0])
-def test_explicit_euler_always_fails(theta):
-    # Energy grows by about z² a step, so 10/z² steps are plenty.
-    for z in (0.03, 0.1, 1.0):
-        assert fate("explicit_euler", theta, z, round(10 / z**2)) in ("grows", "over the top")
-
-
 @pytest.mark.parametrize("theta", [0.01, 0.05])
 @pytest.mark.parametrize("method", USUAL_CAST[1:], ids=lambda method: method.key)
 def test_small_swings_are_held_no_longer_at_the_linear_limit(method, theta):
@@ -153,21 +146,6 @@ def test_velocity_verlet_wobbles_at_a_resonance_and_is_caught_beyond_its_limit(
     assert fate("velocity_verlet", theta, z, steps) == expected
 
 
-@pytest.mark.parametrize(
-    ("key", "degrees", "z"),
-    [
-        ("symplectic_euler", 57.3, 1.64),
-        ("symplectic_euler", 5.73, 2.13),
-        ("velocity_verlet", 28.65, 2.17),
-        ("velocity_verlet", 40.1, 2.19),
-        ("velocity_verlet", 57.3, 1.53),
-    ],
-)
-def test_the_first_real_losses(key, degrees, z):
-    first, _ = failure_of(key, math.radians(degrees), np.arange(1.0, 2.3, 0.01), 10_000)
-    assert first == pytest.approx(z, abs=0.015)
-
-
 @pytest.mark.parametrize(("within", "limit"), [(100, 1.38), (10_000, 1.23)])
 def test_the_limit_moves_with_the_steps_that_it_rests_on(within, limit):
     first, _ = failure_of("velocity_verlet", 2.0, np.arange(1.0, 1.5, 0.01), 10_000, within)
@@ -175,20 +153,22 @@ def test_the_limit_moves_with_the_steps_that_it_rests_on(within, limit):
 
 
 @pytest.mark.parametrize(
-    ("key", "theta", "start", "end", "reason"),
+    ("key", "theta", "expected", "reason"),
     [
-        ("explicit_euler", 1.0, 0.005, 0.02, "grows"),
-        ("explicit_euler", 2.0, 0.008, 0.02, "over the top"),
-        ("symplectic_euler", 0.1, 1.9, 2.3, "over the top"),
-        ("symplectic_euler", 2.0, 0.9, 1.3, "over the top"),
-        ("velocity_verlet", 0.1, 1.9, 2.4, "chaotic"),
-        ("velocity_verlet", 3.0, 0.5, 0.8, "over the top"),
-        ("rk4", 1.0, 0.3, 0.6, "loses"),
-        ("rk4", 3.0, 0.3, 0.6, "loses"),
+        ("explicit_euler", 1.0, 0.0071, "grows"),
+        ("explicit_euler", 2.0, 0.0103, "over the top"),
+        ("symplectic_euler", 0.1, 2.13, "over the top"),
+        ("symplectic_euler", 1.0, 1.64, "over the top"),
+        ("velocity_verlet", 0.1, 2.08, "chaotic"),
+        ("velocity_verlet", 0.5, 2.17, "over the top"),
+        ("velocity_verlet", 0.7, 2.19, "chaotic"),
+        ("velocity_verlet", 1.0, 1.53, "chaotic"),
+        ("velocity_verlet", 3.0, 0.66, "over the top"),
+        ("rk4", 1.0, 0.437, "loses"),
     ],
 )
-def test_methods_fail_each_in_its_way(key, theta, start, end, reason):
-    z, found = failure_of(key, theta, np.geomspace(start, end, 40), 10_000)
+def test_methods_fail_each_in_its_way(key, theta, expected, reason):
+    ladder = expected * np.linspace(0.8, 1.05, 51)
+    z, found = failure_of(key, theta, ladder, 10_000)
     assert found == reason
-    assert start < z < end
-    assert failure_of(key, theta, np.array([start]), 500) is None
+    assert z == pytest.approx(expected, rel=0.012)
