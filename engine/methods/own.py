@@ -210,12 +210,17 @@ def _number(value: Any, like: Any) -> Any:
 
 def _short(value: object) -> str:
     try:
-        text = " ".join(repr(value).split())
+        text = _line(repr(value))
     except Exception:  # the user's __repr__
         text = f"a {type(value).__name__}"
     if len(text) > 40:
         return f"a {type(value).__name__}"
     return text
+
+
+def _line(text: str) -> str:
+    """Return a text in one line, without the control characters that a terminal would obey."""
+    return "".join(filter(str.isprintable, " ".join(text.split())))
 
 
 def _is_of_force(error: BaseException, force: Force) -> bool:
@@ -236,10 +241,10 @@ def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
     """Return the error with the last line of the user's file in its traceback, else `where`."""
     lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
     if lines:
-        where = f"{file}, line {lines[-1]}: `{source.splitlines()[lines[-1] - 1].strip()[:60]}`"
+        where = f"{file}, line {lines[-1]}: `{_line(source.splitlines()[lines[-1] - 1])[:60]}`"
     if isinstance(error, _PrintedError):
         return f"{where} prints, but stdout is for results; use print(..., file=sys.stderr)."
     if isinstance(error, TooLongError):
         return f"{where} {error}."
-    what = " ".join(str(error).split())[:200]
+    what = _line(str(error))[:200]
     return f"{where} raises {type(error).__name__}{what and f': {what}'}."
