@@ -45,15 +45,6 @@ def test_some_starts_read_a_higher_order_than_the_methods(name, time, method, me
     assert order.measured == pytest.approx(measured, abs=0.1)
 
 
-@pytest.mark.parametrize(("theta", "omega"), [(0.0, 2.0), (0.0, 6.2), (3.1, 0.5), (1.0, 0.0)])
-def test_what_rounding_leaves_does_not_hang_on_where_in_a_swing_it_starts(theta, omega):
-    scene = DRIFT.altered(theta=theta, omega=omega)
-    later = scene.exact().at(scene.exact().period / 5)
-    moved = scene.altered(theta=later.theta, omega=later.omega)
-    floors = [rounding_floor(each, 20.0)[1] for each in (scene, moved)]
-    assert floors[0] == pytest.approx(floors[1], rel=0.3)
-
-
 @given(st.floats(0.1, 1e4), st.floats(1e-3, 1), st.floats(1e-3, 1), st.integers(2, 30))
 def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_time(
     time, coarsest, finest, count

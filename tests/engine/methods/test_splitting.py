@@ -8,8 +8,6 @@ import pytest
 
 from engine.methods import METHODS, VELOCITY_VERLET
 from engine.methods.splitting import (
-    BLANES_MOAN_4,
-    BLANES_MOAN_6,
     FAMILY,
     FOREST_RUTH,
     composition,
@@ -34,23 +32,6 @@ def largest_energy_error(method, h, time=60.0):
     start = MODEL.energy()((1.0, 0.0))
     _, _, _, low, high = PlainLoops(method, MODEL).advance((1.0, 0.0), h, round(time / h), math.inf)
     return max(high - start, start - low) / start
-
-
-@pytest.mark.parametrize(
-    ("method", "at_one_step", "at_one_cost", "at_a_quarter"),
-    [
-        (VELOCITY_VERLET, 5.7e-3, 5.7e-3, 3.5e-4),
-        (FOREST_RUTH, 5.1e-5, 4.3e-3, 1.6e-5),
-        (BLANES_MOAN_4, 5.7e-9, 3.3e-5, 2.7e-8),
-        (BLANES_MOAN_6, 7.6e-13, 4.6e-4, 2.6e-10),
-    ],
-    ids=lambda value: getattr(value, "key", ""),
-)
-def test_energy_errors_are_the_measured_ones(method, at_one_step, at_one_cost, at_a_quarter):
-    """At h = 0.05 s, and at 20 and 80 force evaluations a second."""
-    h_values = [0.05, 0.05 * method.force_evaluations, 0.0125 * method.force_evaluations]
-    errors = [largest_energy_error(method, h) for h in h_values]
-    assert errors == pytest.approx([at_one_step, at_one_cost, at_a_quarter], rel=0.2)
 
 
 def test_forest_ruth_has_the_weaknesses_on_its_card():

@@ -3,7 +3,6 @@
 import math
 from itertools import islice
 
-import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given
@@ -46,22 +45,6 @@ def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase):
     expected = omega**2 / 2 + 9.81 * (1 - math.cos(theta)) + 2.0 * field(theta) @ bloch
     assert MODEL.energy()(phase) == pytest.approx(expected, abs=1e-13)
     assert list(MODEL.observe(phase).extra.values())[:3] == bloch
-
-
-@pytest.mark.parametrize("h", [0.5, -0.01])
-def test_a_kick_is_the_exact_flow_at_fixed_theta(h):
-    theta, omega, *bloch = phase = (2.1, -3.0, 0.3, -0.7, 0.9)
-    b, slope = (mp.matrix(vector(theta)) for vector in (field, slope_of_field))
-    generator = 20 * mp.matrix([[0, -b[2], b[1]], [b[2], 0, -b[0]], [-b[1], b[0], 0]])
-    with mp.workdps(30):
-
-        def turned(t):
-            return mp.expm(t * generator) * mp.matrix(bloch)
-
-        coupling = mp.quad(lambda t: (slope.T * turned(t))[0], [0, h])
-        pull = omega - 9.81 * h * math.sin(theta) - 2.0 * float(coupling)
-        expected = [theta, pull, *map(float, turned(h))]
-    assert MODEL.kick(phase, h) == pytest.approx(expected, abs=1e-12)
 
 
 def test_the_reference_is_as_accurate_as_it_claims_and_keeps_both_invariants():

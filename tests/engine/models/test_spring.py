@@ -42,14 +42,6 @@ def test_the_force_is_minus_the_slope_of_the_energy(z):
     assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
 
 
-@given(b=places, c=st.floats(1e-8, 1e3))
-def test_solve_finds_where_the_fast_force_leads_from_b(b, c):
-    parts = SPRING.parts()
-    z = parts.solve(b, c)
-    rounding = 1e-15 * (1 + 2500 * c)  # of the force times c
-    assert z == pytest.approx(b + c * parts.fast(z), abs=10 * rounding)
-
-
 def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy():
     step, start = STEP / 2 / SPRING.fastest, SPRING.start(1.0, 0.0)
     finer, exact = Reference(compose_verlet(SPRING.force()), start, step), SPRING.exact(1.0, 0.0)

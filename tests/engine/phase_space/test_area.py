@@ -81,15 +81,6 @@ def test_neighbours_take_the_steps_of_the_run_whenever_and_however_often_they_fo
     assert np.array_equal(rings(Neighbours(0.1), run), there)
 
 
-def test_they_take_at_most_the_given_steps_at_a_time():
-    run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
-    run.forward(250)
-    for step in (100, 200, 250):
-        rings(neighbours, run, most=100)
-        assert neighbours.step == step
-    assert np.array_equal(rings(neighbours, run), expected((250, 0.05)))
-
-
 def test_they_go_back_with_the_run_and_begin_again_with_another():
     run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
     run.forward(20)
