@@ -7,7 +7,6 @@ differs in its shot; scenes under [[scene]] are a lecture.
 import argparse
 import math
 import re
-import tomllib
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -234,6 +233,8 @@ def read_scenes(path: Path) -> dict[str, Scene]:
 
 def _read(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the text of a TOML file, and what it holds."""
+    import tomllib  # 6 of 450 ms to the first pendulum
+
     most = 100_000  # bytes
     try:
         with path.open("rb") as file:
@@ -277,6 +278,8 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
 
 def _values(given: Mapping[str, Any], example: str, folder: Path, *above: str) -> dict[str, Any]:
     """Return the values of a table's fields; `above` is the name of the table, if it has one."""
+    import tomllib
+
     known = tomllib.loads(example)
     found: dict[str, Any] = {}
     for name, value in given.items():
