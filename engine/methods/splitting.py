@@ -87,7 +87,7 @@ FOREST_RUTH = Method(
 
 BLANES_MOAN_4 = Method(
     key="blanes_moan_4",
-    label="Blanes–Moan 4",
+    label="BM4",
     letter="b",
     phases=splitting(
         mirrored(
@@ -104,7 +104,7 @@ BLANES_MOAN_4 = Method(
     symplectic=True,
     reversible=True,
     linear_limit=3.16346506656,
-    other_names=("BM4", "Blanes-Moan SRKN 6b"),
+    other_names=("Blanes-Moan SRKN 6b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
@@ -115,7 +115,7 @@ BLANES_MOAN_4 = Method(
 
 BLANES_MOAN_6 = Method(
     key="blanes_moan_6",
-    label="Blanes–Moan 6",
+    label="BM6",
     letter="m",
     phases=splitting(
         mirrored(
@@ -149,7 +149,7 @@ BLANES_MOAN_6 = Method(
     symplectic=True,
     reversible=True,
     linear_limit=3.14143108775,
-    other_names=("BM6", "Blanes-Moan SRKN 11b"),
+    other_names=("Blanes-Moan SRKN 11b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
