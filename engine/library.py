@@ -201,12 +201,15 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     found = Judge.read(t, e, failed=failed, absolute=scale != "std")
     e = e[found.first :]
     size = _size(e, scale)
-    slope = found.slope
+    trend = found.slope
     uncertainty = found.uncertainty
+    if trend is not None and uncertainty is not None:
+        trend = trend / size
+        uncertainty = uncertainty / size
     return Judged(
         verdict=found.verdict,
-        trend=None if slope is None else slope / size,
-        uncertainty=None if uncertainty is None else uncertainty / size,
+        trend=trend,
+        uncertainty=uncertainty,
         max_error=float(np.abs(e - e[0]).max()) / size,
         scale=size,
         progress=str(found.progress or ""),
@@ -284,7 +287,9 @@ def recommend(
     if error not in ("theta", "energy", "final"):
         raise ValueError(f"error = {error!r} is none of theta, energy and final.")
     wanted = _number("target", target) / max(_number("safety", safety), 1e-300)
-    seconds = usual(chosen)[0] if time is None else _number("time", time)
+    seconds, _ = usual(chosen)
+    if time is not None:
+        seconds = _number("time", time)
     if not 0 < wanted <= target or seconds <= 0:
         raise ValueError("target and time must be above zero, and safety 1 or more.")
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
@@ -310,12 +315,17 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
             hint = f"did you mean {near[0]!r}?" if near else f"use {', '.join(scenes.UNITS)}."
             raise ValueError(f"unknown parameter {name!r}; {hint}")
     changes = {name: _number(name, value) for name, value in numbers.items()}
-    return scene.altered(**changes).with_cast(scene.cast if methods is None else _cast(methods))
+    scene = scene.altered(**changes)
+    if methods is None:
+        return scene
+    return scene.with_cast(_cast(methods))
 
 
 def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
     """Return a scene for a study, with all general methods where none are given."""
-    chosen = _scene(scene, listed.GENERAL if methods is None else methods, numbers)
+    if methods is None:
+        methods = listed.GENERAL
+    chosen = _scene(scene, methods, numbers)
     if chosen.why_not_mapped:
         raise ValueError(chosen.why_not_mapped)
     return chosen

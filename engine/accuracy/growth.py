@@ -14,7 +14,6 @@ from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
 PERIODS = 100  # followed at most; fewer if the error becomes too large
-MAX_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
 
 
@@ -41,7 +40,7 @@ def duration(scene: Scene) -> float | None:
     None: the motion is not periodic, or takes too many steps.
     """
     period = scene.exact().period
-    if period is None or PERIODS * period / scene.h > MAX_STEPS or period < 4 * scene.h:
+    if period is None or PERIODS * period / scene.h > 100_000 or period < 4 * scene.h:
         return None
     return PERIODS * period
 

@@ -21,10 +21,9 @@ from engine.models.model import (
     State,
 )
 from engine.models.pendulum import Pendulum
-from engine.models.reference import Reference, compose_verlet
+from engine.models.reference import ACCURACY, Reference, compose_verlet
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
-ACCURACY = 1e-10  # rad
 
 
 class DampedParts(NamedTuple):

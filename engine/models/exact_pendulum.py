@@ -16,12 +16,7 @@ from typing import Any, NamedTuple
 
 from engine.models.model import ExactMotion, State
 
-Motion = Callable[[float], State]
 Compile = Callable[[Callable[..., Any]], Any]
-
-
-def _plain(function: Callable[..., Any]) -> Any:
-    return function
 
 
 class _Start(NamedTuple):
@@ -31,7 +26,7 @@ class _Start(NamedTuple):
 
 
 def exact_pendulum(
-    w0_squared: float, theta: float, omega: float, compile: Compile = _plain
+    w0_squared: float, theta: float, omega: float, compile: Compile = lambda function: function
 ) -> ExactMotion:
     """Return the exact motion from theta [rad] and omega [rad/s]; `compile` may be numba.njit."""
     start = _Start(theta, omega, math.sqrt(w0_squared))
@@ -122,7 +117,7 @@ def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> Exac
     return ExactMotion(compile(motion), "rotation", 2 * quarter / rate)
 
 
-def _separatrix(start: _Start) -> Motion:
+def _separatrix(start: _Start) -> Callable[[float], State]:
     """Separatrix: theta = 2 gd(u), omega = ±2 w0/cosh u, with u = ±w0 t + u0.
 
     The pendulum is upright only after an infinite time.

@@ -9,7 +9,7 @@ Energy and |s|, the probability, are conserved for any nu.  Tully, Faraday Discu
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any, ClassVar
@@ -27,16 +27,9 @@ from engine.models.model import (
     State,
     Variable,
 )
-from engine.models.reference import Reference, compose
+from engine.models.reference import ACCURACY, Reference, compose
 
-START = (1.0, 0.0, 0.0)
-"""The Bloch vector of every start: an equal superposition of both levels."""
 STEP = 0.4  # of the reference, times the fastest frequency
-ACCURACY = 1e-10  # rad
-
-
-def _probability(extra: Mapping[str, float]) -> float:
-    return 1 + extra["probability_error"]
 
 
 @dataclass(frozen=True)
@@ -80,7 +73,7 @@ class MeanField(Model):
             "|s|",
             "probability",
             "the length of the Bloch vector, the probability, which the true motion keeps at 1",
-            _probability,
+            lambda extra: 1 + extra["probability_error"],
         ),
     )
     frequency_symbol: ClassVar[str] = "nu"
@@ -97,7 +90,7 @@ class MeanField(Model):
         return max(self.w0, self.level_frequency)
 
     def start(self, theta: float, omega: float) -> Phase:
-        return (theta, omega, *START)
+        return theta, omega, 1.0, 0.0, 0.0  # an equal superposition of both levels
 
     def rest_phase(self, theta: float) -> Phase:
         """Return the phase of least energy at an angle [rad]: s against the field."""

@@ -23,6 +23,7 @@ _HALF = (
     0.29501172360931029887,
 )
 WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
+ACCURACY = 1e-10  # rad, of theta, with the steps that the models give it
 EVERY = 64  # steps from one that is kept to the next
 
 

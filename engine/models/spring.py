@@ -26,10 +26,9 @@ from engine.models.model import (
     State,
     Variable,
 )
-from engine.models.reference import Reference, compose_verlet
+from engine.models.reference import ACCURACY, Reference, compose_verlet
 
 STEP = 0.1  # of the reference, times the spring's frequency
-ACCURACY = 1e-10  # rad
 
 
 class SpringParts(NamedTuple):

@@ -68,7 +68,9 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     phase = (theta, rest)
     start: Floats = model.energy(np.sin)(phase)
     up, down, reach = _bounds(method, theta, z, start)
-    band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
+    band = np.minimum(up, down)
+    if method.symplectic:
+        band[:] = math.inf
     watched = Watched(start, band, rest + math.pi, rest.copy(), rest.copy(), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
@@ -79,7 +81,9 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
         for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
             over = np.abs(phase[0]) > watched.top
             above = watched.off > up
-            lost = over if method.symplectic else over | above | (watched.off < -down)
+            lost = over
+            if not method.symplectic:
+                lost = over | above | (watched.off < -down)
             gone = index[lost]
             cells["steps"][gone] = begun + done - 1
             cells["error"][gone] = watched.worst[lost] / watched.start[lost]

@@ -68,8 +68,8 @@ def map_of(
 ) -> Grid:
     """Return the grid of a map, with the default amplitudes [rad] and z where none are given."""
     grid = default_grid(scene.cast)
-    theta = grid.theta if thetas is None else np.array(thetas)
-    return Grid(theta, grid.z if zs is None else np.array(zs), steps, scene.cast)
+    theta = np.array(thetas or grid.theta)
+    return Grid(theta, np.array(zs or grid.z), steps, scene.cast)
 
 
 def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:

@@ -13,14 +13,14 @@ needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed
 each_way = pytest.mark.parametrize(
     "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
 )
-GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
+GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2:])
 
 
 def test_cells_lie_by_z_method_and_amplitude_and_are_unknown_until_they_are_computed():
     cells = GRID.cells()
-    assert cells.shape == GRID.shape == (13, 4, 7)
-    alone = outcomes(GENERAL[2], GRID.theta[5:6], GRID.z[4:5], 200)
-    assert cells[4, 2, 5] == alone[0]
+    assert cells.shape == GRID.shape == (13, 2, 7)
+    alone = outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200)
+    assert cells[4, 0, 5] == alone[0]
     assert 0 < (cells["fate"] == HOLDS).sum() < cells.size
     assert (GRID.unknown()["fate"] == UNKNOWN).all()
 

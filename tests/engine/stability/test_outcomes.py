@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST, VELOCITY_VERLET
-from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
 from engine.run.ensemble import plain
 from engine.stability.linear import wobble
@@ -27,13 +26,6 @@ from engine.stability.outcomes import (
 
 BY_KEY = {method.key: method for method in GENERAL}
 FORCE = Pendulum(1.0).force()
-
-
-def after(method, theta, z, steps):
-    phase: Phase = (theta, 0.0)
-    for _ in range(steps):
-        phase = method.step(FORCE, phase, z)
-    return phase
 
 
 def fate(key, theta, z, steps=2000):
@@ -110,16 +102,6 @@ def test_small_swings_are_held_no_longer_at_the_linear_limit(method, theta):
     cells = outcomes(method, np.full(111, theta), ladder, steps)
     first = ladder[np.flatnonzero(cells["fate"] == fate)[0]]
     assert method.linear_limit <= first < method.linear_limit + 0.05
-
-
-@pytest.mark.parametrize("z", [2.01, 2.5, 3.0])
-def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z):
-    low, high = 1e-6, math.pi
-    while high - low > 1e-14:  # z² sin q = 4 q
-        q = (low + high) / 2
-        low, high = (q, high) if z**2 * math.sin(q) > 4 * q else (low, q)
-    assert after(VELOCITY_VERLET, q, z, 1) == pytest.approx((-q, 0.0), abs=1e-12)
-    assert after(VELOCITY_VERLET, q, z, 2) == pytest.approx((q, 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(("z", "q"), [(2.01, 0.2444), (2.05, 0.5417)])
