@@ -164,11 +164,11 @@ FACTS = {  # seconds, steps from a sample to the next, and what of which method 
         (last, EXPLICIT, 3, 9), (turns, EXPLICIT, -99, -5), *((worst, each, 0, 0.003) for each in (1, 2, 3)),
     ]),
     "halving": (60, 1, [(last, 0, 0.185, 0.195), (last, 1, -0.2, -0.09), (worst, 2, 0, 0.08), (last, 3, -1, -0.1)]),
-    "precision": (100, 8, [
+    "precision": (40, 8, [
         (over_the_top, 0, 5.45, 5.55), *((over_the_top, each, *NEVER) for each in (1, 2)),
         (farthest("precision"), 1, 0, 0.003),
     ]),
-    "precision-deep": (100, 32, [
+    "precision-deep": (40, 32, [
         (late("precision-deep", 0.1), 1, 34.5, 35.5), (farthest("precision-deep"), 2, 0, 3e-4),
     ]),
     "stiff-slow": (30, 1, [

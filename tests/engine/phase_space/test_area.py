@@ -15,15 +15,15 @@ from engine.scenes import SCENES, Scene
 DRIFT = SCENES["drift"]
 
 
-def test_symplectic_methods_keep_area_over_ten_thousand_steps_and_rk4_loses_it_very_slowly():
+def test_symplectic_methods_keep_area_over_two_thousand_steps_and_rk4_loses_it_very_slowly():
     neighbourhood = Neighbourhood(DRIFT, radius=0.05)
     neighbourhood.advance(100, Stepping(DRIFT.h))
     assert neighbourhood.area_ratios[0] > 2  # explicit Euler's, while it swings
-    neighbourhood.advance(9_900, Stepping(DRIFT.h))
+    neighbourhood.advance(1_900, Stepping(DRIFT.h))
     _, symplectic, verlet, rk4 = neighbourhood.area_ratios
     # each step rounds its determinant by about 1e-16, and the roundings add up like a walk or worse
     assert (symplectic, verlet) == pytest.approx((1.0, 1.0), abs=1e-12)
-    assert 0.99 < rk4 < 0.9999
+    assert 0.998 < rk4 < 0.99998
 
 
 def shoelace(ring):
