@@ -2,7 +2,6 @@
 
 import csv
 import io
-import math
 from itertools import count
 
 import pytest
@@ -55,13 +54,12 @@ def test_as_json_it_holds_points_orders_and_recommendation():
     cautious = pendu(*QUICK, "--target", "1e-4", "--safety", "2", "--json").json["recommendation"]
     assert cautious["error"] <= 5e-5
     assert cautious["force_evaluations"] > advice["force_evaluations"]
-    assert "--safety 2" in pendu(*QUICK, "--target", "1e-4").out
 
 
 def test_the_numbers_are_the_same_without_numba_and_in_other_processes():
-    told = pendu(*QUICK, "--json")
-    assert pendu(*QUICK, "--json", "--no-compiled").out == told.out
-    assert pendu(*QUICK, "--json", "--workers", "2").out == told.out
+    found = pendu(*QUICK, "--json").out
+    assert pendu(*QUICK, "--json", "--no-compiled").out == found
+    assert pendu(*QUICK, "--json", "--workers", "2").out == found
 
 
 def test_a_budget_is_answered_with_the_smallest_error_for_it():
@@ -74,10 +72,8 @@ def test_a_budget_is_answered_with_the_smallest_error_for_it():
 def test_a_target_that_no_method_reaches_is_reported():
     asked = (*QUICK, "--target", "1e-9", "--budget", "500")
     outcome = pendu(*asked, "--json")
-    assert (outcome.code, outcome.err) == (
-        1,
-        "pendu-tui: no method reaches the target over 5 s.\n",
-    )
+    missed = "pendu-tui: no method reaches the target over 5 s.\n"
+    assert (outcome.code, outcome.err) == (1, missed)
     answer = outcome.json["recommendation"]
     assert answer["why_not"] == "no method gets there"
     assert (answer["method"], answer["h"]) == (None, None)
@@ -85,23 +81,20 @@ def test_a_target_that_no_method_reaches_is_reported():
     assert "No method reaches the target" in pendu(*asked).out
 
 
-@pytest.mark.slow
 def test_over_several_times_it_shows_where_the_winner_changes():
-    two = ("--methods", "verlet,rk4", "--error", "energy", "--time", "10,100,300")
+    two = ("--methods", "verlet,rk4", "--error", "energy")
     change = "Velocity Verlet instead of RK4 from 100 s on (not yet at 10 s)."
-    assert change in pendu(*COARSE, *two).out
-    assert "BM4 for all these times." in pendu(*COARSE, "--time", "2,4").out
+    assert change in pendu(*COARSE, *two, "--time", "10,100").out
+    assert "RK4 for all these times." in pendu(*COARSE, *two, "--time", "2,4").out
 
 
 def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
-    told = pendu(*QUICK, "--csv")
     points = pendu(*QUICK, "--json").json["points"]
-    read = list(csv.DictReader(io.StringIO(told.out)))
-    assert [float(row["theta_error"]) for row in read] == [point["theta_error"] for point in points]
-    assert list(read[0]) == list(points[0])
     file = tmp_path / "points.csv"
     assert pendu(*QUICK, "-o", file).code == 0
-    assert file.read_text(encoding="utf-8") == told.out
+    read = list(csv.DictReader(io.StringIO(file.read_text(encoding="utf-8"))))
+    assert [float(row["theta_error"]) for row in read] == [point["theta_error"] for point in points]
+    assert list(read[0]) == list(points[0])
 
 
 @pytest.mark.parametrize(
@@ -109,7 +102,6 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
     [
         (["--h-values", "0.1"], ["not a list of step sizes", "0.2:0.001:10"]),
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
-        (["--h-values", "1e9:0.1:3"], ["not a usable step"]),
         (["--time", "1e9"], ["take hours", "--h-values"]),
         (["--safety", "0.5"], ["less than 1"]),
         (["--budget", "1.1e9"], ["out of range", "1e+09"]),
@@ -128,8 +120,7 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
 )
 def test_extreme_starts_print_numbers_and_no_nan(start):
     quick = ("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", start)
-    points = pendu(*quick, "--json").json["points"]  # read by a parser that refuses nan
-    assert len(points) == 12
+    assert len(pendu(*quick, "--json").json["points"]) == 12  # its parser refuses nan
     assert pendu(*quick).code == 0
 
 
@@ -149,56 +140,50 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
     assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)
 
 
-def test_the_linear_oscillator_is_compared_with_its_cosine():
-    command = ("accuracy", "--scene", "linear", "--time", "6", "--h-values", "0.1:0.01:3")
-    answer = pendu(*command, "--target", "1e-4", "--json").json
-    for order in answer["orders"]:
-        assert order["measured"] == pytest.approx(order["claimed"], abs=0.05)
-    assert answer["recommendation"]["method"] == "blanes_moan_6"
-    points = {(point["method"], point["steps"]): point for point in answer["points"]}
-    verlet = points["velocity_verlet", 60]
-    h = verlet["h"]
-    w = 2 / h * math.asin(h / 2)  # Verlet's own frequency: from rest it is cos w t
-    apart = max(abs(math.cos(w * n * h) - math.cos(n * h)) for n in range(61))
-    assert verlet["theta_error"] == pytest.approx(apart, rel=1e-10)
-
-
-ALL = ("accuracy", "--all", "--time", "20", "--h-values", "0.5:0.01:7")
-
-
 @pytest.mark.slow
 def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
-    answer = pendu(*ALL, "--target", "1e-6", "--json").json
-    best = {place["error"]: place for place in answer["front"]}[1e-6]
+    every = ("accuracy", "--all", "--time", "5", "--h-values", "0.5:0.02:6")
+    answer = pendu(*every, "--target", "1e-5", "--json").json
+    best = {place["error"]: place for place in answer["front"]}[1e-5]
     rows = {row["method"]: row for row in answer["recommendation"]["attempts"]}
     assert best["method"] == answer["recommendation"]["method"] == "blanes_moan_6"
     # read off between points a factor of 1.9 in h apart
     assert best["saves_over_rk4"] == pytest.approx(rows["rk4"]["times_the_cheapest"], rel=0.2)
 
 
+SECONDS = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.05:2")
+
+
+@pytest.fixture
+def hasty(monkeypatch):
+    """Seconds of methods that are not compiled, measured in few steps."""
+    monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)
+    monkeypatch.setattr("engine.accuracy.study.TIMED_STEPS", 100)
+
+
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 @pytest.mark.slow
-def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
-    answer = pendu(*ALL, "--cost", "seconds", "--target", "1e-9", "--json").json
-    series = [point for point in answer["points"] if point["method"] == "taylor_20"]
+def test_over_seconds_all_there_is_includes_the_series_and_the_floor(hasty):
+    points = pendu(*SECONDS, "--all", "--json").json["points"]
+    series = [point for point in points if point["method"] == "taylor_20"]
     assert len(series) > 10
     for point in series:
         assert (point["h"], point["force_evaluations"]) == (None, None)
         assert min(point["steps"], point["seconds"], point["tolerance"]) > 0
-    (floor,) = (point for point in answer["points"] if point["method"] == "closed_form")
+    (floor,) = (point for point in points if point["method"] == "closed_form")
     assert not floor["valid"]
     assert floor["seconds"] > 0
-    advice = answer["recommendation"]
-    assert advice["seconds"] == min(
-        attempt["seconds"] for attempt in advice["attempts"] if not attempt["why_not"]
-    )
-    assert advice["error"] <= 1e-9
+
+
+def test_the_cheapest_may_be_that_of_the_fewest_seconds(hasty):
+    asked = (*SECONDS, "--methods", "verlet,rk4", "--target", "1e-3")
+    advice = pendu(*asked, "--json").json["recommendation"]
+    assert advice["error"] <= 1e-3
+    assert advice["seconds"] == min(attempt["seconds"] for attempt in advice["attempts"])
 
 
 @pytest.mark.parametrize("more", [("--scene", "linear"), ("--no-compiled",)])
-def test_where_there_is_no_series_it_says_why(more, monkeypatch):
-    monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)  # compiling takes seconds
-    small = ("accuracy", "--all", "--cost", "seconds", "--time", "0.2", "--h-values", "0.1:0.05:2")
-    answer = pendu(*small, *more, "--json").json
+def test_where_there_is_no_series_it_says_why(more, hasty):
+    answer = pendu(*SECONDS, "--all", *more, "--json").json
     assert answer["absent"] == ABSENT
     assert "taylor_20" not in {point["method"] for point in answer["points"]}

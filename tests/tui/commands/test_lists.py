@@ -34,8 +34,8 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
     for method in METHODS:
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
-        limit = method.linear_limit
         texts = {None: "-", 0.0: "none", math.inf: "any"}
+        limit = method.linear_limit
         assert words[-1] == (texts.get(limit) or f"{limit:.3f}")
 
 

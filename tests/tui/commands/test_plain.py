@@ -26,17 +26,7 @@ def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
     )
 
 
-def read_until(process: "subprocess.Popen[str]", words: str) -> list[str]:
-    lines = []
-    for line in process.stdout or ():
-        lines.append(line)
-        if words in line:
-            return lines
-    raise AssertionError(f"{words!r} was never said: {lines}")
-
-
 def recorded_whole(folder: Path) -> Path:
-    """The only recording of a folder, which verifies."""
     (item,) = listing(folder)
     report = verify(item.path)
     assert (report.identical, report.complete) == (True, True)
@@ -44,27 +34,24 @@ def recorded_whole(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("number", "arguments", "first", "words"),
+    ("number", "arguments", "first"),
     [
-        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8 times", "Explicit Euler over the top"),
-        (signal.SIGTERM, ("--speed", "8"), "The lab runs at 8 times", "energy errors"),
-        (signal.SIGINT, ("tour",), "Tour 1 of 8: who gains. ", "Question: Nothing pushes"),
+        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8 times"),
+        (signal.SIGTERM, ("tour",), "Tour 1 of 8: who gains. "),
     ],
-    ids=["ctrl+c", "SIGTERM", "tour"],
 )
-def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first, words):
+def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first):
     with started(tmp_path, *arguments, "--plain") as process:
-        lines = read_until(process, words)
+        assert process.stdout.readline().startswith(first)
         process.send_signal(number)
         out, err = process.communicate(timeout=30)
     assert (process.returncode, err) == (0, "")
-    assert lines[0].startswith(first)
     assert f"saved {recorded_whole(tmp_path)}" in out
 
 
 def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
-    with started(tmp_path, "live", "--plain", "--speed", "8") as process:
-        read_until(process, "energy errors")
+    with started(tmp_path, "live", "--plain", "--speed", "20") as process:
+        process.stdout.readline()
         process.stdout.close()
         process.wait(timeout=30)
     assert process.returncode == 141

@@ -46,12 +46,8 @@ def test_show_shows_what_a_recording_contains(whole):
     assert (first["scene"]["theta"], first["scene"]["h"], first["steps"]) == (2.0, 0.1, 16)
     assert first["inputs"] == 5  # set_h, speed, pause, mark, resume
     assert (second["steps"], second["seconds"]) == (16, 1.25)
-    out = pendu("recordings", "show", whole).out
-    assert "complete" in out
-    assert "explicit_euler, symplectic_euler, velocity_verlet, rk4" in out
-
-
-def test_show_shows_what_is_wrong_with_a_recording(whole):
+    methods = "explicit_euler, symplectic_euler, velocity_verlet, rk4"
+    assert methods in pendu("recordings", "show", whole).out
     whole.write_bytes(whole.read_bytes()[:-40])
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)
@@ -63,7 +59,6 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     recover = ("recordings", "recover", whole, "-o", out)
     whole.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     answer = pendu(*recover, "--json").json
-    assert "entries_lost" in answer
     assert 0 < answer["samples_kept"] == verify(out).samples < 10
     assert verify(out).complete
     saved = out.read_bytes()
@@ -72,16 +67,10 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     assert f"{answer['samples_kept']} samples saved" in pendu(*recover, "--force").out
 
 
-def test_recover_accepts_the_same_names_as_replay(tmp_path):
-    to = ("-o", tmp_path / "saved.mcap")
-    assert "samples saved" in pendu("recordings", "recover", "drift", *to).out
-    assert pendu("recordings", "recover", "drfit", *to).refused(3, "did you mean drift?")
-
-
 def test_the_library_is_listed_newest_first(library):
-    told = pendu("recordings", "--json").json["recordings"]
-    assert [row["file"] for row in told] == [str(library / f"{name}.mcap") for name in "cba"]
-    assert (told[0]["seconds"], told[0]["scenes"]) == (4.0, ["test"])
+    rows = pendu("recordings", "--json").json["recordings"]
+    assert [row["file"] for row in rows] == [str(library / f"{name}.mcap") for name in "cba"]
+    assert (rows[0]["seconds"], rows[0]["scenes"]) == (4.0, ["test"])
     out = pendu("recordings").out
     assert out.index("c.mcap") < out.index("b.mcap") < out.index("a.mcap")
 
@@ -94,9 +83,10 @@ def test_a_recording_that_cannot_be_read_is_listed_with_what_is_wrong(library):
         schema = writer.register_schema("pendu.Event", "jsonschema", b"{}")
         writer.register_channel("/pendu/events", "json", schema, {"format": "2"})
         writer.finish()
-    told = {row["file"]: row["reason"] for row in pendu("recordings", "--json").json["recordings"]}
-    assert "the file is empty" in told[str(library / "a.mcap")]
-    assert "it was made by 0.1; this version reads format 3" in told[str(library / "b.mcap")]
+    rows = pendu("recordings", "--json").json["recordings"]
+    reasons = {row["file"].removeprefix(f"{library}/"): row["reason"] for row in rows}
+    assert "the file is empty" in reasons["a.mcap"]
+    assert "it was made by 0.1; this version reads format 3" in reasons["b.mcap"]
     assert "the file is empty" in pendu("recordings").out
 
 

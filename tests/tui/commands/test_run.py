@@ -12,7 +12,6 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.methods.adaptive import HALVING_VERLET
-from engine.run.compiled import available
 from engine.run.lockstep import Lockstep
 from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
@@ -28,7 +27,6 @@ from tui.words.numbers import about, file_size
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:
-    """The numbers of each method."""
     return {row["method"]: row for row in pendu("run", *arguments, "--json").json["methods"]}
 
 
@@ -59,12 +57,8 @@ def test_a_chaotic_method_has_its_lyapunov_number():
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
     out = pendu("run", "--time", 60).out
-    for label, verdict in zip(
-        [method.label for method in USUAL_CAST],
-        ["grows", "bounded", "bounded", "loses"],
-        strict=True,
-    ):
-        line = next(line for line in out.splitlines() if line.startswith(label))
+    for method, verdict in zip(USUAL_CAST, ("grows", "bounded", "bounded", "loses"), strict=True):
+        line = next(line for line in out.splitlines() if line.startswith(method.label))
         assert verdict in line
     assert "Explicit Euler went over the top at 7.15 s" in out
     assert out.count("over the top") == 1
@@ -72,15 +66,15 @@ def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_scene_runs_and_its_json_has_no_nan(name):
-    assert pendu("run", "--scene", name, "--time", 60, "--json").json["scene"]["name"] == name
+    assert pendu("run", "--scene", name, "--time", 20, "--json").json["scene"]["name"] == name
 
 
 @pytest.mark.parametrize(
     "start", ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=1e-300", "--theta=0"]
 )
 def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
-    assert pendu("run", start, "--time", "500", "--json").code == 0
-    out = pendu("run", start, "--time", "500").out
+    assert pendu("run", start, "--time", "200", "--json").code == 0
+    out = pendu("run", start, "--time", "200").out
     assert "nan" not in out.replace("nance", "")
     assert "inf" not in out
 
@@ -116,19 +110,14 @@ def test_a_recording_has_the_same_bytes_each_time_and_verifies(tmp_path):
     assert result.complete
 
 
-def test_samples_are_as_far_apart_as_asked(tmp_path):
-    pendu("run", "--time", 10, "--record", tmp_path / "run.mcap", "--sample-every", 50)
-    with Recording.open(tmp_path / "run.mcap") as recording:
-        assert recording.samples == 5  # at steps 0, 50, 100, 150, 200
-
-
 def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
     path = tmp_path / "run.mcap"
     path.write_bytes(b"precious")
     assert pendu("run", "--time", 1, "--record", path).refused(5, "exists", "--force", str(path))
     assert path.read_bytes() == b"precious"
-    assert pendu("run", "--time", 1, "--record", path, "--force").code == 0
-    assert verify(path).identical
+    assert pendu("run", "--time", 1, "--record", path, "--sample-every", 5, "--force").code == 0
+    with Recording.open(path) as recording:
+        assert recording.samples == 5  # at steps 0, 5, 10, 15, 20
     missing = tmp_path / "missing" / "run.mcap"
     assert pendu("run", "--time", 1, "--record", missing).refused(5, str(tmp_path))
 
@@ -137,8 +126,6 @@ def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
     ("arguments", "words"),
     [
         (("--h", "0"), "h"),
-        (("--theta", "abc"), "abc"),
-        (("--scene", "drfit"), "drift"),
         (("--length", "-1"), "length"),
         (("--time", "nan"), "above zero"),
         (("--time", "0.01"), "shorter than one step"),
@@ -156,40 +143,27 @@ def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, a
 def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
     expression = "explicit_euler.max_energy_error > 1"
     outcome = pendu("run", "--time", 10, "--fail-if", expression, "--json")
-    assert outcome.code == 1
-    assert outcome.err.startswith(f"pendu-tui: the check failed: {expression} (")
-    assert outcome.err.endswith("is 5.54)\n")
-    assert outcome.json["methods"][0]["max_energy_error"] > 1
-
-
-@pytest.mark.skipif(not available(), reason="Numba is not installed")
-def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
-    monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)
-    arguments = ("--scene", "near-separatrix", "--time", 20)
-    assert rows_of(*arguments) == rows_of(*arguments, "--no-compiled")
+    found = "explicit_euler.max_energy_error is 5.54"
+    assert outcome.err == f"pendu-tui: the check failed: {expression} ({found})\n"
+    assert (outcome.code, outcome.json["steps"]) == (1, 200)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     path = tmp_path / "run.mcap"
-    code, out, err = stopped(
-        *("--time", "1e7", "--no-compiled", "--record", str(path)),
-        number=number,
-        part=Path(f"{path}.part"),
-        bytes=100_000,
-    )
+    endless = ("--time", "1e7", "--no-compiled", "--record", str(path))
+    code, out, err = stopped(*endless, number=number, part=Path(f"{path}.part"), bytes=100_000)
     assert code == 130
     assert "pendu-tui: interrupted at t = " in err
     assert "RK4" in out  # what was done is told
     result = verify(path)
-    assert result.complete
-    assert result.identical
+    assert (result.complete, result.identical) == (True, True)
     assert [path] == list(tmp_path.iterdir())
 
 
 def stopped(*arguments: str, number: int, part: Path, bytes: int) -> tuple[int, str, str]:
-    """Send a signal to a run once a file has so many bytes; return its code and what it printed."""
+    """Send a signal to a run once a file has so many bytes; return its code, stdout and stderr."""
     pipe = subprocess.PIPE
     process = subprocess.Popen([*PENDU, "run", *arguments], stdout=pipe, stderr=pipe, text=True)
     deadline = time.monotonic() + 60  # s; a second is usual
@@ -224,7 +198,6 @@ LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--met
 
 @pytest.fixture
 def whole(tmp_path):
-    """The bytes of a file with all rows of the list."""
     path = tmp_path / "whole.csv"
     assert pendu(*LIST, "-o", path).code == 0
     return path.read_bytes()
@@ -232,7 +205,6 @@ def whole(tmp_path):
 
 @pytest.fixture
 def part(tmp_path):
-    """The rows of some.csv that are done."""
     return partial_of(tmp_path / "some.csv")
 
 
@@ -247,11 +219,8 @@ def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run():
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
     assert single.items() <= found[-1].items()
-
-
-def test_a_table_has_a_column_for_each_number_that_varies():
     head, *lines = pendu(*LIST).out.splitlines()
-    assert head.split()[:3] == ["start_theta", "h", "method"]
+    assert head.split()[:3] == ["start_theta", "h", "method"]  # a column for what varies
     assert len(lines) == 8
 
 
@@ -260,7 +229,7 @@ def test_a_file_has_the_rows_of_stdout_and_nothing_else_is_left(whole, tmp_path)
     assert [each.name for each in tmp_path.iterdir()] == ["whole.csv"]
 
 
-@pytest.mark.parametrize("cut", [0, 40, 600, 1500])
+@pytest.mark.parametrize("cut", [0, 40, 1500])
 def test_what_was_interrupted_is_resumed_to_the_same_bytes(cut, whole, part):
     part.write_bytes(whole[:cut])
     assert pendu(*LIST, "-o", part.with_suffix("")).refused(5, "--resume", "--force")
@@ -269,9 +238,7 @@ def test_what_was_interrupted_is_resumed_to_the_same_bytes(cut, whole, part):
     assert not part.exists()
 
 
-@pytest.mark.parametrize(
-    "other", [("--time", 3), ("--h", "50ms:0.2:2"), ("--methods", "rk4"), ("--h", 0.05)]
-)
+@pytest.mark.parametrize("other", [("--time", 3), ("--methods", "rk4"), ("--h", 0.05)])
 def test_rows_of_other_arguments_are_not_resumed(other, whole, part):
     part.write_bytes(whole)
     assert resumed(part, *other).refused(2, "other arguments")

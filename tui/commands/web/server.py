@@ -41,7 +41,7 @@ class LabServer(Server):  # type: ignore[misc]
         app = await self._make_app()
         app.middlewares.append(self.check)
         app.on_response_prepare.append(add_policy)
-        runner = web.AppRunner(app, keepalive_timeout=10.0, shutdown_timeout=1.0)  # s
+        runner = web.AppRunner(app, keepalive_timeout=3.0, shutdown_timeout=1.0)  # s
         await runner.setup()
 
         def connect() -> Any:
