@@ -1,8 +1,7 @@
 """The pendulum's own stability: which swings a method holds, for how long, and how it loses them.
 
 A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is
-computed with w0 = 1 and h = z.  engine.stability.LOST says when a swing is lost; a symplectic
-method's energy leaves its band and comes back.
+computed with w0 = 1 and h = z.  engine.stability.LOST says when a swing is lost.
 """
 
 import math
@@ -51,6 +50,8 @@ def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Fl
     lowest, highest, widest = wobbles[:, where]
     up = ((1 + BAND) * highest - 1) * start
     down = (1 - (1 - BAND) * lowest) * start
+    if method.symplectic:
+        up[:] = down[:] = math.inf  # it comes back
     return up, down, widest * theta
 
 
@@ -69,8 +70,6 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     start: Floats = model.energy(np.sin)(phase)
     up, down, reach = _bounds(method, theta, z, start)
     band = np.minimum(up, down)
-    if method.symplectic:
-        band[:] = math.inf
     watched = Watched(start, band, rest + math.pi, rest.copy(), rest.copy(), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
@@ -81,9 +80,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
         for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
             over = np.abs(phase[0]) > watched.top
             above = watched.off > up
-            lost = over
-            if not method.symplectic:
-                lost = over | above | (watched.off < -down)
+            lost = over | above | (watched.off < -down)
             gone = index[lost]
             cells["steps"][gone] = begun + done - 1
             cells["error"][gone] = watched.worst[lost] / watched.start[lost]
