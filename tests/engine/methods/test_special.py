@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
-from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MAX_HALVINGS, halving
+from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MAX_HALVINGS
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from engine.methods.implicit import IMPLICIT_MIDPOINT
 from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
 from engine.methods.stiff import IMEX_EULER, RESPA
-from engine.methods.verlet import POSITION_VERLET, velocity_verlet
+from engine.methods.verlet import POSITION_VERLET
 from engine.models.damped import DampedPendulum
 from engine.models.mean_field import MeanField
 from engine.models.pendulum import Pendulum
@@ -88,15 +88,6 @@ def test_a_step_keeps_volume_where_claimed(method, model):
         ends = [next(method.on(model)(each, 0.02)) for each in starts]
         columns.append(flat(ends[0]) - flat(ends[1]))
     assert (abs(np.linalg.det(np.array(columns) / 2e-6) - 1) < 1e-6) == method.symplectic
-
-
-def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length():
-    phases = halving(velocity_verlet, 0.1)
-    small = next(phases(FORCE, (2.0, 0.0), 0.05))
-    assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).propagate((2.0, 0.0), 0.025, 2)
-    divided = next(phases(FORCE, (2.0, -5.0), 0.4))
-    halved = next(phases(FORCE, next(phases(FORCE, (2.0, -5.0), 0.2)), 0.2))
-    assert divided == halved
 
 
 @pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=lambda m: m.key)

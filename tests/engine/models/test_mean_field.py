@@ -114,7 +114,5 @@ def test_a_lockstep_watches_the_probability_at_every_step_however_it_is_cut():
     errors = [reading.max_invariant_error for reading in alone.sample().readings]
     assert errors == [reading.max_invariant_error for reading in cut.sample().readings]
     rk4, splitting, euler = errors
-    assert rk4 == pytest.approx(0.148, abs=1e-3)
-    assert splitting < 1e-13
-    assert euler > 1e12
+    assert splitting < 1e-13 < 0.147 < rk4 < 0.149 < euler
     assert Lockstep(SCENES["drift"]).sample().readings[0].max_invariant_error is None

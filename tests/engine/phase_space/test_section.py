@@ -49,14 +49,6 @@ def test_however_a_section_is_cut_its_bits_are_the_same():
     assert np.array_equal(np.concatenate([np.array(part) for part in parts], axis=2), whole)
 
 
-def test_starts_are_spread_evenly_however_many_one_takes():
-    theta, omega = spread(400, (-1.0, 3.0), (-2.0, 2.0))
-    counts, _, _ = np.histogram2d(theta[:100], omega[:100], bins=5, range=[(-1, 3), (-2, 2)])
-    assert (counts.min(), counts.max()) == (3, 5)  # 4 each
-    counts, _, _ = np.histogram2d(theta, omega, bins=10, range=[(-1, 3), (-2, 2)])
-    assert (counts.min(), counts.max()) == (2, 6)  # chance would leave some of them empty
-
-
 @pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
 @pytest.mark.parametrize("z", [0.05, 0.77, 1.0, 1.95])
 def test_small_swings_turn_by_twice_the_arcsine_of_half_z(key, z):
