@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
-from engine.methods import METHODS, Method
+from engine.methods import METHODS, Method, simplified
 from engine.scenes import DEFAULT_SCENE, MAX_METHODS
 from tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
 from tui.cli.errors import Exit
@@ -66,11 +66,15 @@ def run(options: argparse.Namespace) -> int:
         Column("reversible", lambda row: "yes" if _known(row, "reversible") else "no"),
         Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
     )
+    other = (each for each in cast if simplified(each.label) != simplified(each.key))
+    notes = [NOTE, f"in the lab: {', '.join(f'{each.label} ({each.key})' for each in other)}"]
+    if options.keys:
+        notes = [NOTE, *map(_about, rows)]
     report = Report(
         name="methods",
         columns=columns,
         rows=list(_by_family(rows)),
-        notes=[NOTE, *(_about(row) for row in rows if options.keys)],
+        notes=notes,
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)

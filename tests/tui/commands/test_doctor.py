@@ -10,13 +10,11 @@ def test_doctor_reports_and_never_fails(monkeypatch, tmp_path):
     outcome = pendu("doctor")
     assert (outcome.code, outcome.err) == (0, "")
     assert "cannot be written" in outcome.out
-    findings = {found.pop("what"): found for found in pendu("doctor", "--json").json["findings"]}
-    kinds = ("lab", "size", "encoding", "colours", "recordings", "python", "versions", "numba")
-    assert tuple(findings) == kinds
-    assert all(f"\n{what}" in outcome.out for what in kinds)
-    # without a terminal
-    assert findings["lab"]["found"] == "cannot start here"
-    assert "Use pendu-tui run" in findings["lab"]["advice"]
+    for what in ("lab", "size", "encoding", "colours", "recordings", "python", "versions", "numba"):
+        assert f"\n{what}" in outcome.out
+    lab = pendu("doctor", "--json").json["findings"][0]  # without a terminal
+    assert lab["found"] == "cannot start here"
+    assert "Use pendu-tui run" in lab["advice"]
 
 
 @pytest.mark.parametrize(

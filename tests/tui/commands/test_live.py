@@ -14,7 +14,6 @@ from tui.screens.launch import live_screen, say_goodbye
 
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
-    """As tmux does with synchronised panes."""
     library = {"PENDU_RECORDINGS": str(tmp_path)}
     with PtyLab(**library) as one, PtyLab(**library) as other:
         while not all(b"REC " in session.output for session in (one, other)):
