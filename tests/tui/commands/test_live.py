@@ -1,16 +1,13 @@
 """What `pendu-tui live` and `tour` do before there is a screen, and beside it."""
 
-import pytest
-
 from engine.scenes import DEFAULT_SCENE
-from recordings.errors import DiskError
 from recordings.library import listing
 from recordings.recorder import LiveRecorder
 from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live
-from tui.screens.launch import live_screen, say_goodbye
+from tui.screens.launch import say_goodbye
 
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
@@ -24,34 +21,6 @@ def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path
             assert session.end() == 0
     assert len(listing(tmp_path)) == 2
     assert all(verify(item.path).complete for item in listing(tmp_path))
-
-
-def test_the_tour_is_walked_with_enter_and_left_with_esc_and_need_not_be_recorded(tmp_path):
-    with PtyLab("tour", "--no-record", PENDU_RECORDINGS=str(tmp_path)) as session:
-        session.wait_for("Tour 1 of 8")
-        session.type("\r")
-        session.wait_for("five times its initial energy")
-        session.type("\x1b")
-        session.wait_for("T goes on with the tour")
-        session.type("q")
-        assert session.end() == 0
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("or_next", [True, False])
-def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_path, or_next):
-    path = tmp_path / "now.mcap"
-    live = Live(DEFAULT_SCENE)
-    lab = live_screen(live, path, or_next=or_next)
-    other = LiveRecorder(path)
-    if or_next:
-        lab._prepare()
-        assert live.recorder.path.name == "now-2.mcap"
-    else:
-        with pytest.raises(DiskError, match="choose another name"):
-            lab._prepare()
-    live.close()
-    other.close()
 
 
 def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):

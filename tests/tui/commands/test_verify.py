@@ -52,9 +52,7 @@ def test_a_folder_means_all_recordings_below_it(tmp_path):
     (tmp_path / "a").mkdir()
     record(tmp_path / "one.mcap", two_runs())
     record(tmp_path / "a" / "two.mcap", two_runs())
-    outcome = pendu("verify", tmp_path)
-    assert first_words(outcome) == ["identical", "identical", "2"]
-    assert outcome.out.endswith("2 recordings, 2 identical\n")
+    assert first_words(pendu("verify", tmp_path)) == ["identical", "identical", "2"]
 
 
 def test_an_incomplete_recording_fails_the_check_with_its_reason(cut, whole):
