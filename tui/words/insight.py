@@ -19,7 +19,7 @@ from tui.words.numbers import about, two_digits
 
 SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
-    "returned": "Back at t = 0; angle and speed off by {misses} rad.",
+    "returned": "Back at t = 0; off in angle and speed [rad]: {misses}.",
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
