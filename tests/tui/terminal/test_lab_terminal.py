@@ -4,7 +4,7 @@ import os
 import shutil
 import signal
 import sys
-from itertools import product
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -65,27 +65,45 @@ def program(code: str) -> list[str]:
     return [*PENDU[:2], f"{mark}LiveScreen.action_mark = mark\n{PENDU[2]}"]
 
 
-ENDS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "\x03", "closed"]
+def finish(session: PtyLab, how: signal.Signals | str) -> None:
+    if isinstance(how, signal.Signals):
+        session.signal(how)
+    elif how == "closed":
+        session.hang_up()
+    else:
+        session.type(how)
 
 
-@pytest.mark.parametrize(
-    ("how", "is_stuck"), [*product(ENDS, [False]), *product(ENDS[1:3], [True]), ("closed", True)]
-)
-def test_whatever_ends_the_lab_within_10_s_finishes_the_recording(library, how, is_stuck):
-    with lab(library, program=program("time.sleep(1000)")) as session:
+def has_ended(session: PtyLab) -> bool:
+    """Return whether it ended within 10 s and left its terminal, if it has one, as it was."""
+    was_closed = session.terminal < 0
+    return session.end(10.0) == 130 and (was_closed or b"\x1b[?1049l" in session.output)
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "\x03", "closed"])
+def test_whatever_ends_the_lab_finishes_the_recording(library, how):
+    with lab(library) as session:
         session.wait_for(RECORDING)
-        if is_stuck:
+        finish(session, how)
+        assert has_ended(session)
+    assert whole(library)
+
+
+def test_a_lab_whose_loop_is_stuck_ends_within_10_s_and_its_recording_is_finished(tmp_path):
+    hows = (signal.SIGTERM, signal.SIGHUP, "closed")
+    stuck = program("time.sleep(1000)")
+    with ExitStack() as stack:
+        labs = {}
+        for how in hows:
+            labs[how] = session = stack.enter_context(lab(tmp_path / str(how), program=stuck))
+            session.wait_for(RECORDING)
             session.type("m")
             session.run(0.5)
-        if isinstance(how, signal.Signals):
-            session.signal(how)
-        elif how == "closed":
-            session.hang_up()
-        else:
-            session.type(how)
-        assert session.end(10.0) == 130
-        assert how == "closed" or b"\x1b[?1049l" in session.output  # the terminal is as it was
-    assert whole(library)
+        for how, session in labs.items():
+            finish(session, how)
+        for how, session in labs.items():
+            assert has_ended(session)
+            assert whole(tmp_path / str(how))
 
 
 ENDLESS = """
@@ -119,7 +137,10 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
 def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, library):
     (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
     own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
-    with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
+    soon = "from tui.cli import time_limit; time_limit.MAX_CALL_TIME = 1.0\n"
+    program = [*PENDU[:2], soon + PENDU[2]]
+    environment = {"PYTHONPATH": str(ROOT)}
+    with lab(library, *own, program=program, folder=tmp_path, **environment) as session:
         session.wait_for("REC 1 s")
         (tmp_path / "endless").touch()
         assert session.end(60.0) == -signal.SIGKILL
