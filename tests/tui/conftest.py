@@ -16,8 +16,6 @@ TEXT = re.compile(
 )
 
 Hold = Callable[[str, str], None]
-
-
 _computed: dict[bytes, list[object]] = {}
 
 
@@ -48,34 +46,20 @@ def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.Monk
 @pytest.fixture
 def snapshot(request: pytest.FixtureRequest) -> Hold:
     """Compare an SVG picture with the stored one of that name; --snapshot-update stores it."""
-
-    def hold(name: str, svg: str) -> None:
-        compare(
-            SNAPSHOTS / f"{name}.svg",
-            svg,
-            cells_of,
-            lines_of,
-            request.config.getoption("--snapshot-update"),
-        )
-
-    return hold
+    update = request.config.getoption("--snapshot-update")
+    return lambda name, svg: compare(SNAPSHOTS / f"{name}.svg", svg, cells_of, lines_of, update)
 
 
 @pytest.fixture
 def text_snapshot(request: pytest.FixtureRequest) -> Hold:
-    """The same for the text of an SVG picture and its colours: small, and a changed word is one changed line."""
+    """The same for the text of an SVG picture and its colours: a changed word is a changed line."""
+    update = request.config.getoption("--snapshot-update")
 
     def hold(name: str, svg: str) -> None:
         looks = {look for _, look in cells_of(svg).values()}
         colours = sorted(set(re.findall(r"#[0-9a-fA-F]{6}", " ".join(looks))))
         text = f"{text_of(svg)}\ncolours: {' '.join(colours)}\n"
-        compare(
-            SNAPSHOTS / f"{name}.txt",
-            text,
-            str,
-            str.splitlines,
-            request.config.getoption("--snapshot-update"),
-        )
+        compare(SNAPSHOTS / f"{name}.txt", text, str, str.splitlines, update)
 
     return hold
 
@@ -88,16 +72,12 @@ def compare(
     update: bool,
 ) -> None:
     if update:
-        path.parent.mkdir(exist_ok=True)
         path.write_text(picture, encoding="utf-8")
-    if not path.exists():
-        pytest.fail(f"{path} is missing: look at what --snapshot-update stores")
     stored = path.read_text(encoding="utf-8")
     if essence(stored) != essence(picture):
-        (seen := path.with_suffix(f".seen{path.suffix}")).write_text(picture, encoding="utf-8")
-        diff = difflib.unified_diff(
-            lines(stored), lines(picture), "stored", "seen", lineterm="", n=0
-        )
+        seen = path.with_suffix(f".seen{path.suffix}")
+        seen.write_text(picture, encoding="utf-8")
+        diff = difflib.unified_diff(lines(stored), lines(picture), lineterm="", n=0)
         pytest.fail("\n".join([f"{path.name} looks different, see {seen}:", *diff]), pytrace=False)
 
 
@@ -105,14 +85,13 @@ def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
     """Each cell's character and look, and each background, however they were strung together."""
     looks = dict(re.findall(r"\.terminal-(r\d+) { (.*) }", svg))
     cells: dict[tuple[str, int], tuple[str, str]] = {}
-    for fill, x, y, width in re.findall(
-        r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"', svg
-    ):
-        first, count = round(float(x) / CELL), round(float(width) / CELL)
-        cells |= {(f"behind {y}", column): ("", fill) for column in range(first, first + count)}
-    for look, x, y, text in re.findall(
-        r'<text class="terminal-(r\d+)" x="([\d.]+)" y="([\d.]+)"[^>]*>([^<]*)</text>', svg
-    ):
+    behind = r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"'
+    for fill, x, y, width in re.findall(behind, svg):
+        first = round(float(x) / CELL)
+        for column in range(first, first + round(float(width) / CELL)):
+            cells[f"behind {y}", column] = "", fill
+    words = r'<text class="terminal-(r\d+)" x="([\d.]+)" y="([\d.]+)"[^>]*>([^<]*)</text>'
+    for look, x, y, text in re.findall(words, svg):
         column = round(float(x) / CELL)
         for character in html.unescape(text):
             if not character.isspace():
@@ -130,8 +109,6 @@ def text_of(svg: str) -> str:
     """The characters of an SVG of the screen, line by line, without trailing blanks."""
     lines: dict[int, str] = {}
     for x, line, text in TEXT.findall(svg):
-        before = lines.get(int(line), "")
-        lines[int(line)] = before.ljust(round(float(x) / CELL)) + html.unescape(text).replace(
-            "\xa0", " "
-        )
+        before = lines.get(int(line), "").ljust(round(float(x) / CELL))
+        lines[int(line)] = before + html.unescape(text).replace("\xa0", " ")
     return "\n".join(lines.get(line, "").rstrip() for line in range(max(lines, default=-1) + 1))

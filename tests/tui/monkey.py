@@ -1,11 +1,10 @@
 """A monkey at the keyboard and the mouse: random, and the same for the same seed."""
 
-import asyncio
 import itertools
 import random
 import string
-from collections.abc import AsyncIterator, Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from unittest.mock import patch
 
@@ -17,8 +16,8 @@ from engine.accuracy.study import ladder
 from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.library import new_path
 from recordings.recorder import LiveRecorder
+from tests.tui.conftest import computed_here
 from tests.tui.harness import Theatre
-from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live
 from tui.screens.live import LiveScreen
 
@@ -36,13 +35,10 @@ KEYS = [
 ]
 CALMING = "<<00++rp   "  # else the lab would soon stand still, or run fast with tiny steps and take long to verify
 TYPED = "0123456789.-edg\x7f"
-BATCH, EPISODE = 10, 60  # presses at once; and until what lies over the lab is closed
-PAUSE = 0.03  # s after a batch
-ESCDELAY = "20"  # ms; Textual's name for how long it waits after an escape, which may begin something longer
+EPISODE = 60  # presses until what lies over the lab is closed
 ESC, PALETTE = "\x1b", "\x10"
 OVERLAYS = ("?", "i", "d", "E", PALETTE)
 GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"  # of which pasted text is made
-ESCAPE = 0.15  # s after one; Textual looks every 0.1 s whether there is more to come
 LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
 STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next, on a stage
 
@@ -114,31 +110,9 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
             case "paste":
                 yield f"\x1b[200~{''.join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))}\x1b[201~"
             case _:
-                narrow = chance.random() < 0.3
-                largest = (12, 12) if narrow else LARGEST
-                size = (
-                    SIZE
-                    if chance.random() < 0.3
-                    else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))
-                )
+                columns, rows = chance.choice((SIZE, (12, 12), LARGEST, LARGEST))
+                size = chance.randint(1, columns), chance.randint(1, rows)
                 yield size
-
-
-def play(pendu: PtyLab, number: int, seed: int) -> int:
-    """Let the monkey play on the real program, then quit; returns the exit code."""
-    for done, typed in enumerate(presses(number, seed)):
-        pendu.type(typed)
-        if typed in (ESC, PALETTE):
-            pendu.run(ESCAPE)
-        elif done % BATCH == 0:
-            pendu.run(PAUSE)
-    for _ in range(20):
-        pendu.type(ESC)
-        pendu.run(ESCAPE)
-        pendu.type("q")
-        with suppress(TimeoutError):
-            return pendu.end(1.0)
-    raise TimeoutError("it does not quit")
 
 
 async def play_on_stage(
@@ -164,15 +138,6 @@ async def play_on_stage(
             await still(theatre)
         if not app.is_running:
             return
-
-
-async def computed_here(
-    function: Callable[..., Iterator[object]], *arguments: object
-) -> AsyncIterator[object]:
-    """What `computed` yields, without another process: when it comes does not depend on the machine."""
-    for item in function(*arguments):
-        yield item
-        await asyncio.sleep(0)
 
 
 @contextmanager
@@ -203,15 +168,8 @@ def wild_stage(
     """Makes a lab that is recorded in a library."""
 
     def make(clock: Callable[[], float]) -> LiveScreen:
-        return _recorded(Live(scene, clock=_looks()), library, clock)
+        live = Live(scene, clock=itertools.count(0.0, LOOK).__next__)
+        live.record(LiveRecorder(new_path(library)))
+        return LiveScreen(live, clock)
 
     return make
-
-
-def _recorded(live: Live, library: Path, clock: Callable[[], float]) -> LiveScreen:
-    live.record(LiveRecorder(new_path(library)))
-    return LiveScreen(live, clock)
-
-
-def _looks() -> Callable[[], float]:
-    return itertools.count(0.0, LOOK).__next__

@@ -104,23 +104,17 @@ class PtyLab:
 
     def wait_for(self, text: str, seconds: float = 20.0) -> float:
         """Read until a text comes; returns when it came, in s since the start."""
-        start, end = len(self.output), self.now + seconds
-        while text.encode() not in self.output[max(0, start - len(text)) :]:
-            if self.now > end:
-                raise TimeoutError(
-                    f"{text!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}"
-                )
-            self.read(end - self.now)
-        return self.now
+        known = max(0, len(self.output) - len(text))
+        return self.wait_for_match(re.compile(re.escape(text.encode())), seconds, known)
 
-    def wait_for_match(self, pattern: re.Pattern[bytes], seconds: float = 20.0) -> float:
-        """Read until a pattern is somewhere in all that has come; returns when that was known, in s since the start."""
+    def wait_for_match(
+        self, pattern: re.Pattern[bytes], seconds: float = 20.0, known: int = 0
+    ) -> float:
+        """Read until a pattern is in what has come after `known` bytes."""
         end = self.now + seconds
-        while not pattern.search(self.output):
+        while not pattern.search(self.output, known):
             if self.now > end:
-                raise TimeoutError(
-                    f"{pattern!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}"
-                )
+                raise TimeoutError(f"{pattern!r} did not come: {bytes(self.output[-2000:])!r}")
             self.read(end - self.now)
         return self.now
 
@@ -163,10 +157,5 @@ class PtyLab:
         """Processor time used so far."""
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    def wakes(self) -> int:
-        """How often its main thread has gone to sleep so far, to be woken again."""
-        status = Path(f"/proc/{self.pid}/status").read_text()
-        return int(re.findall(r"^voluntary_ctxt_switches:\s*(\d+)", status, re.M)[0])
 
     usage: resource.struct_rusage

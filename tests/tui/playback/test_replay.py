@@ -9,7 +9,6 @@ import pytest
 
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
-from engine.scenes import SCENES
 from recordings.events import Entry
 from recordings.library import GOLDEN
 from recordings.recorder import Recorder
@@ -267,16 +266,6 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
     assert table.verdicts[table.replay.scene.cast.index(said.method)] == "wanders"
-
-
-def test_errors_that_cross_are_recorded_and_a_stop_of_the_replay(tmp_path):
-    table = Table(recorded(tmp_path / "crossover.mcap", 40.0, scene=SCENES["crossover"]))
-    table.replay.seek(33.0)
-    assert "errors cross" not in {each.kind for each in table.replay.milestones}
-    table.replay.seek_event(1)
-    crossing = table.replay.milestones[-1]
-    assert (crossing.kind, crossing.step) == ("errors cross", 167)
-    assert table.replay.sample.step == 167
 
 
 def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):

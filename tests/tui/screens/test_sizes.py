@@ -1,8 +1,7 @@
 """The lab at every size, and while the size changes."""
 
-from tests.tui.harness import eventful, lab, player
+from tests.tui.harness import lab
 from tui.screens.lines import StatusLine, TooSmall
-from tui.screens.replay import SeekBar
 
 
 def on_screen(theatre, kind) -> list[tuple[int, int, int, int]]:
@@ -20,14 +19,3 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
         assert not on_screen(theatre, TooSmall)
-
-
-async def test_the_replay_has_one_row_more_at_every_size(tmp_path):
-    path = eventful(tmp_path / "eventful.mcap")
-    async with player(path, size=(80, 24)) as theatre:
-        for width in (60, 120):
-            await theatre.pilot.resize_terminal(width, 40)
-            await theatre.run(0.1)
-            ((_, _, bar, one),) = on_screen(theatre, SeekBar)
-            assert (bar, one) == (width, 1)
-            assert len(theatre.text(SeekBar).rstrip()) <= width

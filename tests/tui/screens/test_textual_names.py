@@ -1,9 +1,8 @@
 """No class of ours takes a private name that Textual uses for something else: it would not notice, and break."""
 
-import ast
 import inspect
 import pkgutil
-import textwrap
+import re
 from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
@@ -13,9 +12,7 @@ from textual.message_pump import MessagePump
 
 import tui
 
-MEANT = {
-    "PenduApp": {"_handle_exception"},
-}
+MEANT = {"PenduApp": {"_handle_exception"}}
 """What replaces Textual's own, by class."""
 
 for module in pkgutil.walk_packages(tui.__path__, "tui."):
@@ -37,31 +34,14 @@ OURS = sorted(
 @cache
 def written(kind: type) -> set[str]:
     """The private names that a class's text defines in its body or assigns on self."""
-    (body,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
-    assert isinstance(body, ast.ClassDef)
-    targets = [
-        target
-        for node in body.body
-        for target in getattr(node, "targets", [getattr(node, "target", None)])
-    ]
-    names = {node.name for node in body.body if hasattr(node, "name")} | {
-        ast.unparse(each) for each in targets if each
-    }
-    stored = [
-        node
-        for node in ast.walk(body)
-        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
-    ]
-    names |= {node.attr for node in stored if ast.unparse(node.value) == "self"}
-    return {name for name in names if name.startswith("_") and not name.endswith("__")}
+    defined = r"^    (?:async def |def |)(_[a-z]\w*)(?=\(|: | = )|\bself\.(_[a-z]\w*)(?:: .+)? = "
+    return {"".join(names) for names in re.findall(defined, inspect.getsource(kind), re.M)}
 
 
 def textuals(kind: type) -> set[str]:
     """The private names of all its bases that are not ours."""
     bases = [base for base in kind.__mro__ if base.__module__.startswith(("textual.", "rich."))]
-    return {
-        name for base in bases for name in (*vars(base), *written(base)) if name.startswith("_")
-    }
+    return set().union(*map(written, bases))
 
 
 @pytest.mark.parametrize("kind", OURS, ids=lambda kind: kind.__name__)

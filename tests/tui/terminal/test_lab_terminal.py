@@ -195,17 +195,6 @@ def test_the_recording_of_a_killed_lab_is_recovered_and_reported_at_the_next_sta
         assert recording.length > 0
 
 
-def test_a_replay_plays_and_goes_on_live(library):
-    with lab(library, "replay", "drift", "--start-at", "5") as session:
-        session.wait_for("REPLAY")
-        session.wait_for("run 1/1")
-        session.type("f")
-        session.wait_for(RECORDING)
-        session.type("q")
-        assert session.end() == 0
-    assert whole(library)
-
-
 @pytest.mark.skipif(sys.platform == "darwin", reason="there names are text")
 def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(library):
     library.mkdir(exist_ok=True)
