@@ -58,6 +58,7 @@ def test_a_scene_may_stand_before_or_after_the_options(arguments):
         ("run --time 1 --theta -abc", 2, "has no option -a"),
         ("run --time --h 0.1", 2, "--time: expected one argument"),
         ("run --time 1 drift more", 2, "unrecognized arguments: more"),
+        ("export drift a.csv", 2, "-o a.csv"),
         ("--h 0.1 run", 2, "there is no scene 'run'"),
         ("--theta=--", 2, "--theta: expected one argument"),
         ("snapshot -o--", 2, "-o: expected one argument"),

@@ -33,7 +33,7 @@ def read(data: str | bytes, *wanted: str) -> Table:
     return read_table(io.BufferedReader(stream), wanted)
 
 
-def judge(text: str | bytes, *more: object, time: str = "t", energy: str = "E") -> Outcome:
+def judge(text: str | bytes, *more: object, time="t", energy="E") -> Outcome:
     Path("energies.csv").write_bytes(text.encode() if isinstance(text, str) else text)
     return pendu("judge", "energies.csv", "--time", time, "--energy", energy, *more)
 
@@ -57,7 +57,6 @@ LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
         (table(), ("t", "E")),
         (table(), ("1", "2")),
         (table(), ("T", "2")),
-        (table().replace("\n", "\r\n"), ("t", "E")),
         ("\ufeff" + table(), ("t", "E")),
         (table("{t}\t{e}", '"t"\t"E"'), ("t", "E")),
         (table("{t};{e}", "t;E").replace(".", ","), ("t", "E")),
@@ -67,7 +66,6 @@ LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
         (table("{t}   {e}", "  t    E"), ("t", "E")),
         (table("{t} {e}", "# t, E"), ("t", "E")),
         (table("{t} {e}", "# a remark"), ("1", "2")),
-        (lines("{t} {e}"), ("1", "2")),
         (table().replace("\n", "\n\n# remark\n"), ("t", "E")),
         (lines('"{t}","{e}"'), ("1", "2")),
         (XVG, ("1", "Total Energy")),
@@ -128,30 +126,29 @@ def test_one_table_is_judged_and_named():
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
 
 
-def test_a_time_that_starts_again_begins_a_table():
-    again = table() + lines("{t},{e}", [(t, e + 7) for t, e in ROWS])
-    found = read(again + "29.95", "t", "E")  # cut while it was written
-    assert (found.number, found.count, len(found.columns[0])) == (2, 2, 300)
-    assert found.columns[1][0] == 107
-
-
+HEAD = "   Step   Time   Temp   TotEng\n"
 FOOTER = "Loop time of 1 on 1 procs for 9 steps\nNlocal: 9 ave 9 max 9 min\nHistogram: 1 0 0 0\n"
+LATER = [(t + 30, e) for t, e in ROWS]
+RERUN = f"1 by 1 by 1 grid\n{HEAD}{lines('{n} {t} 300. {e}', FIRST)}{FOOTER}"
+RERUN += f"{HEAD}{lines('{n} {t} 300. {e}', LATER)}{FOOTER}"
+PAGES = (lines("ENERGY: {t} 1.5 {e}", ROWS[at : at + 20]) for at in range(0, 300, 20))
 
 
-@pytest.mark.parametrize("names", [("Time", "TotEng"), ("2", "4")])
-def test_a_second_header_begins_a_table_and_a_footer_none(names):
-    head = "   Step   Time   Temp   TotEng\n"
-    first = f"1 by 1 by 1 grid\n{head}{lines('{n} {t} 300. {e}', FIRST)}{FOOTER}"
-    later = [(t + 30, e) for t, e in ROWS]
-    found = read(f"{first}{head}{lines('{n} {t} 300. {e}', later)}{FOOTER}", *names)
-    assert (found.number, found.count, len(found.columns[0])) == (2, 2, 300)
+@pytest.mark.parametrize(
+    ("text", "names", "tables"),
+    [
+        (lines("{t},{e}", FIRST) + lines("{t},{e}") + "29.95", ("1", "2"), 2),  # cut while written
+        (RERUN, ("Time", "TotEng"), 2),
+        (RERUN, ("2", "4"), 2),
+        ("".join(f"ETITLE: TS BOND TOTAL\n{page}\n" for page in PAGES), ("TS", "TOTAL"), 1),
+    ],
+)
+def test_a_second_header_or_time_begins_a_table_and_neither_a_footer_nor_a_page(
+    text, names, tables
+):
+    found = read(text, *names)
+    assert (found.number, found.count, len(found.columns[0])) == (tables, tables, 300)
     assert found.columns[1][0] == 100
-
-
-def test_a_header_on_each_page_begins_no_table():
-    pages = (lines("ENERGY: {t} 1.5 {e}", ROWS[at : at + 20]) for at in range(0, 300, 20))
-    found = read("".join(f"ETITLE: TS BOND TOTAL\n{page}\n" for page in pages), "TS", "TOTAL")
-    assert (found.count, len(found.columns[0])) == (1, 300)
 
 
 def test_rows_that_cannot_be_used_are_counted():
@@ -227,10 +224,7 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     assert answer["drift_order"] is None
     assert [each["verdict"] for each in answer["files"]] == ["bounded", "bounded"]
     assert "goes as h^2.00" in pendu(*names, "--steps", "1,2").out
-    for sign, code in (("<", 0), (">", 1)):
-        gate = f"fluctuation_order {sign} 1.8"
-        assert pendu(*names, "--steps", "1,2", "--fail-if", gate).code == code
-    assert pendu(*names).refused(2, "--steps")
+    assert pendu(*names, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8").code == 1
     assert pendu(*names, "--steps", "1,1").refused(2, "a step size for each")
 
 
@@ -259,7 +253,6 @@ def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
 def test_a_value_that_is_not_known_yet_fails_the_check():
     two = "t,E\n0,1\n1,1\n"
     assert judge(two, "--fail-if", "trend > 1").code == 1
-    assert judge(two, "--fail-if", "verdict != bounded").code == 1
     assert "too early: 2 of 64 samples" in judge(two).out
 
 
@@ -300,7 +293,6 @@ def test_stdin_is_read_where_it_is_open(end, code, word):
 def test_a_file_or_a_gate_that_cannot_be_read_is_one_sentence():
     names = ("--time", "1", "--energy", "2")
     assert pendu("judge", "absent.csv", *names).refused(3, "absent.csv", "No such file")
-    assert pendu("judge", ".", *names).refused(3, "directory")
     assert judge(table(), "--fail-if", "rk4.verdict == grows").refused(2, "write FIELD > NUMBER")
     assert judge(table(), "--fail-if", "theta_error > 1").refused(2, "no field 'theta_error'")
 

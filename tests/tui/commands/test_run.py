@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.methods.adaptive import HALVING_VERLET
 from engine.run.lockstep import Lockstep
 from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
@@ -63,9 +62,7 @@ def test_every_scene_runs_and_its_json_has_no_nan(name):
     assert pendu("run", "--scene", name, "--time", 20, "--json").json["scene"]["name"] == name
 
 
-@pytest.mark.parametrize(
-    "start", ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=1e-300", "--theta=0"]
-)
+@pytest.mark.parametrize("start", ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=0"])
 def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
     assert pendu("run", start, "--time", "200", "--json").code == 0
     out = pendu("run", start, "--time", "200").out
@@ -80,7 +77,6 @@ def test_evaluations_that_vary_are_counted():
     for method in scene.cast:
         counted = count_evaluations(method, scene.equations, start, scene.h, 100)
         assert rows[method.key]["force_evaluations"] == counted
-    assert rows["halving_verlet"]["force_evaluations"] != HALVING_VERLET.evaluations(100)
 
 
 def test_a_failed_method_is_reported_with_its_time():
@@ -90,30 +86,24 @@ def test_a_failed_method_is_reported_with_its_time():
     assert euler["theta_error"] is None
     assert 0 < euler["diverged_at"] < 1500
     assert euler["force_evaluations"] == round(euler["diverged_at"] / DEFAULT_SCENE.h)
-    assert f"failed at {euler['diverged_at']:g} s" in pendu("run", *tiny).out
+    outcome = pendu("run", *tiny, "--fail-if", "explicit_euler.max_energy_error < 0")
+    assert f"failed at {euler['diverged_at']:g} s" in outcome.out
+    assert (outcome.code, "explicit_euler failed at" in outcome.err) == (1, True)
 
 
-def test_a_recording_has_the_same_bytes_each_time_and_verifies(tmp_path):
-    one, two = tmp_path / "one.mcap", tmp_path / "two.mcap"
-    for path in (one, two):
-        told = pendu("run", "--scene", "spin", "--time", 5, "--record", path)
-        assert told.err == f"pendu-tui: recorded 5 s, {file_size(path.stat().st_size)}: {path}\n"
-    assert one.read_bytes() == two.read_bytes()
-    result = verify(one)
-    assert result.identical
-    assert result.complete
-
-
-def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
+def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_only(tmp_path):
     path = tmp_path / "run.mcap"
-    path.write_bytes(b"precious")
-    assert pendu("run", "--time", 1, "--record", path).refused(5, "exists", "--force", str(path))
-    assert path.read_bytes() == b"precious"
-    assert pendu("run", "--time", 1, "--record", path, "--sample-every", 5, "--force").code == 0
+    run = ("run", "--scene", "spin", "--time", 5, "--record", path)
+    assert pendu(*run).err == f"pendu-tui: recorded 5 s, {file_size(path.stat().st_size)}: {path}\n"
+    recorded = path.read_bytes()
+    result = verify(path)
+    assert (result.identical, result.complete) == (True, True)
+    assert pendu(*run).refused(5, "exists", "--force", str(path))
+    assert pendu(*run, "--force").code == 0
+    assert path.read_bytes() == recorded
+    assert pendu(*run, "--force", "--sample-every", 50).code == 0
     with Recording.open(path) as recording:
-        assert recording.samples == 5  # at steps 0, 5, 10, 15, 20
-    missing = tmp_path / "missing" / "run.mcap"
-    assert pendu("run", "--time", 1, "--record", missing).refused(5, str(tmp_path))
+        assert recording.samples == 1 + 250 / 50
 
 
 @pytest.mark.parametrize(
@@ -132,14 +122,6 @@ def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
 def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
     assert pendu("run", "--record", tmp_path / "run.mcap", *arguments).refused(2, words)
     assert not list(tmp_path.iterdir())
-
-
-def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
-    expression = "explicit_euler.max_energy_error > 1"
-    outcome = pendu("run", "--time", 10, "--fail-if", expression, "--json")
-    found = "explicit_euler.max_energy_error is 5.54"
-    assert outcome.err == f"pendu-tui: the check failed: {expression} ({found})\n"
-    assert (outcome.code, outcome.json["steps"]) == (1, 200)
 
 
 @pytest.mark.slow

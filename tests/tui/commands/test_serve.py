@@ -63,22 +63,22 @@ class Tab:
 
 
 class Server:
-    def __init__(self, process: subprocess.Popen[str], address: str) -> None:
+    def __init__(self, process, address) -> None:
         self.process, self.address = process, address
 
     @asynccontextmanager
     async def tab(self, size=(100, 30)):
-        columns, rows = size
-        async with aiohttp.ClientSession() as session:
-            url = f"{self.address}/ws?width={columns}&height={rows}"
-            async with session.ws_connect(url, max_msg_size=0) as socket:
-                yield Tab(socket, size)
+        url = "{}/ws?width={}&height={}".format(self.address, *size)
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(url, max_msg_size=0) as socket,
+        ):
+            yield Tab(socket, size)
 
     @property
-    def labs(self) -> list[int]:
+    def labs(self) -> list[str]:
         pid = self.process.pid
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text()
-        return [int(child) for child in children.split()]
+        return Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
 
     async def until_labs(self, count: int) -> None:
         async with asyncio.timeout(PATIENCE):
@@ -106,7 +106,6 @@ def serving(*arguments: str, **environment: str):
 
 @pytest.fixture
 async def server(tmp_path):
-    """A server whose library is empty, and all of whose labs have ended at last."""
     with serving(PENDU_RECORDINGS=str(tmp_path)) as running:
         yield running
         await running.until_labs(0)
