@@ -6,7 +6,7 @@ Costs are interpolated between measured points.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby
 from typing import Literal
 
 from engine.accuracy.study import ErrorKind, Point
@@ -88,14 +88,8 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
 
 def ranges(found: Sequence[Cheapest]) -> list[tuple[Method, Sequence[Cheapest]]]:
     """The front by method: each with its targets in a row, the largest error first."""
-    starts = [
-        0,
-        *(n for n, (one, other) in enumerate(pairwise(found), 1) if one.method != other.method),
-        len(found),
-    ]
-    return [
-        (found[start].method, found[start:end]) for start, end in pairwise(starts) if end > start
-    ]
+    groups = groupby(found, key=lambda one: one.method)
+    return [(method, tuple(some)) for method, some in groups]
 
 
 def _coarsest_first(line: Sequence[Point]) -> list[Point]:

@@ -1,17 +1,10 @@
 """The methods, one family a file, and the list that everything else derives from.
 
-`method` says what a method is: a generator function (force, phase, h) -> phases, written as in the
-book, with only + - * / on the phase and never `+=`, which would change arrays in place.  It
-therefore runs unchanged on floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.
-The families: `euler`, `verlet`, `runge_kutta`, `splitting`, which builds methods from coefficients,
-and `implicit`, which solves an equation in each step. Others are not as general, and there for one
-scene each: `precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds
-friction, `stiff` tells fast from slow, and `learned` knows the pendulum from the measurements
-behind `learned_numbers`.
-
-To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every
-field of an entry is a claim, and tests/engine/methods hold it against what `measure` finds.  A
-user's `own` method comes from the text of a file; `examine` says whether it is one, and loads it.
+A method is a generator function (force, phase, h) -> phases, written as in the book, with only
++ - * / on the phase and never `+=`, which would change arrays in place.  It therefore runs
+unchanged on floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The methods of
+`precision`, `adaptive`, `damped`, `stiff` and `learned` are not as general, and there for one scene
+each.
 """
 
 import copyreg

@@ -38,7 +38,6 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
         return halves
 
     def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        """Steps divided in halves as often as they need it."""
         while True:
             phase = step(force, phase, h, MAX_HALVINGS)
             yield phase

@@ -34,7 +34,6 @@ def implicit(share: float) -> Phases:
         return _solving(share, np.abs, np.any)
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        """Steps whose force is solved for."""
         if any(hasattr(value, "shape") for value in (*phase, h)):
             return for_arrays()(force, phase, h)
         return for_numbers(force, phase, h)

@@ -78,7 +78,6 @@ def _learned(*, note: str, **fields: Any) -> Method:
 
 def _by_rk4(field: Callable[[float], Rates], **fields: Any) -> Method:
     def phases(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
-        """RK4 on what was learned."""
         return rk4_on_rates(field(model.w0_squared), phase, h)
 
     return _learned(

@@ -126,8 +126,7 @@ def _check_caught(tree: ast.AST, file: str) -> None:
                 raise OwnMethodError(f"{where}: this would catch Ctrl+C; use Exception.")
 
 
-class _PrintedError(Exception):
-    """The method has printed."""
+class _PrintedError(Exception): ...
 
 
 def _no_print(*values: object, file: Any = None, **settings: Any) -> None:

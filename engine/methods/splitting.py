@@ -21,7 +21,6 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
     following = kicks[1:]
 
     def kicks_and_drifts(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        """Kicks of omega and drifts of theta in turn."""
         theta, omega = phase
         opening = first * h
         pairs = zip(drifts, following)  # noqa: B905  Numba lacks it

@@ -17,7 +17,6 @@ def respa(inner: Phases, n: int) -> Phases:
     """r-RESPA, the impulse method: n steps with the fast force between half kicks of the slow."""
 
     def impulse(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
-        """Half a slow kick, n fast steps, half a slow kick."""
         z, w = phase
         slow = parts.slow(z)
         while True:

@@ -1,10 +1,4 @@
-"""The models: what is simulated, one a file, and what it is compared with.
-
-`model` says what a model is, and holds the types a method meets.  `pendulum`, `linear`, `damped`,
-`spring` and `mean_field` are the models; the last three have no closed form, and are compared with
-a `reference`; `exact_pendulum` is the pendulum's motion in closed form, the reference of every
-error in theta; `modified_energy` is what symplectic methods conserve instead of the energy.
-"""
+"""The models: what is simulated, one a file, and what it is compared with."""
 
 from engine.models.damped import DampedPendulum
 from engine.models.linear import LinearOscillator as LinearOscillator

@@ -166,11 +166,6 @@ class Model(ABC):
         return tuple(each for each in cls.variables if not each.is_state)
 
     @property
-    def has_force(self) -> bool:
-        """Whether it is one angle with a conservative force, as studies and maps require."""
-        return not self.without_force
-
-    @property
     def w0(self) -> float:
         """The frequency of small swings [rad/s]."""
         return math.sqrt(self.w0_squared)

@@ -52,7 +52,7 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     from engine.methods.own import OwnMethod
 
     numba: Any = import_module("numba")
-    general = method.general and model.has_force and not isinstance(method, OwnMethod)
+    general = method.general and not model.without_force and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):
         return None
     # never called by Python: compiles twice as fast

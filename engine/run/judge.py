@@ -60,7 +60,7 @@ class Judge:
         self._returns = method.symplectic or fastest < limits.MIN_STEPS_A_TURN * self._h
         self._escapes = not model.turns  # nothing brings an orbit back
         self._orbit: _Orbit | None = None
-        if method.symplectic and method.general and model.has_force:
+        if method.symplectic and method.general and not model.without_force:
             self._orbit = _Orbit(method, model, h, period)
 
     def copy(self) -> Self:

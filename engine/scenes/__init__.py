@@ -1,4 +1,4 @@
-"""Scenes: `scene` defines what determines a run, `listed` has those worth watching."""
+"""Scenes: what determines a run, and those worth watching."""
 
 from engine.scenes.listed import DEFAULT_SCENE as DEFAULT_SCENE
 from engine.scenes.listed import GROUPS as GROUPS

@@ -162,11 +162,6 @@ class Scene:
         return self.h * self.equations.fastest
 
     @property
-    def general(self) -> bool:
-        """Whether model and methods take any force, as maps, areas and charts need."""
-        return not self.why_not_mapped
-
-    @property
     def why_not_mapped(self) -> str:
         """Why studies and maps do not apply to this scene, as a sentence; "" if they do."""
         if why := self.equations.without_force:
@@ -205,7 +200,9 @@ class Scene:
 
     def with_cast(self, cast: Cast) -> "Scene":
         """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""
-        return replace(self, cast=cast, watch=self.watch if set(self.cast) <= set(cast) else "")
+        if set(self.cast) <= set(cast):
+            return replace(self, cast=cast)
+        return replace(self, cast=cast, watch="")
 
 
 @cache

@@ -1,9 +1,4 @@
-"""Where methods fail.
-
-`linear` has the limits of small swings; `outcomes` follows whole swings until they are lost, and
-asks `chaos` whether they are chaotic.  `grid` tries every step size and amplitude, in strips for
-any executor; `study` makes the table and the map.
-"""
+"""Where methods fail: the limits of small swings, and what becomes of whole ones."""
 
 BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's

@@ -24,7 +24,7 @@ from tests.recordings.test_verify import of_another_machine
 from tests.tui.command_line import pendu
 from tui.playback.replay import Replay
 
-SPECIAL = sorted(name for name, scene in SCENES.items() if not scene.general)
+SPECIAL = sorted(name for name, scene in SCENES.items() if scene.why_not_mapped)
 SPRING_FIELDS = [field.name for field in EXTRA["spring"]]
 SPRING, DAMPED = SCENES["stiff-slow"], SCENES["damped"]
 

@@ -142,7 +142,7 @@ class History:
         energies = []
         for method, reading, h in zip(self.scene.cast, sample.readings, stepping.own, strict=True):
             energy = math.nan
-            if method.modified_energy and self._model.has_force:
+            if method.modified_energy and not self._model.without_force:
                 energy = method.modified_energy(self._model, (reading.theta, reading.omega), h)
             # it overflows where H does not
             energies.append(energy if math.isfinite(energy) else math.nan)

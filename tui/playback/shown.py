@@ -14,7 +14,7 @@ WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
     model = scene.equations
-    has_shadow = model.has_force and any(method.modified_energy for method in scene.cast)
+    has_shadow = not model.without_force and any(m.modified_energy for m in scene.cast)
     common = [each for each in QUANTITIES if has_shadow or each != "shadow_error"]
     own = (each.name for each in model.quantities())
     return common[0], *own, *common[1:]

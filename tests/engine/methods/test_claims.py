@@ -155,7 +155,6 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
     assert method.other_names
     assert re.fullmatch("[a-zA-Z]", method.letter)
     assert re.search(r"\(\d{4}\)", method.reference)
-    assert method.phases.__doc__
     if method.used is None:
         assert not method.general
     else:

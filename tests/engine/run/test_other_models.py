@@ -15,7 +15,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from recordings.fields import without_extremes
 
-NAMES = [n for n, s in SCENES.items() if not s.general]
+NAMES = [n for n, s in SCENES.items() if s.why_not_mapped]
 each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)
 PARAMETERS = {"friction": 0.1, "stiffness": 100.0, "coupling": 2.0, "level_frequency": 20.0}
 
@@ -88,7 +88,7 @@ def test_the_scenes_have_their_verdicts(name, seconds, expected):
 @each_scene
 def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene):
     for method in scene.cast:
-        general = method.general and scene.equations.has_force
+        general = method.general and not scene.equations.without_force
         assert isinstance(compiled(method, scene.equations), PlainLoops) == (not general)
 
 

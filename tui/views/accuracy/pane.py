@@ -89,7 +89,9 @@ class AccuracyPane(Chooser[Point]):
     @property
     def cast(self) -> Cast:
         scene = self.source.scene
-        return with_all_methods(scene).cast if self.all and scene.general else scene.cast
+        if self.all and not scene.why_not_mapped:
+            scene = with_all_methods(scene)
+        return scene.cast
 
     @property
     def chart(self) -> Chart:
@@ -112,7 +114,7 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def settled(self) -> bool:
-        if not self.source.scene.general:
+        if self.source.scene.why_not_mapped:
             return True
         return bool(self.steps) and not self.is_computing and self._charted == self._state
 

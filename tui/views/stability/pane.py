@@ -89,7 +89,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     @property
     def settled(self) -> bool:
-        if not self.source.scene.general:
+        if self.source.scene.why_not_mapped:
             return True
         return self._is_begun and not self.is_computing
 
