@@ -33,13 +33,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from recordings.events import remember
+    from tui.playback.replay import Replay
     from tui.screens import launch
 
     path = resolve(options.file)
     remember(own_methods(options))
     only = None if options.methods is None else cast_of(options, ())
     launch.check(options)
-    replay = launch.open_replay(path)
+    replay = Replay(launch.open_recording(path))
     if not 0 <= options.start_at <= replay.length:
         raise UserError(
             f"--start-at {options.start_at:g} is outside the recording; use 0 to "

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from recordings.recording import Run
     from tui.playback.rows import Floats, Row, Rows, Window  # NumPy can wait for the first paint
 
-MAX_WAITING = 64  # rows that are shown without NumPy
-
 
 def changes_of(run: "Run") -> list[SteppingChange]:
     """Return how a recorded run steps, its start's stepping first."""
@@ -32,8 +30,6 @@ def changes_of(run: "Run") -> list[SteppingChange]:
 
 
 class History:
-    """The past of one run, up to the last sample added."""
-
     sample: Sample
 
     def __init__(
@@ -90,7 +86,7 @@ class History:
         if is_row and is_new:
             self._last_row = sample.step
             self._waiting.append(row)
-            if len(self._waiting) >= MAX_WAITING:
+            if len(self._waiting) >= 64:  # the first ones are shown without NumPy
                 _ = self.rows
 
     def _row(self, sample: Sample, with_extremes: bool) -> "Row":
@@ -144,8 +140,9 @@ class History:
             energy = math.nan
             if method.modified_energy and not self._model.without_force:
                 energy = method.modified_energy(self._model, (reading.theta, reading.omega), h)
-            # it overflows where H does not
-            energies.append(energy if math.isfinite(energy) else math.nan)
+            if not math.isfinite(energy):  # it overflows where H does not
+                energy = math.nan
+            energies.append(energy)
         return energies
 
     @property

@@ -106,7 +106,9 @@ class Live(Playback):
         began = self._clock()
         # A sample at home shows what each method misses its start by.
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
-        chunk = 1 if has_own(self.scene) else CHUNK
+        chunk = CHUNK
+        if has_own(self.scene):
+            chunk = 1
         while (left := target - self._run.step) > 0 and self._clock() - began < FRAME_BUDGET:
             self._forward(min(left, chunk))
             if self.failure:
@@ -298,9 +300,11 @@ class Live(Playback):
     def _note(self, event: Event) -> None:
         self._events.append(event)
         if self.recorder is not None:
-            is_of_step = event.kind == "noticed"
-            self._clocked = self._due if is_of_step else self._recorded
-            self.recorder.event(event, self._clocked)
+            clock = self._recorded
+            if event.kind == "noticed":
+                clock = self._due
+            self._clocked = clock
+            self.recorder.event(event, clock)
 
 
 def has_own(scene: Scene) -> bool:

@@ -15,8 +15,6 @@ SCHEMA = "pendu.marks/1"
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A mark at a moment of a recording."""
-
     clock: float  # s, the recording clock
     run: int
     step: int

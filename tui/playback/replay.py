@@ -20,7 +20,6 @@ from tui.playback.marks import Mark, Marks
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run, SamplePlace
 
-FILL_BUDGET = 0.006  # s of each frame for reading the past
 MAX_FOLLOWED = 100  # samples; what lies further ahead is jumped to
 DENSE = 60.0  # s of the past that are read completely; what lies before,
 MAX_PIECES = 300  # in pieces of a second, evenly spread
@@ -219,7 +218,7 @@ class Replay(Playback):
 
     def fill(self) -> bool:
         """Read more of the past; return whether all of it that will be read has been."""
-        until = self._clock() + FILL_BUDGET
+        until = self._clock() + 0.006  # s of a frame
         for _ in self._reading:
             if self._clock() >= until:
                 return False

@@ -72,7 +72,9 @@ class Rows:
     def _add_to_whole(self, number: int) -> None:
         row = self._recent[[number % self._capacity]]
         wide = self._whole[number // self._width :][:1]
-        wide[:] = _merged(wide, row) if number % self._width else row
+        if number % self._width:
+            row = _merged(wide, row)
+        wide[:] = row
 
     def truncate(self, step: int) -> None:
         """Forget what came after a step, or a little more where it is long ago."""
@@ -87,7 +89,6 @@ class Rows:
 
     @property
     def recent(self) -> Records:
-        """The last rows, oldest first, with the fields of a Row by name."""
         return self._recent[self._slots(self._first, self.count)]
 
     def number_after(self, step: int) -> int:
@@ -105,7 +106,9 @@ class Rows:
         """Return the step of the last row before a number; -1 if there is none."""
         if number > self._first:
             return int(self._recent["step"][(number - 1) % self._capacity])
-        return int(self._whole["step"][(number - 1) // self._width]) if number else -1
+        if not number:
+            return -1
+        return int(self._whole["step"][(number - 1) // self._width])
 
     def until(self, current: Row) -> Records:
         """Return the rows of the whole run up to the current one, which may be between two rows.
@@ -130,8 +133,10 @@ class Rows:
 
     def _between(self, current: Row, until: int) -> Records:
         """Return the current row, unless the one before number `until` is at its step."""
-        is_row = self.last_step(until) == current[0]
-        return np.array([] if is_row else [current], self._recent.dtype)
+        rows = [current]
+        if self.last_step(until) == current[0]:
+            rows = []
+        return np.array(rows, self._recent.dtype)
 
     def _slots(self, begin: int, end: int) -> NDArray[np.intp]:
         return np.arange(begin, max(begin, end)) % self._capacity

@@ -42,10 +42,10 @@ class Shown(NamedTuple):
     line: Line | None = None
 
     def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
-        """Return these settings with a shot of the scene, or its own."""
+        """Return these settings with a shot of the scene, or its own; a recording has none."""
         if shot is None:
             known = SCENES.get(scene.name)
-            shot = known.shot if known == scene else scene.shot  # a recording has none
+            shot = known.shot if known == scene else scene.shot
         cast = {method.key for method in scene.cast}
         front = cast.intersection(shot.front) or cast
         return self._replace(
@@ -91,4 +91,6 @@ class Shown(NamedTuple):
 
     def of(self, run: int) -> "Shown":
         """Leave out the zoom into another run."""
-        return self if self.stretch and self.stretch.run == run else self._replace(stretch=None)
+        if self.stretch and self.stretch.run == run:
+            return self
+        return self._replace(stretch=None)

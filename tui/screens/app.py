@@ -44,7 +44,7 @@ class PenduApp(App[Exit | BaseException]):
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         # without colours Textual would only turn grey
-        super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)
+        super().__init__(ansi_color="NO_COLOR" in os.environ or None)
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme
@@ -56,7 +56,6 @@ class PenduApp(App[Exit | BaseException]):
 
     @property
     def source_screen(self) -> SourceScreen:
-        """The screen that follows the clock; a dialog may lie over it."""
         return self.source_screens[-1]
 
     def get_default_screen(self) -> Screen[None]:

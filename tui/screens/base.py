@@ -27,7 +27,6 @@ from tui.words.command_line import command, reproduces
 from tui.words.events import event_lines, numbered
 from tui.words.plain_text import description
 
-READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
 
 _SPEED = Binding.Group("half, double speed")
@@ -183,7 +182,8 @@ class SourceScreen(SizedScreen[None]):
         if is_writing(self.app):
             return
         self._frames += 1
-        turn = self._frames % max(self.host.fps // READ_RATE, 1) == 0
+        # what people read, five times a second
+        turn = self._frames % max(self.host.fps // 5, 1) == 0
         self._follow(sample, read=turn or self._is_late)
         self._is_late = False
 
@@ -284,12 +284,10 @@ class SourceScreen(SizedScreen[None]):
         self.change_shown(self.shown.of(self.source.sample.run).next_window())
 
     def action_back(self) -> None:
-        """Leave the zoom of the chart."""
         if self.shown.stretch:
             self.change_shown(self.shown.zoomed(None))
 
     def action_zoom(self, factor: float) -> None:
-        """Show `factor` times the range of time in the chart."""
         self._view_in_front.zoom(factor)
 
     def on_zoomed(self, message: Zoomed) -> None:
@@ -320,7 +318,6 @@ class SourceScreen(SizedScreen[None]):
     # Views and dialogs
 
     async def action_view(self, name: str = "") -> None:
-        """Show a view, or the next one."""
         name = name or following(self.view)
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
@@ -343,7 +340,10 @@ class SourceScreen(SizedScreen[None]):
 
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
         owners: list[type[Widget]] = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
-        owners.insert(0 if self.view == "lab" else len(owners), type(self))
+        if self.view == "lab":
+            owners.insert(0, type(self))
+        else:
+            owners.append(type(self))
         self.show_text("Help", help_text(owners, self.source, self.app.size.width))
 
     def action_events(self) -> None:

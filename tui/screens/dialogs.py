@@ -58,8 +58,6 @@ class Form(ModalScreen[ScreenResultType], Once[ScreenResultType]):
 
 
 class TextScreen(ModalScreen[None], Once[None]):
-    """A text.  Esc closes it, and so do the keys that open one."""
-
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")
     ]
@@ -84,12 +82,10 @@ def bindings_of(owner: type[DOMNode]) -> list[Binding]:
 
 
 def purpose(binding: Binding) -> str:
-    """Return what a key does, in a phrase."""
     return binding.tooltip or binding.description
 
 
 def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
-    """Yield a line for each key, or for each group of keys."""
     for group, members in groupby(bindings, key=lambda each: each.group or each):
         keys = [key_text(each) for each in members]
         if len(keys) > 3:
@@ -122,8 +118,6 @@ def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> st
 
 
 class SceneList(Form[str]):
-    """Asks for the scene to start, and returns its name."""
-
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)")]
 
     def __init__(self, current: str) -> None:

@@ -60,7 +60,6 @@ def recording_path(file: Path | None) -> Path:
 
 
 def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
-    """Record the lab at a path, if there is one; `or_next`: or under the next free name."""
     if path is None:
         return
     from recordings.errors import NameTakenError
@@ -79,7 +78,6 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
 def live_screen(
     live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True
 ) -> "LiveScreen":
-    """The lab's screen; recording starts after its first paint."""
     from tui.screens.live import LiveScreen
 
     return LiveScreen(live, prepare=partial(start_recording, live, path, or_next), notices=notices)
@@ -95,13 +93,6 @@ def open_recording(path: Path) -> "Recording":
         recording.close()
         raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
     return recording
-
-
-def open_replay(path: Path) -> "Replay":
-    """A recording to be replayed.  Raises UserError if there is nothing in it."""
-    from tui.playback.replay import Replay
-
-    return Replay(open_recording(path))
 
 
 def open_ghost(path: Path) -> "Ghost":
@@ -263,7 +254,9 @@ def say_goodbye(source: "Source") -> int:
     if not isinstance(source, Live) or source.recorder is None:
         return Exit.FINE
     recorder = source.recorder
-    file = recorder.part if recorder.part.exists() else recorder.path
+    file = recorder.path
+    if recorder.part.exists():
+        file = recorder.part
     if file.exists():
         print(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
     if recorder.failed:

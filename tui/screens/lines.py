@@ -58,8 +58,6 @@ class Segment(NamedTuple):
 
 
 class StatusLine(Pane, Badged):
-    """The run, its speed, its start, and the state of the recording."""
-
     def picture(self, source: Source, sample: Sample) -> Picture:
         return Picture([status_row(source, self.room.width)])
 
@@ -203,7 +201,9 @@ class TourPanel(Badged):
             return
         width, height = self.room
         title = f" {self.tour.title} "
-        forward = "enter again" if self.tour.is_astray else FORWARD[self.tour.stage]
+        forward = FORWARD[self.tour.stage]
+        if self.tour.is_astray:
+            forward = "enter again"
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):
             keys = keys.rpartition("  ")[0]

@@ -25,8 +25,6 @@ _H = Binding.Group("larger, smaller step h")
 
 
 class LiveScreen(SourceScreen):
-    """Shows a live source and changes it."""
-
     BINDING_GROUP_TITLE = "Lab"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(
@@ -168,7 +166,6 @@ class LiveScreen(SourceScreen):
         self.action_start_scene(names[index])
 
     def action_start_scene(self, name: str) -> None:
-        """Start a scene of the lecture, or a listed one, with its shot."""
         scene = self.lecture.get(name) or SCENES[name]
         self.page = name
         self.start(scene, scene.speed)

@@ -16,8 +16,6 @@ from tui.screens.live import LiveScreen
 
 
 class Entry(NamedTuple):
-    """A line of the palette."""
-
     text: str
     action: str
     key: str = ""
@@ -46,10 +44,7 @@ class Commands(CommandPalette, Once[None]):
 
 
 class LabCommands(Provider):
-    """Finds entries by what is typed."""
-
     def _lines(self) -> Iterator[tuple[str, Callable[[], object]]]:
-        """Yield the text of each entry, with its key in the last column, and what runs it."""
         screen = cast(SourceScreen, self.screen)
         room = min(screen.size.width - 8, 100) - KEY_WIDTH
         for text, action, key in entries(screen):

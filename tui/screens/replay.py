@@ -137,12 +137,10 @@ class ReplayScreen(SourceScreen):
         self.notify("A recording cannot be changed: f continues it live, and then it can.")
 
     def action_seek(self, seconds: float) -> None:
-        """Go forward, or back."""
         self.replay.seek(self.replay.playhead.position + seconds)
         self.show_now()
 
     def action_part(self, share: float) -> None:
-        """Go forward by a share of the whole, or back."""
         self.action_seek(share * self.replay.length)
 
     def action_reverse(self) -> None:

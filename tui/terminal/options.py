@@ -19,8 +19,6 @@ LARGEST = (400, 200)
 
 
 class TerminalOptions(NamedTuple):
-    """How the lab is shown on a terminal."""
-
     theme: str = "dark"
     character_set: CharacterSet = "braille"
     mouse: bool = True
@@ -31,7 +29,6 @@ USUAL = TerminalOptions()
 
 
 def add_terminal_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for showing the lab; `terminal_options_of` reads them."""
     add = add_picture_options(parser, "auto", "auto").add_argument
     plain = "no TUI: print a sentence per second; Ctrl+C to stop"
     add("--plain", action="store_true", help=plain)
@@ -70,7 +67,6 @@ def cells(text: str) -> tuple[int, int]:
 
 
 def frames_per_second(text: str) -> int:
-    """A frame rate that the lab can be shown at."""
     if count(text) > 60:
         raise argparse.ArgumentTypeError(f"{text!r} is out of range; use 1 to 60 frames per second")
     return count(text)
@@ -86,13 +82,13 @@ def terminal_options_of(
     pixels = options.pixels
     if pixels == "auto":
         pixels = "braille" if is_utf8(encoding) else "ascii"
-    calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
-    fps = options.fps or (CALM_FPS if calm else FPS)
-    return TerminalOptions(theme, pixels, mouse=not options.no_mouse, fps=fps)
+    fps = FPS
+    if environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none":
+        fps = CALM_FPS
+    return TerminalOptions(theme, pixels, mouse=not options.no_mouse, fps=options.fps or fps)
 
 
 def is_utf8(encoding: str) -> bool:
-    """Whether an encoding is UTF-8, in any spelling."""
     return encoding.lower().replace("-", "").replace("_", "") == "utf8"
 
 

@@ -91,7 +91,9 @@ class SignalThread(Thread):
         while True:
             # without a signal, look at the terminal each second
             ready, _, _ = select.select([self._pipe], [], [], 1.0)
-            numbers = os.read(self._pipe, 4096) if ready else b""
+            numbers = b""
+            if ready:
+                numbers = os.read(self._pipe, 4096)
             called = [self._handlers[number] for number in numbers if number in self._handlers]
             if is_gone() if self._has_terminal else os.getppid() != self._server:
                 called.append(self._leave)
