@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 MAX_READINGS = 10_000_000  # of all methods of a run: 320 MB
 
-
 T = TypeVar("T")
 
 
@@ -91,22 +90,13 @@ class Track:
     failed_at: float | None  # s
 
 
-@dataclass(frozen=True, slots=True)
-class Run(Mapping[str, Track]):
-    """The methods' tracks, by key or by the start of a key."""
+class Run(ByMethod[Track]):
+    """The methods' tracks, by key or by the start of a key; `t` are their times [s]."""
 
-    scene: Scene = field(repr=False)
-    t: "Floats" = field(repr=False)  # s
-    tracks: ByMethod[Track]
-
-    def __getitem__(self, name: str) -> Track:
-        return self.tracks[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.tracks)
-
-    def __len__(self) -> int:
-        return len(self.tracks)
+    def __init__(self, scene: Scene, t: "Floats", tracks: Iterable[Track]) -> None:
+        super().__init__(scene.cast, tracks)
+        self.scene = scene
+        self.t = t
 
 
 def simulate(
@@ -140,9 +130,7 @@ def simulate(
         values[:, :, index] = np.transpose([reading[:4] for reading in sample.readings])
     verdicts = [judgement.verdict for judgement in lockstep.judgements]
     ends = [reading.diverged_at for reading in sample.readings]
-    rows = zip(*values, verdicts, ends, strict=True)
-    tracks = (Track(*row) for row in rows)
-    return Run(chosen, t, ByMethod(chosen.cast, tracks))
+    return Run(chosen, t, map(Track, *values, verdicts, ends))
 
 
 def _stops(scene: Scene, time: float, every: int) -> list[int]:

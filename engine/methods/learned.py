@@ -19,14 +19,15 @@ from engine.methods.runge_kutta import rk4_on_rates
 from engine.models.model import Model, Phase, Rates
 
 
+def _numbers(text: str) -> list[tuple[float, ...]]:
+    return [tuple(map(float, row.split(","))) for row in text.split()]
+
+
 @cache
 def _rows(coefficients: str) -> list[tuple[float, ...]]:
     """Return for each feature its three numbers and its coefficients."""
-    features, sums = (
-        [tuple(map(float, row.split(","))) for row in text.split()]
-        for text in (FEATURES, coefficients)
-    )
-    return [(*feature, *each) for feature, each in zip(features, sums, strict=True)]
+    pairs = zip(_numbers(FEATURES), _numbers(coefficients), strict=True)
+    return [(*feature, *each) for feature, each in pairs]
 
 
 @lru_cache(maxsize=16)
@@ -140,7 +141,7 @@ def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
 @cache
 def _module(numbers: str) -> Callable[[float], float]:
     """Return x -> the sum of k tanh(a x + c)."""
-    rows = [tuple(map(float, row.split(","))) for row in numbers.split()]
+    rows = _numbers(numbers)
 
     def module(x: float) -> float:
         return sum(k * math.tanh(a * x + c) for a, c, k in rows)

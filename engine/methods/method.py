@@ -15,9 +15,6 @@ Phases = Callable[[Any, Phase, float], Iterator[Phase]]
 Methods made for one model take its `parts` in place of the force.
 """
 
-RatePhases = Callable[[Rates, Phase, float], Iterator[Phase]]
-"""The same of a first-order system: (rates, phase, h) -> phases."""
-
 BoundPhases = Callable[[Phase, float], Iterator[Phase]]
 """The same of a method on a model: (phase, h) -> phases."""
 
@@ -57,7 +54,8 @@ class Method:
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
     takes_parts: bool = False  # `phases` takes the parts of its model, not any force
-    on_rates: RatePhases | None = None  # the same method for first-order systems
+    # (rates, phase, h) -> phases: the same method for first-order systems
+    on_rates: Callable[[Rates, Phase, float], Iterator[Phase]] | None = None
     on_spring: Phases | None = None  # the same method with the parts of a spring
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
