@@ -37,10 +37,9 @@ def wobble(method: Method, z: float) -> Wobble:
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
     -c theta² + (a - d) theta omega + b omega² = -c theta0², with its Jacobian ((a, b), (c, d)) at
-    w0 = 1.  Its half axes, squared, are the energy's extremes: (1 - z²/4, 1) for velocity
-    Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
-    (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic
-    Euler.  Beyond its limit a symplectic step has no ellipse: (0, 1, 1), velocity
+    w0 = 1.  Its half axes, squared, are the energy's extremes: (1 - z²/4, 1, 1) for velocity
+    Verlet, (1/(1 + z/2), 1/(1 - z/2), 1/sqrt(1 - z²/4)) for symplectic Euler, (1, 1, 1) for
+    explicit Euler and RK4.  Beyond its limit a symplectic step has no ellipse: (0, 1, 1), velocity
     Verlet's at its limit.
     """
     a, b, c, d = at_bottom(method, z)
