@@ -13,7 +13,6 @@ from tui.drawing.palette import PALETTES, TEXT
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
-from tui.terminal.character_sets import CharacterSetFilter
 from tui.views import VIEWS
 
 
@@ -45,17 +44,6 @@ async def test_a_theme_changes_all_colours_and_no_character():
         )
         assert not colours & old - set(PALETTES["light"].methods)
         assert colours >= new
-
-
-async def test_forms_help_and_the_palette_are_ascii_too():
-    async with lab() as theatre:
-        theatre.app.character_filter = CharacterSetFilter("ascii")
-        for keys in (["i"], ["P"], ["question_mark"], ["ctrl+p", *"theme"]):
-            await theatre.press(*keys)
-            await theatre.pilot.pause(0.3)
-            assert theatre.app.screen is not theatre.stage
-            assert "".join(lines_of(await picture(theatre))).isascii()
-            await theatre.press("escape")
 
 
 def colours(app) -> set[Color]:

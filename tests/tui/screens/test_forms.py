@@ -73,10 +73,13 @@ async def test_a_click_takes_a_method_and_more_than_fit_or_none_are_refused():
         assert theatre.source.scene.cast == USUAL_CAST
 
 
-async def test_a_form_that_is_cancelled_changes_nothing():
+async def test_a_form_that_is_cancelled_changes_nothing_and_with_reduced_motion_none_blinks():
     async with lab() as theatre:
-        for key in ("i", "M", "P"):
-            await theatre.press(key, "escape")
+        theatre.app.animation_level = "none"
+        for key in ("i", "M", "P", "ctrl+p"):
+            await theatre.press(key)
+            assert not any(field.cursor_blink for field in theatre.app.screen.query("Input"))
+            await theatre.press("escape")
             await theatre.pilot.pause()
         assert theatre.app.screen is theatre.stage
         assert (theatre.source.scene, theatre.source.sample.run) == (DEFAULT_SCENE, 1)

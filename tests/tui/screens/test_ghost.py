@@ -42,19 +42,16 @@ def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
     for t in (1.0, 2.5, 3.0, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
         for method, reading in zip(OTHER_H.cast, readings, strict=True):
-            assert found.rods(t)[method.key] == pytest.approx(
-                reading.theta, abs=0.7
-            )  # one step of 0.1 s
+            # one step of 0.1 s
+            assert found.rods(t)[method.key] == pytest.approx(reading.theta, abs=0.7)
     assert found.rods(16.0) == found.rods(-1.0) == {}
 
 
 def test_its_errors_end_where_the_lab_is(path):
     found = ghost(path)
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
-    low, high = (
-        found.window(4.0).low["energy_error"][:, 0],
-        found.window(10.0).high["energy_error"][:, 0],
-    )
+    low = found.window(4.0).low["energy_error"][:, 0]
+    high = found.window(10.0).high["energy_error"][:, 0]
     assert np.nanmax(high) > np.nanmax(low) > 0
 
 
@@ -99,16 +96,10 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     assert live.ghost is left.left
 
 
-def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path):
+def test_what_is_no_recording_or_of_another_model_is_refused_in_a_sentence(tmp_path, path):
     broken = tmp_path / "broken.mcap"
     broken.write_bytes(b"nothing")
-    assert pendu("live", "--plain", "--no-record", "--ghost", broken).refused(3, "broken.mcap")
-    assert pendu("live", "--plain", "--no-record", "--ghost", tmp_path / "none.mcap").refused(
-        3, "no recording"
-    )
-
-
-def test_a_scene_of_another_model_is_refused(path):
-    assert pendu("live", "--ghost", path, "--scene", "stiff-limit").refused(
-        2, "--ghost", "model pendulum", "spring"
-    )
+    for ghost, words in ((broken, "broken.mcap"), (tmp_path / "none.mcap", "no recording")):
+        assert pendu("live", "--plain", "--no-record", "--ghost", ghost).refused(3, words)
+    other = pendu("live", "--ghost", path, "--scene", "stiff-limit")
+    assert other.refused(2, "--ghost", "model pendulum", "spring")

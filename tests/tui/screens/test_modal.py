@@ -6,7 +6,6 @@ import pytest
 from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import Screen
-from textual.widgets import OptionList
 from textual.widgets._toast import Toast
 
 from tests.tui.harness import lab
@@ -38,18 +37,10 @@ async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal():
             theatre.app.notify(f"{opening}: words that take more than a line")
             await theatre.pilot.pause()
             assert theatre.app.screen.query(Toast)
-            for size in ((12, 30), (3, 1), (1, 30), (1, 1)):
+            for size in ((12, 30), (1, 1)):
                 await theatre.pilot.resize_terminal(*size)
             await theatre.press("escape")
             assert theatre.app.screen is theatre.stage
-
-
-async def test_a_page_of_scenes_can_be_asked_for_where_there_is_room_for_none():
-    async with lab(size=(3, 2)) as theatre:
-        theatre.stage.action_scenes()
-        await theatre.pilot.pause()
-        assert theatre.app.screen.query_one(OptionList).highlighted
-        await theatre.press("pagedown", "pageup")
 
 
 async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(

@@ -104,9 +104,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
     def make(clock: Callable[[], float]) -> ReplayScreen:
         slowly = itertools.count(0.0, 0.003).__next__  # a frame has time for some samples only
         return ReplayScreen(
-            Replay(Recording.open(path), slowly),
-            lambda live: LiveScreen(live, clock),
-            clock,
+            Replay(Recording.open(path), slowly), lambda live: LiveScreen(live, clock), clock
         )
 
     async with on_stage(make, (120, 40)) as theatre:

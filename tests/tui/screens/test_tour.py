@@ -6,7 +6,7 @@ from engine.scenes import SCENES
 from tests.tui.harness import FPS, Theatre, lab, on_stage
 from tui.playback.live import Live
 from tui.playback.shown import Shown
-from tui.screens.lines import InsightLine, KeyLine, TourPanel
+from tui.screens.lines import InsightLine, TourPanel
 from tui.screens.live import LiveScreen
 from tui.screens.still import normalised
 from tui.words.tour import ASTRAY, STEPS
@@ -34,6 +34,10 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert (theatre.stage.view, theatre.source.scene) == (shot.shot.view, shot.scene)
             assert theatre.stage.shown == Shown().through(shot.scene, shot.shot)
             assert words(shot.watch) in panel(theatre)
+            assert f"Tour {number + 1} of {len(STEPS)}: " in panel(theatre)
+            region = theatre.stage.query_one(TourPanel).region
+            assert (region.width, region.bottom) == (60, 15)  # the key line is below
+            assert not theatre.stage.query_one(InsightLine).is_on_screen
             await theatre.press("enter")
             assert words(shot.question) in panel(theatre)
             assert words(f"1: {shot.answers[0]} 2: {shot.answers[1]}") in panel(theatre)
@@ -46,20 +50,6 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
         assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
         await theatre.press("u")
         assert theatre.source.scene == SCENES["spin"]
-
-
-@pytest.mark.parametrize("size", [(60, 16), (120, 40)])
-async def test_the_panel_takes_the_place_of_the_insight_line_and_covers_nothing(size):
-    async with lab(size=size) as theatre:
-        await theatre.press("T")
-        await theatre.run(1)
-        region = theatre.stage.query_one(TourPanel).region
-        keys = theatre.stage.query_one(KeyLine).region
-        assert 3 <= region.height <= 5
-        assert (region.width, region.bottom) == (size[0], keys.y)
-        assert not theatre.stage.query_one(InsightLine).is_on_screen
-        for widget in theatre.stage.query("#views CellWidget"):
-            assert not widget.is_on_screen or widget.region.bottom <= region.y
 
 
 async def test_leaving_it_restores_view_and_settings_and_u_the_run():
