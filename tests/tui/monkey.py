@@ -73,25 +73,8 @@ def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
             return mouse(chance.choice((64, 65)), "M")
 
 
-def presses(number: int, seed: int) -> Iterator[str]:
-    """All that it does, one after the other; now and then it closes what lies over the lab."""
-    chance = random.Random(seed)
-    for done in range(number):
-        if done % EPISODE == 0:
-            if done % (10 * EPISODE) == 0:
-                yield PALETTE
-                yield "".join(
-                    chance.choices("aemnstv ", k=3)
-                )  # the palette finds, but does nothing
-            yield ESC
-            yield ESC
-        if done == number // 2:
-            yield from (ESC, ESC, "f")  # a replay goes on live
-        yield press(chance)
-
-
 def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
-    """The same with dialogs, the palette and what it offers, pasted garbage, large numbers, and other sizes."""
+    """Presses, dialogs, the palette and what it offers, pasted garbage, text, and other sizes."""
     chance, size = random.Random(seed), SIZE
     for done in range(number):
         if done % EPISODE == 0:

@@ -256,7 +256,7 @@ def calls(work: Callable[[], object]) -> int:
 
 
 @pytest.mark.slow
-def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
+def test_a_frame_takes_as_much_after_four_hours_as_after_half_an_hour():
     lab, taken = Lab(DEFAULT_SCENE), []
 
     def frames() -> None:
@@ -267,7 +267,7 @@ def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
         lab.live.history.window()
         _ = lab.live.judgements, lab.live.milestones
 
-    for hours in (1, 8):
+    for hours in (0.5, 4):
         lab.live.set_speed(256 * FPS)
         while lab.live.sample.t < hours * 3600:
             lab.run(1 / FPS)

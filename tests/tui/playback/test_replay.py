@@ -24,16 +24,6 @@ NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
 
 
-OPENED: list[Recording] = []
-
-
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    while OPENED:
-        OPENED.pop().close()
-
-
 class Table(Clocked):
     """A replay with its clock."""
 
@@ -41,7 +31,6 @@ class Table(Clocked):
         self.recording = Recording.open(path)
         self.replay = Replay(self.recording, clock=lambda: 0.0)
         super().__init__(self.replay)
-        OPENED.append(self.recording)
 
     @property
     def due(self) -> Sample:

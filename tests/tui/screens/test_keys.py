@@ -53,12 +53,8 @@ async def test_p_goes_to_the_next_scene_and_capital_p_to_any():
     async with lab() as theatre:
         names = list(SCENES)
         await theatre.press("-", "r")  # which makes it a scene of its own
-        for keys, index in (
-            ("p", 1),
-            ("p", 2),
-            (("P", "end", "enter"), -1),
-            (("P", "escape", "p"), 0),
-        ):
+        moves = (("p", 1), ("p", 2), (("P", "end", "enter"), -1), (("P", "escape", "p"), 0))
+        for keys, index in moves:
             await theatre.press(*keys)
             assert theatre.source.scene == SCENES[names[index]]
         assert names[0] in theatre.text(StatusLine)
@@ -166,10 +162,8 @@ async def test_what_is_shown_digits_t_y_e_and_w():
 async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
     async with lab() as theatre:
         await theatre.run(1)
-        for widget, offset in (
-            (ErrorTable, (5, 3)),
-            (theatre.stage.query_one(LabView).pendulums[2], (9, 5)),
-        ):
+        pendulum = theatre.stage.query_one(LabView).pendulums[2]
+        for widget, offset in ((ErrorTable, (5, 3)), (pendulum, (9, 5))):
             await theatre.pilot.click(widget, offset=offset)
             await theatre.run(0.1)
             assert theatre.stage.shown.places(USUAL_CAST) == [2]

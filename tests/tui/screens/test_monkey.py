@@ -1,4 +1,4 @@
-"""Hundreds of random keys and clicks over all views, live and replay; tests/bench/monkey.py presses more of them."""
+"""Hundreds of random events over all views, live and replay; tests/bench/monkey.py has more of them."""
 
 import itertools
 import os
@@ -12,36 +12,17 @@ from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import on_stage
-from tests.tui.monkey import (
-    LOOK,
-    SIZE,
-    play_on_stage,
-    presses,
-    small_studies,
-    wild_presses,
-    wild_stage,
-)
+from tests.tui.monkey import ESC, LOOK, SIZE, play_on_stage, small_studies, wild_presses, wild_stage
 from tui.cli.options import resolve
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 
 pytestmark = [pytest.mark.other_process, pytest.mark.slow]  # what is computed is left again at once
 
-PRESSES, WILD = 200, 120
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))
-
-
-def all_verify(library: Path) -> int:
-    """How many recordings there are; all of them are finished, and the same bits come out again."""
-    recordings = list(library.glob("*.[mp]*"))
-    for path in recordings:
-        assert path.suffix == ".mcap"
-        assert verify(path).identical
-    return len(recordings)
 
 
 @pytest.fixture
@@ -52,35 +33,28 @@ def library(tmp_path: Path) -> Iterator[Path]:
         yield folder
 
 
-async def test_random_keys_and_clicks_do_no_harm_and_the_recording_verifies(tmp_path, library):
-    def recorded(live: Live) -> Live:
-        live.record(LiveRecorder(library / f"{live.sample.step}.mcap"))
-        return live
-
-    def make(clock: Callable[[], float]) -> SourceScreen:
-        looks = itertools.count(0.0, LOOK).__next__
-        path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
-        replay = Replay(Recording.open(path), clock=looks)
-        return ReplayScreen(replay, lambda live: LiveScreen(recorded(live), clock), clock)
-
-    async with on_stage(make, SIZE) as theatre:
-        await play_on_stage(theatre, presses(PRESSES, SEED), SEED)
-        assert theatre.stage.source.kind == "LIVE"
-        theatre.source.close()
-    assert all_verify(library) == 1
-
-
-async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_either(
-    library, monkeypatch
+@pytest.mark.parametrize("command", ["live", "replay"])
+async def test_random_events_do_no_harm_and_the_recordings_verify(
+    tmp_path, library, monkeypatch, command
 ):
     monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
-    async with on_stage(wild_stage(library), SIZE) as theatre:
-        await play_on_stage(theatre, wild_presses(WILD, SEED), SEED)
+
+    def replayed(clock: Callable[[], float]) -> ReplayScreen:
+        def go_live(live: Live) -> LiveScreen:
+            live.record(LiveRecorder(library / "lab.mcap"))
+            return LiveScreen(live, clock)
+
+        path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
+        replay = Replay(Recording.open(path), clock=itertools.count(0.0, LOOK).__next__)
+        return ReplayScreen(replay, go_live, clock)
+
+    make = {"live": wild_stage(library), "replay": replayed}[command]
+    events = [*wild_presses(80, SEED), ESC, ESC, "f", *wild_presses(80, SEED + 1)]
+    async with on_stage(make, SIZE) as theatre:
+        await play_on_stage(theatre, events, SEED)
         assert theatre.app.is_running
+        assert theatre.source.kind == "LIVE"
         theatre.source.close()
-        recorded = [
-            each.source.recorder
-            for each in theatre.app.source_screens
-            if each.source.kind == "LIVE"
-        ]
-    assert all_verify(library) == len(recorded)
+    (path,) = library.glob("*.[mp]*")
+    assert path.suffix == ".mcap"
+    assert verify(path).identical

@@ -23,31 +23,21 @@ def path(tmp_path: Path) -> Path:
     return eventful(tmp_path / "eventful.mcap")
 
 
-async def test_seeking_with_arrows_home_end_and_page_keys_and_stepping(path):
+async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path):
     async with player(path) as theatre:
         replay = theatre.source
         assert " REPLAY " in theatre.text(StatusLine)
         bar = theatre.stage.query_one(SeekBar)
         assert "of 12.00 s" in bar.render_line(0).text
-        for keys, position in (
-            (["right", "right"], 2),
-            (["left"], 1),
-            (["end"], 12),
-            (["home"], 0),
-            (["pagedown", "pagedown"], 2.4),
-            (["pageup"], 1.2),
-        ):
-            await theatre.press(*keys)
+        moves = (("right right", 2), ("left", 1), ("end", 12), ("home", 0))
+        for keys, position in (*moves, ("pagedown pagedown", 2.4), ("pageup", 1.2)):
+            await theatre.press(*keys.split())
             assert replay.playhead.position == pytest.approx(position)
         await theatre.press("full_stop", "full_stop", "comma")
         assert replay.sample.step == 25
         assert "paused" in theatre.text(StatusLine)
 
-
-async def test_events_speed_direction_and_space_at_the_end(path):
-    async with player(path) as theatre:
-        replay = theatre.source
-        await theatre.press("right_square_bracket")
+        await theatre.press("home", "space", "right_square_bracket")
         assert replay.playhead.position == pytest.approx(2)
         await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
         assert replay.playhead.position == pytest.approx(4)

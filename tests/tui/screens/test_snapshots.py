@@ -3,17 +3,16 @@
 The studies are stored beside the pictures: chaos would show the last bits of another processor's sine.
 """
 
+import html
 import pickle
-import shutil
-import subprocess
+import re
 import zlib
 
-import numpy as np
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.command_line import pendu
-from tests.tui.conftest import SNAPSHOTS, text_of
+from tests.tui.conftest import SNAPSHOTS
 from tests.tui.harness import player
 from tui.cli.options import resolve
 from tui.screens.still import normalised, still
@@ -93,11 +92,16 @@ async def test_the_form_and_the_help_lie_over_the_lab(text_snapshot):
     )
 
 
-def test_the_command_writes_the_same_picture(tmp_path, snapshot):
+def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_length(
+    tmp_path, snapshot
+):
     out = tmp_path / "lab.svg"
     outcome = pendu("snapshot", "--time", SECONDS, "-o", out)
     assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
-    snapshot("lab-120x40-dark", out.read_text(encoding="utf-8"))
+    svg = out.read_text(encoding="utf-8")
+    snapshot("lab-120x40-dark", svg)
+    texts = map(html.unescape, re.findall(r"<text [^>]*>([^<]*)</text>", svg))
+    assert all(text.isascii() or len(text) == 1 for text in texts)
 
 
 @pytest.mark.parametrize(
@@ -116,20 +120,3 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, monkeypatch, ar
     monkeypatch.chdir(tmp_path)
     assert pendu("snapshot", "-o", "x.svg", *arguments).refused(2, words)
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.skipif(shutil.which("rsvg-convert") is None, reason="needs rsvg-convert")
-def test_librsvg_which_ignores_the_lengths_of_texts_draws_each_character_in_its_cell(tmp_path):
-    imread = pytest.importorskip("matplotlib.image").imread
-    svg, png = tmp_path / "lab.svg", tmp_path / "lab.png"
-    assert pendu("snapshot", "--time", SECONDS, "-o", svg).code == 0
-    subprocess.run(["rsvg-convert", svg, "-o", png], check=True)
-    picture = imread(png)[:, :, :3].sum(axis=2)
-    right = total = 0
-    for row, line in enumerate(text_of(svg.read_text(encoding="utf-8")).splitlines()):
-        for column, character in enumerate(line):
-            x, y = 9 + 12.2 * column, 41 + 24.4 * row  # Rich's frame and cells
-            cell = picture[round(y) + 2 : round(y + 24.4) - 2, round(x) + 2 : round(x + 12.2) - 2]
-            total += 1
-            right += (np.ptp(cell) > 0.1) == (not character.isspace())
-    assert right / total > 0.97
