@@ -43,7 +43,7 @@ class Clocked:
 
 
 class Lab(Clocked):
-    """A lab without a screen; it records into a file, or into anything with the methods of a LiveRecorder."""
+    """A lab without a screen; `record`: a file, or anything with the methods of a LiveRecorder."""
 
     def __init__(
         self,
@@ -53,11 +53,10 @@ class Lab(Clocked):
         work_clock: Callable[[], float] = lambda: 0.0,
     ) -> None:
         self.live = Live(scene, speed, clock=work_clock)
+        if isinstance(record, Path):
+            record = LiveRecorder(record, wall=lambda: 1_700_000_000_000_000_000)
         if record is not None:
-            wall = 1_700_000_000_000_000_000
-            self.live.record(
-                LiveRecorder(record, wall=lambda: wall) if isinstance(record, Path) else record
-            )
+            self.live.record(record)
         super().__init__(self.live)
 
 
@@ -175,9 +174,9 @@ async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
 
 
 async def uncomputed(*_: object) -> AsyncIterator[object]:
-    """Replaces tui.views.background.computed in tests that do not look at the results: it yields none."""
-    for item in ():
-        yield item
+    """Replaces tui.views.background.computed where a test does not look at the results."""
+    return
+    yield
 
 
 @asynccontextmanager

@@ -2,16 +2,13 @@
 
 import asyncio
 import itertools
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from recordings.recording import Recording
-from tests.tui.harness import eventful, on_stage, player, recorded
+from tests.tui.harness import eventful, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
-from tui.playback.replay import Replay
 from tui.screens.lines import StatusLine
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen, SeekBar
@@ -89,15 +86,9 @@ async def test_a_click_and_a_drag_on_the_bar_go_there(path):
 
 
 async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
-    path = recorded(tmp_path / "drift.mcap", 20.0)
-
-    def make(clock: Callable[[], float]) -> ReplayScreen:
-        slowly = itertools.count(0.0, 0.003).__next__  # a frame has time for some samples only
-        return ReplayScreen(
-            Replay(Recording.open(path), slowly), lambda live: LiveScreen(live, clock), clock
-        )
-
-    async with on_stage(make, (120, 40)) as theatre:
+    async with player(recorded(tmp_path / "drift.mcap", 20.0)) as theatre:
+        # a frame has time for some samples only
+        theatre.source._clock = itertools.count(0.0, 0.003).__next__
         theatre.stage.action_part(1)
         await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
         async with asyncio.timeout(20):
