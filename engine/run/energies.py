@@ -1,6 +1,6 @@
 """The record of any program: a verdict from times and energies alone.
 
-A least-squares fit in correlated noise describes the means of up to 64 blocks by a level, waves and
+A least-squares fit in correlated noise describes the means of up to 64 blocks by a level, a wave and
 one more curve, which still moves (a line, an exponential, a logarithm) or has settled (an approach,
 a step).
 
@@ -27,7 +27,6 @@ _WHITE = np.array([0.0, 3, 100])  # variance of white noise, in that of the kick
 _RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
-_MAX_WAVES = 3
 
 
 def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
@@ -89,7 +88,7 @@ def _outliers(energies: Any, floor: float) -> int:
 
 
 class _Fit(NamedTuple):
-    """A curve fitted together with a level and waves."""
+    """A curve fitted together with a level and a wave."""
 
     likelihood: float  # logarithm, of the best noise
     amplitude: float  # averaged over the noises
@@ -128,8 +127,8 @@ class _Record:
         self._times = times = _means(self._at, count)
         self._means = _means(energies, count)
         self._base = np.ones((count, 1))
-        self._cycles = math.inf  # of the slowest wave
-        self._add_waves()
+        self._cycles = math.inf  # of the wave
+        self._add_wave()
         edge = max(2, count // 8)
         steps = np.arange(count) - np.arange(edge, count - edge, 0.25)[:, None] + 1
         moving = [
@@ -186,22 +185,19 @@ class _Record:
         )
         return [_Fit(*map(float, each)) for each in zip(*found, strict=True)]
 
-    def _add_waves(self) -> None:
-        """Add to the base the cosines and sines that stand out of every noise."""
-        before = self._fits([self._times])[0].likelihood
-        grid = np.arange(1.25, self._count / 2, 0.25)
-        for _ in range(_MAX_WAVES):
-            best = self._best_wave(grid)
-            best = self._best_wave(best + np.linspace(-0.25, 0.25, 51))
-            angles = math.tau * best * self._times
-            base = self._base
-            self._base = np.column_stack([base, np.cos(angles), np.sin(angles)])
-            after = self._fits([self._times])[0].likelihood
-            if after - before < 1.5 * math.log(self._count) + limits.WAVE:
-                self._base = base
-                break
-            self._cycles = min(self._cycles, best)
-            before = after
+    def _add_wave(self) -> None:
+        """Add to the base the cosine and sine that stand out of every noise, if any do."""
+        without = self._fits([self._times])[0].likelihood
+        best = self._best_wave(np.arange(1.25, self._count / 2, 0.25))
+        best = self._best_wave(best + np.linspace(-0.25, 0.25, 51))
+        angles = math.tau * best * self._times
+        base = self._base
+        self._base = np.column_stack([base, np.cos(angles), np.sin(angles)])
+        gain = self._fits([self._times])[0].likelihood - without
+        if gain < 1.5 * math.log(self._count) + limits.WAVE:
+            self._base = base
+        else:
+            self._cycles = best
 
     def _best_wave(self, cycles: Any) -> float:
         """Return the cycles of the wave that explains most besides the base and a line."""
@@ -253,7 +249,7 @@ class _Record:
         if self.line.sigmas < limits.TREND and walks:
             return Judgement("wanders")
         if self._cycles < limits.MIN_CYCLES:
-            return _too_early(self._cycles, limits.MIN_CYCLES, "cycles of its slowest wave")
+            return _too_early(self._cycles, limits.MIN_CYCLES, "cycles of its wave")
         need = max(limits.MIN_INDEPENDENT, 2 * self.independent)
         return _too_early(self.independent, need, "independent samples")
 

@@ -24,8 +24,8 @@ DEFINITIONS: dict[Verdict, str] = {
 
 FALSE_ALARMS: dict[Verdict, float] = {
     "bounded": 0.6,
-    "grows": 0.6,
-    "loses": 0.5,
+    "grows": 0.5,
+    "loses": 0.4,
     "caught": 0.8,
     "wanders": 6.3,
 }
@@ -68,7 +68,7 @@ NO_BAND = 4.5  # of one that does not; random walks of 32 bins are wider
 
 # A record of any program.  Standard deviations and likelihood ratios are those of white noise;
 # tests/bench/foreign.py measures the errors in other noises.
-MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
+MIN_SAMPLES = 64  # 32 blocks: a line, a wave and a noise leave 25 degrees of freedom
 MIN_INDEPENDENT = 30  # correlation times: with fewer, noise and a curve look alike
 STILL = 2.0  # standard deviations: a level exceeds them in 1 or 2 of 100 records
 TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
@@ -77,7 +77,7 @@ CURVE_OF_FEW = 12.0  # standard deviations: 1 in 1000 random walks has a clearer
 ODDS = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
 WALK_ODDS = math.log(10)  # of the likelihood ratio of a random walk and a level
 WAVE = 12.0  # of a likelihood ratio: a wave in a random walk gains up to 10
-MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
+MIN_CYCLES = 4.0  # of a wave that is called bounded: thirds of the record look alike
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
 LOST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 10.0  # times the smallest energy: what multiplies is judged in its logarithm
