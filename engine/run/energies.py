@@ -1,8 +1,8 @@
 """The record of any program: a verdict from times and energies alone.
 
-A least-squares fit in correlated noise describes the means of up to 64 blocks by a level, a wave and
-one more curve, which still moves (a line, an exponential, a logarithm) or has settled (an approach,
-a step).
+A least-squares fit in correlated noise describes the means of up to 64 blocks by a level, a wave
+and one more curve, which still moves (a line, an exponential, a logarithm) or has settled (an
+approach, a step).
 
 The terms of the cosine transform of stationary noise are independent, with the spectrum as their
 variances (Whittle, J. R. Stat. Soc. B 15 (1953) 125).  The noise may have any correlation time,
