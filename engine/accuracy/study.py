@@ -22,7 +22,6 @@ from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
 Clock = Callable[[], float]  # s
-REPEATS = 5  # of a measurement of seconds
 COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
 Z_LADDER = (0.6, 0.0015, 12)  # about ten steps a small swing, to four thousand
@@ -59,7 +58,7 @@ class Point:
     energy_error: float  # relative, the largest of all steps
     final_error: float  # rad, in theta at the end
     flaws: Flaws
-    seconds: float | None = None  # the shortest of REPEATS runs without errors taken
+    seconds: float | None = None  # the shortest of five runs without errors taken
     spread: float | None = None  # by how much the longest took longer, relative
     tolerance: float | None = None  # rad/s, of a series: it has no h and no force evaluations
     counted: int | None = None  # force evaluations, where they vary
@@ -218,10 +217,10 @@ def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops)
 
 
 def shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float, float]:
-    """Return the shortest of REPEATS timings [s], and the relative excess of the longest."""
+    """Return the shortest of five timings [s], and the relative excess of the longest."""
     work()  # may have to be compiled
     lengths = []
-    for _ in range(REPEATS):
+    for _ in range(5):
         began = clock()
         for _ in range(runs):
             work()

@@ -13,8 +13,6 @@ from engine.methods.method import Method, Phases
 from engine.methods.verlet import velocity_verlet
 from engine.models.model import Force, Phase
 
-# of a step: where nothing looks accurate, as at 1e9 rad/s, it ends with 1024 parts
-MAX_HALVINGS = 10
 TOLERANCE = 0.1  # rad and rad/s, of a step
 
 
@@ -39,7 +37,8 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
 
     def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         while True:
-            phase = step(force, phase, h, MAX_HALVINGS)
+            # at most ten halvings: where nothing looks accurate, as at 1e9 rad/s, it ends, too
+            phase = step(force, phase, h, 10)
             yield phase
 
     return halved

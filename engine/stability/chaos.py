@@ -14,8 +14,7 @@ from engine.methods import Method
 from engine.models import Pendulum
 from engine.run.tangent import tangent_map
 
-GREENE_K = 0.971635
-GREENE_Z = math.sqrt(GREENE_K)  # 0.985716
+GREENE_Z = math.sqrt(0.971635)  # Greene's K
 
 
 def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:

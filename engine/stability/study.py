@@ -18,9 +18,6 @@ THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
 LADDER = np.geomspace(1e-3, 3.2, 812)
 """The z at which failures are sought: a rung every 1 %, to beyond every method's linear limit."""
 
-EARLY = 0.1
-"""The share of the steps whose limit shows whether the limit still moves with the steps."""
-
 
 @dataclass(frozen=True, slots=True)
 class Row:
@@ -29,7 +26,7 @@ class Row:
     method: Method
     theta: float  # rad
     failure: Failure | None  # None: holds on the whole ladder
-    early: Failure | None  # the same within an EARLY share of the steps
+    early: Failure | None  # the same within a tenth of the steps
     here: Any  # the CELL at the scene's z, which may be UNKNOWN
 
 
@@ -47,8 +44,8 @@ def amplitude(scene: Scene) -> float | None:
 
 
 def early_steps(steps: int) -> int:
-    """Return the number of steps of the EARLY limit."""
-    return max(1, round(EARLY * steps))
+    """Return the steps whose limit shows whether the limit still moves with the steps: a tenth."""
+    return max(1, round(0.1 * steps))
 
 
 def ladder_of(
