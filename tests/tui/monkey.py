@@ -23,38 +23,29 @@ from tui.screens.live import LiveScreen
 
 SIZE = 120, 40
 LARGEST = 300, 90
-ARROWS = [f"\x1b[{letter}" for letter in "ABCD"]
 VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
-KEYS = [
-    *"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t",
-    *ARROWS,
-    "\x1b[H",
-    "\x1b[F",
-    "\x1b[5~",
-    "\x1b[6~",
-]
-CALMING = "<<00++rp   "  # else the lab would soon stand still, or run fast with tiny steps and take long to verify
+MOVES = [f"\x1b[{key}" for key in ("A", "B", "C", "D", "H", "F", "5~", "6~")]
+KEYS = [*"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t", *MOVES]
+CALMING = "<<00++rp   "  # else the lab would stand still, or take long to verify
 TYPED = "0123456789.-edg\x7f"
 EPISODE = 60  # presses until what lies over the lab is closed
 ESC, PALETTE = "\x1b", "\x10"
 OVERLAYS = ("?", "i", "d", "E", PALETTE)
-GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"  # of which pasted text is made
+GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"
 LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
 STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next, on a stage
 
 
 def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
     """A key or something with the mouse, as a terminal of this size sends it."""
-    columns, rows = size
 
-    def mouse(
-        button: int, end: str
-    ) -> str:  # the key line is last, where a click on Quit would end it all
-        return f"\x1b[<{button};{chance.randint(1, columns)};{chance.randint(1, max(rows - 1, 1))}{end}"
+    def mouse(button: int, end: str) -> str:
+        column = chance.randint(1, size[0])
+        row = chance.randint(1, max(size[1] - 1, 1))  # not the key line: Quit would end it all
+        return f"\x1b[<{button};{column};{row}{end}"
 
-    match chance.choices(
-        ("key", "calm", "view", "text", "click", "drag", "wheel"), (60, 8, 5, 5, 15, 5, 2)
-    )[0]:
+    kinds = {"key": 60, "calm": 8, "view": 5, "text": 5, "click": 15, "drag": 5, "wheel": 2}
+    match chance.choices([*kinds], kinds.values())[0]:
         case "key":
             return chance.choice(KEYS)
         case "calm":
@@ -79,9 +70,8 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
     for done in range(number):
         if done % EPISODE == 0:
             yield from (ESC, ESC)
-        match chance.choices(
-            ("press", "over", "type", "enter", "paste", "size"), (70, 6, 8, 4, 3, 9)
-        )[0]:
+        kinds = {"press": 70, "over": 6, "type": 8, "enter": 4, "paste": 3, "size": 9}
+        match chance.choices([*kinds], kinds.values())[0]:
             case "press":
                 yield press(chance, size)
             case "over":
@@ -91,7 +81,8 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
             case "enter":
                 yield "\r"
             case "paste":
-                yield f"\x1b[200~{''.join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))}\x1b[201~"
+                garbage = "".join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))
+                yield f"\x1b[200~{garbage}\x1b[201~"
             case _:
                 columns, rows = chance.choice((SIZE, (12, 12), LARGEST, LARGEST))
                 size = chance.randint(1, columns), chance.randint(1, rows)

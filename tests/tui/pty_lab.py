@@ -13,7 +13,6 @@ import termios
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
@@ -22,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 
 
 class PtyLab:
-    """A running `pendu-tui` with its terminal, which is behind a line of `rate` bytes a second if that is given."""
+    """A running `pendu-tui` with its terminal, perhaps behind a line of `rate` bytes a second."""
 
     def __init__(
         self,
@@ -46,12 +45,10 @@ class PtyLab:
                 "COLORFGBG": "15;0",  # so that nobody asks for the background
                 "PYTHONUTF8": "1",
             }
-            ours = {
-                name: value
-                for name, value in os.environ.items()
-                if name not in ("COLUMNS", "LINES")
-            }
-            os.execvpe(program[0], [*program, *arguments], {**ours, **terminal, **environment})
+            for name in ("COLUMNS", "LINES"):
+                os.environ.pop(name, None)
+            os.environ.update(terminal | environment)
+            os.execvp(program[0], [*program, *arguments])
         self._arrival = 0.0  # of the last packet, s since the start
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []
@@ -61,12 +58,7 @@ class PtyLab:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self.code is None:
             os.kill(self.pid, signal.SIGKILL)
             os.waitpid(self.pid, 0)
@@ -74,16 +66,15 @@ class PtyLab:
 
     @property
     def now(self) -> float:
-        """s since the start."""
         return time.monotonic() - self.began
 
     def read(self, seconds: float) -> bytes:
         """What comes within `seconds`, at most one piece; empty if nothing does or the program is gone."""
         ready, _, _ = select.select([self.terminal], [], [], max(seconds, 0))
         try:
-            piece = (
-                os.read(self.terminal, 1 << 16 if self.rate is None else PACKET) if ready else b""
-            )
+            piece = b""
+            if ready:
+                piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET)
         except OSError:  # Linux: nobody has the other end open any more
             time.sleep(0.01)
             return b""
@@ -96,7 +87,6 @@ class PtyLab:
         return piece
 
     def run(self, seconds: float) -> bytes:
-        """Read for a while."""
         end, start = self.now + seconds, len(self.output)
         while self.now < end:
             self.read(end - self.now)
@@ -119,11 +109,9 @@ class PtyLab:
         return self.now
 
     def type(self, keys: str) -> None:
-        """Press keys."""
         os.write(self.terminal, keys.encode())
 
     def signal(self, number: int) -> None:
-        """Send a signal."""
         os.kill(self.pid, number)
 
     def resize(self, columns: int, rows: int) -> None:
@@ -131,7 +119,6 @@ class PtyLab:
         fcntl.ioctl(self.terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def hang_up(self) -> None:
-        """Close the terminal."""
         if self.terminal >= 0:
             os.close(self.terminal)
             self.terminal = -1

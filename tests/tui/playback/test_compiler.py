@@ -14,22 +14,24 @@ from tui.playback import compiler
 
 @pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
 def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
-    scene, release, used = DEFAULT_SCENE, threading.Event(), []
+    method, model = DEFAULT_SCENE.cast[3], DEFAULT_SCENE.equations
+    start = (1.0, 0.0), 0.05, 20, math.inf
+    release, used = threading.Event(), []
+    plain = PlainLoops(method, model)
 
-    method, model = scene.cast[3], scene.equations
-    slow = PlainLoops(method, model)
+    def advance(*start):
+        used.append(start)
+        return plain.advance(*start)
 
     def slowly(method, model):
         release.wait(10)
-        return compiled.CompiledLoops(
-            slow.propagate, lambda *start: used.append(start) or slow.advance(*start)
-        )
+        return compiled.CompiledLoops(plain.propagate, advance)
 
     monkeypatch.setattr(compiled, "COMPILED_FROM", 10)
     monkeypatch.setattr(compiler, "compiled", slowly)
     monkeypatch.setattr(compiler, "_compiling", functools.cache(compiler._compiling.__wrapped__))
-    loops, start = compiler.compiled_in_background(method, model), ((1.0, 0.0), 0.05, 20, math.inf)
-    expected = slow.advance(*start)
+    loops = compiler.compiled_in_background(method, model)
+    expected = plain.advance(*start)
     assert loops.advance(*start) == expected  # at once: `slowly` has not been let go
     assert not used
     release.set()

@@ -17,7 +17,7 @@ from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from recordings.events import Event
 from tests.tui.harness import FPS, Lab
 from tui.playback.common import Playhead, doubled
-from tui.playback.live import FRAME_BUDGET, Live
+from tui.playback.live import FRAME_BUDGET
 
 FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
 
@@ -172,13 +172,6 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start"]
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
-
-
-def test_a_restart_keeps_the_step_size_but_not_its_sign():
-    live = Live(DEFAULT_SCENE)
-    live.set_stepping(Stepping(-0.1))
-    live.restart()
-    assert (live.stepping.h, live.sample.run, live.sample.step) == (0.1, 2, 0)
 
 
 @pytest.mark.parametrize("h", [0.0, math.nan, 1e9])

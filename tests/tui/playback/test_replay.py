@@ -155,12 +155,6 @@ def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
     assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
 
 
-def test_the_step_size_is_the_one_in_force_at_the_moment(table):
-    for clock, h in {1.0: 0.05, 3.0: 0.1, 4.5: -0.1, 6.0: 0.02, 11.0: 0.05}.items():
-        table.replay.seek(clock)
-        assert table.replay.stepping.h == h
-
-
 def test_the_next_event_and_the_one_before_are_found(table):
     places = [0.0]
     while places[-1] < table.replay.length - 1e-6:

@@ -110,8 +110,6 @@ def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_len
         (["--size", "10x10"], "60x16"),
         (["--size", "big"], "120x40"),
         (["--time", "nan"], "not a valid time"),
-        (["--theme", "pink"], "dark"),
-        (["--scene", "drfit"], "did you mean drift"),
         (["-o", "lab.png"], "lab.svg"),
         (["-o", "lab"], "lab.svg"),
     ],

@@ -9,7 +9,7 @@ from tui.playback.shown import Shown
 from tui.screens.lines import InsightLine, TourPanel
 from tui.screens.live import LiveScreen
 from tui.screens.still import normalised
-from tui.words.tour import ASTRAY, STEPS
+from tui.words.tour import STEPS
 
 
 @pytest.fixture(autouse=True)
@@ -70,15 +70,6 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         await theatre.press("T")
         await theatre.pilot.pause()
         assert words(STEPS[1].watch) in panel(theatre)
-
-
-async def test_a_change_of_the_run_is_noticed_and_enter_begins_the_shot_again():
-    async with lab() as theatre:
-        await theatre.press("T", "plus")
-        theatre.stage.frame()
-        assert ASTRAY in panel(theatre)
-        await theatre.press("enter")
-        assert words(STEPS[0].watch) in panel(theatre)
 
 
 async def test_while_a_shot_runs_the_other_keys_keep_their_meaning():
