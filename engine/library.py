@@ -299,8 +299,9 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
         raise ValueError(f"scene = {scene!r} is neither a name nor a Scene.")
     for name in numbers:
         if name not in scenes.UNITS:
-            near = get_close_matches(name, scenes.UNITS)
-            hint = f"did you mean {near[0]!r}?" if near else f"use {', '.join(scenes.UNITS)}."
+            hint = f"use {', '.join(scenes.UNITS)}."
+            if near := get_close_matches(name, scenes.UNITS):
+                hint = f"did you mean {near[0]!r}?"
             raise ValueError(f"unknown parameter {name!r}; {hint}")
     changes = {name: _number(name, value) for name, value in numbers.items()}
     scene = scene.altered(**changes)

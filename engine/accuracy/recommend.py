@@ -76,10 +76,10 @@ def least_cost(
         show(len(attempts) / len(study.scene.cast))
     attempts.sort(key=_cost)
     least = _cost(attempts[0])
-    return Advice(
-        study.time,
-        [replace(each, times=_cost(each) / least) if each.succeeded else each for each in attempts],
-    )
+    for place, attempt in enumerate(attempts):
+        if attempt.succeeded:
+            attempts[place] = replace(attempt, times=_cost(attempt) / least)
+    return Advice(study.time, attempts)
 
 
 def _cost(attempt: Attempt) -> float:

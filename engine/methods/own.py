@@ -107,13 +107,11 @@ def own_phases(source: str, name: str, file: str) -> Phases:
         UserCode.is_running = False
     function = namespace.get(name)
     if not callable(function) or isinstance(function, type):
-        functions = [
-            key
-            for key, value in namespace.items()
-            if callable(value) and key != "print" and key[:1] != "_"
-        ]
-        there = f"; it has {', '.join(functions[:6])}" if functions else ""
-        raise OwnMethodError(f"{file} has no function {name!r}{there}.")
+        why = f"{file} has no function {name!r}"
+        others = (key for key, value in namespace.items() if callable(value) and key != "print")
+        if functions := [key for key in others if key[:1] != "_"]:
+            why += f"; it has {', '.join(functions[:6])}"
+        raise OwnMethodError(f"{why}.")
     return _guarded(function, name, source, file)
 
 

@@ -229,7 +229,10 @@ class Model(ABC):
     def reference(self, theta: float, omega: float) -> EnergyReference:
         """Return the scale of the energy errors of a run from theta [rad] and omega [rad/s]."""
         start: float = self.energy()(self.start(theta, omega))
-        return EnergyReference(start, start if start > 0 else 2 * self.w0_squared)
+        scale = start
+        if not start > 0:
+            scale = 2 * self.w0_squared
+        return EnergyReference(start, scale)
 
     def invariant(self) -> Callable[[Phase], float] | None:
         """Return a positive invariant besides the energy, or None."""

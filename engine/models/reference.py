@@ -43,7 +43,7 @@ class Reference:
     def at(self, t: float) -> Phase:
         """The phase at a time [s]; whole steps to just before it, and one of what is left."""
         steps = int(t / self._h)
-        way = 1 if steps >= 0 else -1
+        way = int(math.copysign(1, steps))
         at = steps // (way * EVERY) * way * EVERY
         begin = at
         while begin not in self._kept:
