@@ -88,7 +88,7 @@ class Recorder:
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
         check_target(path, overwrite)
-        with writing(self.part):
+        with writing(self.path):
             try:
                 self._file = self.part.open("xb", buffering=1 << 20)
             except FileExistsError as error:
@@ -138,10 +138,10 @@ class Recorder:
 
     def flush(self) -> None:
         """Hand everything so far to the system, where it survives the death of this process."""
-        with writing(self.part):
+        with writing(self.path):
             self._writer.flush()  # type: ignore[no-untyped-call]
             if not self._is_ours():
-                raise DiskError("the file was replaced", self.part)
+                raise DiskError("the file was replaced", self.path)
         self.bytes = self._file.tell()
         self._flushed_at = self.seconds
         self._unflushed = 0
@@ -165,7 +165,7 @@ class Recorder:
         if (last := self._last) is not None:
             self.event(Event("stop", last.run, last.step, last.t), self.seconds)
         self.flush()
-        with writing(self.part):
+        with writing(self.path):
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._file.flush()
             os.fsync(self._file.fileno())
@@ -224,7 +224,7 @@ class Recorder:
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
         number = self._entries % (1 << 32)
-        with writing(self.part):
+        with writing(self.path):
             for name, data in messages:
                 channel = self._channels[name]
                 self._writer.add_message(channel, self._log_time, data, publish_time, number)

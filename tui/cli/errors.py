@@ -54,6 +54,5 @@ ADVICE = {
     errno.ENOSPC: "; free some space or write elsewhere",
     errno.EACCES: "; choose a writable location",
     errno.EROFS: "; choose a writable location",
-    errno.ENOENT: "; create the folder first",
 }
 """What to do about errors of the disk."""

@@ -85,7 +85,7 @@ def _list(options: argparse.Namespace) -> Report:
     )
     return Report(
         name="recordings",
-        title="" if rows else none,
+        title="" if rows or notes else none,
         columns=columns if rows else (),
         rows=rows,
         fields={"folder": str(folder), "recordings": rows},
