@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +18,15 @@ from engine.scenes import Scene
 Ring = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
+@dataclass(slots=True)
 class _Carried:
     """What one method carries along: its own point, the ring around it, the area so far."""
 
-    def __init__(self, method: Method, scene: Scene, ring: Ring) -> None:
-        self.method = method
-        self.phase: Phase = (scene.theta, scene.omega)
-        self.ring = ring
-        self.log_area = 0.0
-        self.lost = False
+    method: Method
+    phase: Phase
+    ring: Ring
+    log_area: float = 0.0
+    lost: bool = False
 
 
 class Neighbourhood:
@@ -44,7 +45,8 @@ class Neighbourhood:
             scene.theta + radius * np.cos(angle),
             scene.omega + radius * scene.w0 * np.sin(angle),
         )
-        self._carried = [_Carried(method, scene, ring) for method in scene.cast]
+        start = (scene.theta, scene.omega)
+        self._carried = [_Carried(method, start, ring) for method in scene.cast]
 
     @property
     def rings(self) -> tuple[Ring, ...]:
