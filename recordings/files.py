@@ -14,7 +14,7 @@ from recordings.errors import DiskError, NameTakenError, printable, writing
 
 
 def check_target(path: Path, force: bool = False) -> None:
-    """Raise DiskError if the name is taken, its folder is missing, or it stands for stdout."""
+    """Raise DiskError if the name is taken, its folder is missing, or it is "-"."""
     if str(path) == "-":
         raise DiskError("is no name for a file; choose another", path)
     if os.path.lexists(path) and (not force or path.is_dir()):

@@ -20,7 +20,7 @@ MAX_FUNCTION_LINES = 40  # without the docstring
 CEILINGS = {
     "characters": 978_900,
     "characters_of_engine": 313_200,
-    "characters_of_recordings": 78_685,
+    "characters_of_recordings": 78_790,
     "characters_of_tui": 587_400,
     "characters_of_tests": 841_500,
     "files": 186,
