@@ -41,8 +41,6 @@ class RecordingStatus(NamedTuple):
 
 
 class RunState(NamedTuple):
-    """A run of the lab where it was left, with its past."""
-
     run: RewindableRun
     history: History
     left: "Ghost | None"  # the run before it, if that is laid under
@@ -80,7 +78,6 @@ class Playback(ABC):
 
     @property
     def exact(self) -> ExactMotion:
-        """The exact motion of the scene: at(t), period, regime."""
         return self.history.exact
 
     @property

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 
 def changes_of(run: "Run") -> list[SteppingChange]:
-    """Return how a recorded run steps, its start's stepping first."""
     cast = run.scene.cast
     changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=cast))]
     for _, event in run.events:
@@ -52,7 +51,6 @@ class History:
         self._current: Row | None = None
         self._last_row = -1  # its step
         self._waiting: list[Row] = []
-        self._trails: tuple[Row, Floats] | None = None
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
@@ -176,7 +174,6 @@ class History:
         return named
 
     def between(self, begin: float, end: float) -> "Window":
-        """Return what lies between two x [s], and half a swing before."""
         return self.window().cut(begin - self._repeats, end)
 
     def since(self, change: SteppingChange) -> tuple[list[float], list[float]] | None:
@@ -200,14 +197,13 @@ class History:
 
         At the last 300 samples, ten seconds, (samples, methods + 1, 2).
         """
-        current = self._current
-        assert current is not None
-        if self._trails is None or self._trails[0] is not current:  # read once a frame
-            self._trails = current, self.rows.trails(current, 300)
-        return self._trails[1]
+        return self._trails(300)
+
+    def _trails(self, length: int) -> "Floats":
+        assert self._current is not None
+        return self.rows.trails(self._current, length)
 
     def thetas(self, index: int, length: int) -> list[float]:
-        """Return theta [rad] of a method at the last `length` samples, oldest first."""
         if self._rows is None:
             return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
-        return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]
+        return self._trails(length)[:, index, 0].tolist()  # type: ignore[no-any-return]

@@ -142,7 +142,6 @@ class Live(Playback):
             self.failure = str(error)
 
     def step(self, n: int) -> Sample:
-        """Pause and go n steps forward, or back where n is negative."""
         self.pause(True)
         target = self._run.step + n
         while self._run.step < target and not self.failure:
@@ -154,13 +153,11 @@ class Live(Playback):
         return self._take_sample()
 
     def go_to(self, run: int, step: int) -> bool:
-        """Pause and go to a step of the run; return False for another run."""
         if reached := run == self._run.run:
             self.step(step - self._run.step)
         return reached
 
     def seek_event(self, direction: int) -> None:
-        """Go to the previous event of this run, or to the next one that has been."""
         run = self._run
         kept = ("start", "set_h", "mark", "noticed")
         steps = {each.step for each in self._events if each.run == run.run and each.kind in kept}

@@ -69,7 +69,6 @@ class Replay(Playback):
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The lab's verdicts since the stepping last changed, with their trends then."""
         since = change_before(self.changes, self.sample.step).step
         period = self.exact.period or math.tau / self.scene.w0
         swings = (self.sample.step - since) * abs(self.stepping.h) / period
@@ -107,7 +106,6 @@ class Replay(Playback):
     # What can be done
 
     def tick(self, now: float) -> Sample:
-        """Follow the clock to `now`: stop at the ends, or go round in the loop."""
         self.playhead = self.playhead.at(now)
         if not self.playhead.paused:
             position = self.playhead.position
@@ -131,7 +129,6 @@ class Replay(Playback):
         self.playhead = self.playhead._replace(speed=speed)
 
     def step(self, n: int) -> Sample:
-        """Pause and go n samples forward, or back where n is negative."""
         self.pause(True)
         move = self.recording.next if n > 0 else self.recording.previous
         for _ in range(abs(n)):
@@ -226,7 +223,6 @@ class Replay(Playback):
         return True
 
     def _past(self) -> Iterator[None]:
-        """Read the past, and then the samples that have come since."""
         history = History(self.run.scene, changes_of(self.run))
         start = self.run.begin
         while start < (end := self.recording.sample(self._place).clock):

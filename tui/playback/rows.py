@@ -33,11 +33,9 @@ class Window:
 
     @property
     def turned(self) -> bool:
-        """Whether time has run backwards, so that x is not t."""
         return bool(len(self.x)) and not math.isclose(self.x[-1], self.t[-1], rel_tol=1e-9)
 
     def cut(self, begin: float, end: float) -> "Window":
-        """Return what lies between two x [s]."""
         rows = (self.x >= begin) & (self.x <= end)
         low = {name: each[rows] for name, each in self.low.items()}
         high = {name: each[rows] for name, each in self.high.items()}
@@ -103,7 +101,6 @@ class Rows:
         return int(np.searchsorted(steps, step, "right")) * self._width
 
     def last_step(self, number: int) -> int:
-        """Return the step of the last row before a number; -1 if there is none."""
         if number > self._first:
             return int(self._recent["step"][(number - 1) % self._capacity])
         if not number:

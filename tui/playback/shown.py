@@ -21,8 +21,6 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
 
 
 class Stretch(NamedTuple):
-    """A part of a run that the chart was zoomed to."""
-
     run: int
     begin: float  # s, simulated time run through
     end: float
@@ -74,7 +72,6 @@ class Shown(NamedTuple):
         return self._replace(hidden=frozenset() if self.hidden == others else others)
 
     def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
-        """Return the quantity `ahead` places after the chosen one, among those of the scene."""
         known = quantities(scene)
         index = known.index(self.quantity) if self.quantity in known else 0
         return known[(index + ahead) % len(known)]
@@ -86,11 +83,9 @@ class Shown(NamedTuple):
         return self._replace(seconds=known[(known.index(self.seconds) + 1) % len(known)])
 
     def zoomed(self, stretch: Stretch | None) -> "Shown":
-        """Show this part of the run in the chart, or all of it."""
         return self._replace(stretch=stretch, seconds=self.seconds if stretch else None)
 
     def of(self, run: int) -> "Shown":
-        """Leave out the zoom into another run."""
         if self.stretch and self.stretch.run == run:
             return self
         return self._replace(stretch=None)

@@ -37,8 +37,6 @@ _VIEWS = Binding.Group("view: lab, phase, …")
 
 
 class SourceScreen(SizedScreen[None]):
-    """Shows a source, following a clock that is passed in."""
-
     BLANK = True  # everything on it is covered
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
@@ -154,7 +152,6 @@ class SourceScreen(SizedScreen[None]):
         self.call_after_refresh(self.begin)
 
     def begin(self) -> None:
-        """Follow the clock from the first paint on."""
         try:
             self._prepare()
         except OSError as error:
@@ -205,7 +202,6 @@ class SourceScreen(SizedScreen[None]):
     # Time
 
     def on_screen_suspend(self) -> None:
-        """Pause while a dialog lies over this screen."""
         if not self.source.playhead.paused:
             self._paused_by_dialog = True
             self._pause(True)
@@ -335,7 +331,6 @@ class SourceScreen(SizedScreen[None]):
         self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
 
     def action_help(self) -> None:
-        """Show the keys of the view in front, the others, and what the words mean."""
         from tui.screens.dialogs import help_text
 
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
@@ -350,14 +345,12 @@ class SourceScreen(SizedScreen[None]):
         self.show_text("Events", *numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
-        """Describe in words what runs and what is on screen."""
         titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
         panes = [Content.from_markup(title).plain for title in titles]
         on_screen = "; ".join(filter(None, [VIEWS[self.view].title, *panes]))
         self.show_text("In words", *description(self.source), f"On screen: {on_screen}.")
 
     def action_screenshot(self) -> None:
-        """Save the screen next to the recordings."""
         try:
             library.folder().mkdir(parents=True, exist_ok=True)
             picture = self.app.save_screenshot(path=str(library.folder()))

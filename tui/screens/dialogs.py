@@ -47,8 +47,6 @@ class Once(SizedScreen[ScreenResultType]):
 
 
 class Form(ModalScreen[ScreenResultType], Once[ScreenResultType]):
-    """Asks for something over the lab; a click beside it cancels."""
-
     def on_click(self, event: events.Click) -> None:
         if event.widget is self:
             self.dismiss(None)
@@ -216,8 +214,6 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
 
 
 class StartForm(Form[Scene]):
-    """Returns the scene with other numbers."""
-
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "dismiss(None)"),
         Binding("down", "app.focus_next"),
@@ -243,7 +239,6 @@ class StartForm(Form[Scene]):
 
     @on(Input.Changed)
     def check(self) -> None:
-        """Show what is wrong with the values, or w0 and z."""
         values = {}
         verdict = self.query_one("#verdict", Label)
         self._scene = None

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 
 def check(options: argparse.Namespace) -> None:
-    """Raise UserError if a screen is asked for and the terminal cannot show it."""
     if not options.plain:
         from tui.terminal.check import check_terminal
 
@@ -161,7 +160,6 @@ def open_lab(
     with_tour: bool = False,
     lecture: "Mapping[str, Scene] | None" = None,
 ) -> int:
-    """Record and show a lab, or print it as sentences; return the exit code."""
     path = None
     notices: list[str] = []
     if not options.no_record:
@@ -248,7 +246,6 @@ def print_sentences(source: Any, write: Callable[..., None]) -> int:
 
 
 def say_goodbye(source: "Source") -> int:
-    """Print where a lab was recorded and how to replay it; return the exit code."""
     from tui.playback.live import Live
 
     if not isinstance(source, Live) or source.recorder is None:

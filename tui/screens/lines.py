@@ -63,7 +63,6 @@ class StatusLine(Pane, Badged):
 
 
 def status_row(source: Source, width: int) -> Row:
-    """Return the status line, as far as there is room."""
     badge = f" {source.kind} "
     scene = source.scene
     parts = [
@@ -219,7 +218,6 @@ class TourPanel(Badged):
 
 
 def key_text(binding: Binding) -> str:
-    """Return a key as people read it."""
     return binding.key_display or binding.key.partition(",")[0]
 
 
@@ -240,7 +238,6 @@ class KeyLine(CellWidget):
             self.show(Picture([self._row()]))
 
     def _needed(self) -> list[ActiveBinding]:
-        """Return the bindings that are shown, one an action, in their order; the rest last."""
         by_action: dict[str, ActiveBinding] = {}
         for each in self.screen.active_bindings.values():
             if each.binding.show and each.enabled:

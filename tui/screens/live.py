@@ -85,7 +85,6 @@ class LiveScreen(SourceScreen):
             self.show_now()
 
     def _stop_at_start(self, returned: Sample) -> None:
-        """Pause, and mark how far each method misses its start."""
         is_here = returned.step == self.source.sample.step
         if is_here and not self.source.playhead.paused and not self.live.is_marked:
             self.live.pause(True)
@@ -148,14 +147,12 @@ class LiveScreen(SourceScreen):
         self._changed(self.live.restart)
 
     def action_next_h(self, direction: int) -> None:
-        """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
         self.set_stepping(self.live.stepping.next(up=direction > 0))
 
     def action_reverse(self) -> None:
         self.set_stepping(self.live.stepping.reversed())
 
     def action_equal_cost(self) -> None:
-        """Toggle between equal force evaluations and equal steps for all methods."""
         self.set_stepping(self.live.stepping.toggled())
 
     def action_next_scene(self) -> None:

@@ -40,7 +40,6 @@ async def still(
 
 
 async def settled(app: PenduApp) -> None:
-    """Wait until every pane shows the newest data."""
     panes = app.source_screen.query("#views *").results
     async with asyncio.timeout(30):
         while not all(map(_is_settled, panes(Widget))):
@@ -56,7 +55,6 @@ def _is_settled(pane: Widget) -> bool:
 
 
 def normalised(svg: str) -> str:
-    """The picture without the random number in Rich's names."""
     return re.sub(r"terminal-\d+-", "terminal-", svg)
 
 

@@ -48,8 +48,6 @@ class _Ascii(dict[int, str]):
 
 
 class CharacterSetFilter(LineFilter):
-    """Replaces the characters that the terminal does not have."""
-
     def __init__(self, character_set: CharacterSet) -> None:
         super().__init__(enabled=character_set != "braille")
         self._table = _braille(" ▀▄█")

@@ -54,7 +54,6 @@ def add_picture_options(
 
 
 def cells(text: str) -> tuple[int, int]:
-    """A size in columns and rows as `120x40`."""
     match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text) or ("", 0, 0)
     columns = int(match[1])
     rows = int(match[2])
@@ -75,7 +74,6 @@ def frames_per_second(text: str) -> int:
 def terminal_options_of(
     options: argparse.Namespace, environment: Mapping[str, str], encoding: str
 ) -> TerminalOptions:
-    """What the options ask for; `auto` is decided by the terminal's environment and encoding."""
     theme = options.theme
     if theme == "auto":
         theme = fitting_theme(environment)

@@ -1,4 +1,4 @@
-"""A recording laid under the lab: the same moment of simulated time, whatever the clock did while it was recorded."""
+"""A recording laid under the lab, at the same moment of simulated time."""
 
 import numpy as np
 import pytest

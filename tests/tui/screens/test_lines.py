@@ -9,7 +9,7 @@ from tests.tui.harness import after, eventful
 from tui.playback.common import Playhead, RecordingStatus
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.screens.lines import fitted, speed_text, status_row
+from tui.screens.lines import speed_text, status_row
 from tui.screens.replay import bar, facts
 
 
@@ -112,10 +112,3 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
         widths.add(len(facts(replay, 30)))
     assert len(widths) == 1  # so that the bar stays where it is
     replay.close()
-
-
-def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
-    words = "Explicit Euler gains energy, the symplectic ones keep it."
-    assert fitted(words, 60, 1) == [words]
-    assert fitted(words, 40, 2) == ["Explicit Euler gains energy, the", "symplectic ones keep it."]
-    assert fitted(words, 40, 1) == ["Explicit Euler gains energy, the …"]

@@ -1,4 +1,4 @@
-"""No class of ours takes a private name that Textual uses for something else: it would not notice, and break."""
+"""No class of ours takes a private name that Textual uses: it would not notice, and break."""
 
 import inspect
 import pkgutil
