@@ -33,18 +33,24 @@ def run(options: argparse.Namespace) -> int:
     for recording in (a, b):
         if recording.reason:
             warn(f"{printable(str(recording.path))}: {recording.reason}; the rest is compared.")
-    title = "{samples} samples at equal times; {only_in_a} only in A, {only_in_b} only in B"
-    place = (
-        "first in {field} of {method} at run {run}, t = {t:g} s, step {step_a} of A and {step_b} "
-        "of B: {a!r} and {b!r}"
-    )
-    notes: list[Any] = [place.format(**found["first"])] if found["first"] else []
+    title = "identical"
+    code = Exit.FINE
+    if not found["identical"]:
+        title = "{samples} samples at equal times; {only_in_a} only in A, {only_in_b} only in B"
+        code = Exit.CHECK_FAILED
+    notes: list[Any] = []
+    if found["first"]:
+        place = (
+            "first in {field} of {method} at run {run}, t = {t:g} s, step {step_a} of A and "
+            "{step_b} of B: {a!r} and {b!r}"
+        )
+        notes.append(place.format(**found["first"]))
     if found["done"]:
         heads = enumerate(("done differently", "A", "B"))
         notes.append(Table([Column(head, itemgetter(at)) for at, head in heads], found["done"]))
     Report(
         name="diff",
-        title="identical" if found["identical"] else title.format(**found),
+        title=title.format(**found),
         columns=(
             Column("largest energy error", "method"),
             Column("A", "a", ".2e"),
@@ -54,4 +60,4 @@ def run(options: argparse.Namespace) -> int:
         notes=notes,
         fields=found,
     ).show(form_of(options))
-    return Exit.FINE if found["identical"] else Exit.CHECK_FAILED
+    return code

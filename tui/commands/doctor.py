@@ -22,7 +22,6 @@ examples:
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
 """
 
-NO_TERMINAL = "unknown: the output is a file or a pipe"
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
 
 
@@ -43,11 +42,13 @@ def _findings() -> Iterator[tuple[str, str, str]]:
     from recordings import library
 
     yield "lab", *_lab()
-    is_terminal = sys.stdout.isatty()
-    yield "size", *(size(*shutil.get_terminal_size()) if is_terminal else (NO_TERMINAL, ""))
+    if sys.stdout.isatty():
+        yield "size", *size(*shutil.get_terminal_size())
+    else:
+        yield "size", "unknown: the output is a file or a pipe", ""
     encoding = sys.stdout.encoding
-    to_utf8 = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
-    yield "encoding", encoding, "" if is_utf8(encoding) else to_utf8
+    advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
+    yield "encoding", encoding, "" if is_utf8(encoding) else advice
     yield "colours", *colour(os.environ)
     yield "recordings", *folder(library.folder())
     system = f"{platform.python_version()}, {platform.system()} {platform.machine()}"

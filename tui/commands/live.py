@@ -55,8 +55,11 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 def run(options: argparse.Namespace) -> int:
     from tui.screens import launch
 
-    ghost = launch.open_ghost(resolve(options.ghost)) if options.ghost else None
-    scene = scene_of(options, ghost.scene if ghost else None, lecture=True)
+    ghost = laid_under = None
+    if options.ghost:
+        ghost = launch.open_ghost(resolve(options.ghost))
+        laid_under = ghost.scene
+    scene = scene_of(options, laid_under, lecture=True)
     if ghost and ghost.scene.model != scene.model:
         raise UserError(
             f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
@@ -66,5 +69,7 @@ def run(options: argparse.Namespace) -> int:
     live = lab_of(scene, options)
     live.laid_under = ghost
     name = options.scene or options.scene_option or ""
-    lecture = read_scenes(Path(name)) if name.endswith(".toml") else {}
-    return launch.open_lab(live, options, lecture=lecture if len(lecture) > 1 else None)
+    lecture = None
+    if name.endswith(".toml") and len(scenes := read_scenes(Path(name))) > 1:
+        lecture = scenes
+    return launch.open_lab(live, options, lecture=lecture)

@@ -62,8 +62,8 @@ def run(options: argparse.Namespace) -> int:
         Column("order", "order", "d"),
         Column("found", "measured_order", ".3f"),
         Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
-        Column("symplectic", lambda row: "yes" if _known(row, "symplectic") else "no"),
-        Column("reversible", lambda row: "yes" if _known(row, "reversible") else "no"),
+        Column("symplectic", lambda row: _yes(_known(row, "symplectic"))),
+        Column("reversible", lambda row: _yes(_known(row, "reversible"))),
         Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
     )
     other = (each for each in cast if simplified(each.label) != simplified(each.key))
@@ -116,10 +116,12 @@ def _known(row: Row, name: str) -> Any:
     return row[name] if measured is None else measured
 
 
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
 def _limit(z: float) -> str:
-    if z == math.inf:
-        return "any"
-    return f"{z:.3f}" if z else "none"
+    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.3f}"
 
 
 def _about(row: Row) -> str:

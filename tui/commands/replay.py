@@ -38,7 +38,9 @@ def run(options: argparse.Namespace) -> int:
 
     path = resolve(options.file)
     remember(own_methods(options))
-    only = None if options.methods is None else cast_of(options, ())
+    only = None
+    if options.methods is not None:
+        only = cast_of(options, ())
     launch.check(options)
     replay = Replay(launch.open_recording(path))
     if not 0 <= options.start_at <= replay.length:

@@ -8,7 +8,6 @@ from engine.run.judgement import DEFINITIONS
 from engine.scenes import Scene
 from tui.cli.checks import FIELDS, add_check_options, parse
 from tui.cli.errors import UserError
-from tui.cli.files import check_free
 from tui.cli.options import add_file, count, duration
 from tui.cli.report import add_report_options
 from tui.cli.scene import add_scene_options, scenes_of
@@ -52,17 +51,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scenes = scenes_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if, cast=scenes.base.cast)
+    gate = None
+    if options.fail_if is not None:
+        gate = parse(options.fail_if, cast=scenes.base.cast)
     for scene in scenes.corners():
         _check_time(scene, options.time)
     is_figure = figures.check_output(options)
     if len(scenes) > 1:
-        _check_list(options, is_figure)
         from tui.commands.studies.lists import run_list
 
-        return run_list(scenes, options, gate)
-    if options.record:
-        check_free(options.record, options.force)
+        return run_list(scenes, options, gate, is_figure)
     from tui.commands.studies.run import run_one
 
     (scene,) = scenes
@@ -78,14 +76,3 @@ def _check_time(scene: Scene, seconds: float | None) -> None:
         raise UserError(
             f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
         )
-
-
-def _check_list(options: argparse.Namespace, is_figure: bool) -> None:
-    if options.record or is_figure:
-        what = "--record" if options.record else f"{options.output}, a figure,"
-        raise UserError(f"{what} is for one run; leave it out, or give each number one value.")
-    is_csv = options.output and options.output.suffix.lower() == ".csv"
-    if options.resume and not is_csv:
-        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
-    if options.resume and options.fail_if:
-        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")

@@ -25,9 +25,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    scenes = list(SCENES.values()) if options.key is None else [scene_named(options.key)]
+    scenes = list(SCENES.values())
+    heads: tuple[str, ...] = ("scene", "z", "what to watch")
+    if options.key:
+        scenes = [scene_named(options.key)]
+        heads = ("", "")
     fields = [scene.fields() | {"speed": scene.speed} for scene in scenes]
-    heads = ("scene", "z", "what to watch") if options.key is None else ("", "")
     rows: list[tuple[Any, ...]] = []
     notes = []
     if options.key is None:

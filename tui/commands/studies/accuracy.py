@@ -9,13 +9,13 @@ from operator import methodcaller
 from typing import Any
 
 from engine.accuracy.front import Cheapest, front
-from engine.accuracy.growth import Growth, growth
 from engine.accuracy.recommend import Advice, Attempt, least_cost, least_error
 from engine.accuracy.references import References, references
 from engine.accuracy.study import (
     ALL_LADDER,
     REASONS,
     Z_LADDER,
+    Clock,
     Order,
     Point,
     Study,
@@ -29,6 +29,7 @@ from engine.accuracy.study import (
 )
 from engine.methods.own import OwnMethod
 from engine.run import compiled, loops
+from engine.run.loops import LoopsOf
 from engine.scenes import Scene, check_h
 from tui.cli.errors import UserError
 from tui.cli.report import (
@@ -45,7 +46,7 @@ from tui.cli.workers import workers_of
 from tui.commands.studies.figures import lines_of
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from tui.words.accuracy import factor_words, few, front_words, growth_words, length
+from tui.words.accuracy import factor_words, few, front_words, length
 
 MAX_STEPS = 10**10  # of the finest rung: half an hour, compiled
 CHART_SIZE = (100, 24)  # columns at most, rows
@@ -65,21 +66,22 @@ class Findings:
     """What was asked for, and what has been found so far."""
 
     def __init__(self, scene: Scene, options: argparse.Namespace) -> None:
-        self.searched = scene if options.methods else with_all_methods(scene)
-        self.scene = self.searched if options.all else scene
         self.options = options
+        self.scene = self.searched = scene
+        if not options.methods:
+            self.searched = with_all_methods(scene)
+        if options.all:
+            self.scene = self.searched
         self.durations: list[float] = options.time or [usual(scene)[0]]
         self.time = self.durations[-1]  # s
+        self.clock: Clock | None = None
+        if options.cost == "seconds":
+            self.clock = time.perf_counter
         self.points: list[Point] = []
         self.orders: list[Order] = []
-        self.growth: list[Growth] = []  # of the theta error, at the scene's h
         self.advice: list[Advice] = []  # one for each time asked for
         self.references: References | None = None
-
-    @property
-    def series(self) -> Sequence[Point]:
-        """Return the points of Taylor's series."""
-        return self.references.taylor if self.references else ()
+        self.series: Sequence[Point] = ()  # of Taylor
 
     @property
     def front(self) -> list[Cheapest]:
@@ -91,52 +93,57 @@ class Findings:
 def measure(found: Findings) -> None:
     """Add what was asked for to the findings, so that an interrupt keeps what was found."""
     scene = found.scene
-    options = found.options
     rungs = _ladder(found)
-    in_seconds = options.cost == "seconds"
+    study_loops: LoopsOf = compiled.TieredLoops
+    timed_loops: LoopsOf = compiled.compiled
     # seconds are those of compiled methods, or of none
-    fast = not options.no_compiled and (not in_seconds or compilable(scene.cast))
-    study_loops = compiled.TieredLoops if fast and compiled.available() else loops.PlainLoops
-    timed_loops = compiled.compiled if fast else loops.PlainLoops
+    fast = not found.options.no_compiled and (not found.clock or compilable(scene.cast))
+    if not fast:
+        study_loops = timed_loops = loops.PlainLoops
+    if found.options.target is not None or found.options.budget is not None:
+        _search(found, study_loops, timed_loops)
     tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
     done = 0
-    with workers_of(options) as workers, progress("measuring") as show:
+    with workers_of(found.options) as workers, progress("measuring") as show:
         for point in workers.map(partial(measured_point, scene, found.time, study_loops), tasks):
-            if in_seconds:
-                point = timed(point, scene, time.perf_counter, timed_loops)
+            if found.clock:
+                point = timed(point, scene, found.clock, timed_loops)
             found.points.append(point)
             done += point.steps
             show(done, len(scene.cast) * sum(rungs))
-    if options.all and in_seconds:
-        found.references = references(scene, found.time, time.perf_counter, fast)
-    study = Study(scene, found.time, study_loops)
-    found.orders += orders(scene, found.time, study.loops)
-    found.growth += (growth(scene, method) for method in scene.cast)
-    if options.target is None and options.budget is None:
-        return
-    clock = time.perf_counter if in_seconds else None
+    if found.options.all and found.clock:
+        found.references = references(scene, found.time, found.clock, fast)
+        found.series = found.references.taylor
+    found.orders += orders(scene, found.time, study_loops)
+
+
+def _search(found: Findings, study_loops: LoopsOf, timed_loops: LoopsOf) -> None:
+    options = found.options
     with progress("searching") as show:
         for number, duration in enumerate(found.durations):
-            wider = Study(found.searched, duration, study.loops)
+            study = Study(found.searched, duration, study_loops)
 
             def show_share(share: float, number: int = number) -> None:
                 show(number + share, len(found.durations))
 
             if options.target is None:
-                advice = least_error(wider, options.error, options.budget, show_share)
+                advice = least_error(study, options.error, options.budget, show_share)
             else:
                 wish = (options.error, options.target / options.safety, options.budget)
-                advice = least_cost(wider, *wish, show_share, clock, timed_loops)
+                advice = least_cost(study, *wish, show_share, found.clock, timed_loops)
             found.advice.append(advice)
 
 
 def _ladder(found: Findings) -> list[int]:
     w0 = found.scene.w0
-    z_max, z_min, rungs = ALL_LADDER if found.options.all else Z_LADDER
-    largest = min(z_max / w0, found.time)
-    smallest = z_min / w0
-    if found.options.h_values:
-        largest, smallest, rungs = found.options.h_values
+    z_max, z_min, rungs = Z_LADDER
+    if found.options.all:
+        z_max, z_min, rungs = ALL_LADDER
+    largest, smallest, rungs = found.options.h_values or (
+        min(z_max / w0, found.time),
+        z_min / w0,
+        rungs,
+    )
     for h in (largest, smallest):
         check_h(h, w0)
     if largest > found.time:
@@ -173,19 +180,19 @@ def report(found: Findings, interrupted: bool) -> Report:
                 for one in found.front
             ],
             "absent": found.references and found.references.absent,
-            "orders": [
-                {
-                    "method": one.method.key,
-                    "claimed": None if isinstance(one.method, OwnMethod) else one.method.order,
-                    "measured": one.measured,
-                }
-                for one in found.orders
-            ],
+            "orders": list(map(_order_fields, found.orders)),
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
             "interrupted": interrupted,
         },
     )
+
+
+def _order_fields(order: Order) -> dict[str, Any]:
+    claimed = None
+    if not isinstance(order.method, OwnMethod):
+        claimed = order.method.order
+    return {"method": order.method.key, "claimed": claimed, "measured": order.measured}
 
 
 def _records(found: Findings) -> Iterator[dict[str, Any]]:
@@ -213,9 +220,9 @@ def _rungs(found: Findings) -> list[dict[str, Any]]:
 
 def _columns(found: Findings) -> list[Column]:
     def error(point: Point) -> str:
+        text = f"{point.error(found.options.error):.1e}{_seconds(point)}"
         flaw = point.flaw(found.options.error)
-        mark = f"{MARKS[flaw]} " if flaw else ""
-        return f"{mark}{point.error(found.options.error):.1e}{_seconds(point)}"
+        return f"{MARKS[flaw]} {text}" if flaw else text
 
     columns = [Column("h [s]", "h", ".4g"), Column("z = h·w0", "z", ".3g")]
     columns.append(Column("steps", "steps", "d"))
@@ -232,17 +239,12 @@ def _seconds(point: Point) -> str:
 def _notes(found: Findings) -> Iterator[Any]:
     kind = found.options.error
     cost = found.options.cost
-    flaws = {flaw for point in found.points if (flaw := point.flaw(kind))}
-    yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws)
+    flaws = {point.flaw(kind) for point in found.points}
+    yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
     yield "n/step: force evaluations"
-    measured = [
-        f"{order.method.label} {order.measured:.2f}"
-        for order in found.orders
-        if order.measured is not None
-    ]
+    known = (order for order in found.orders if order.measured is not None)
+    measured = [f"{order.method.label} {order.measured:.2f}" for order in known]
     yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
-    if words := growth_words(found.growth):
-        yield f"at h = {found.scene.h:g} s, {words}"
     if found.references:
         yield from filter(None, [found.references.absent])
         yield f"Closed form, the floor: {length(found.references.closed_form)}"
@@ -299,18 +301,23 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
 
 
 def _times(row: dict[str, Any]) -> str:
-    times = row["times_the_cheapest"]
-    return row["why_not"] or "" if times is None else f"{times:.3g}"
+    if row["times_the_cheapest"] is None:
+        return row["why_not"] or ""
+    return f"{row['times_the_cheapest']:.3g}"
 
 
 def _winners(advice: Sequence[Advice]) -> str:
-    names = [each.point.method.label if each.point else "no method" for each in advice]
-    changes = [
-        f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)"
-        for (before, after), (earlier, later) in zip(pairwise(names), pairwise(advice), strict=True)
-        if before != after
-    ]
-    return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
+    changes = []
+    for earlier, later in pairwise(advice):
+        before, after = map(_winner, (earlier, later))
+        if before != after:
+            when = f"from {later.time:g} s on (not yet at {earlier.time:g} s)"
+            changes.append(f"{after} instead of {before} {when}")
+    return "; ".join(changes or [f"{_winner(advice[0])} for all these times"]) + "."
+
+
+def _winner(advice: Advice) -> str:
+    return advice.point.method.label if advice.point else "no method"
 
 
 def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
@@ -325,6 +332,7 @@ def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
 def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
     attempts = [_attempt_fields(found, attempt) for attempt in advice.attempts]
     options = fields_of(found.options, "target", "budget", "safety")
-    best = attempts[0] if advice.point else dict.fromkeys(attempts[0])
-    reason = None if advice.point else "no method gets there"
-    return {"time": advice.time, **options, **best, "why_not": reason, "attempts": attempts}
+    best = attempts[0]
+    if not advice.point:
+        best = dict.fromkeys(best) | {"why_not": "no method gets there"}
+    return {"time": advice.time, **options, **best, "attempts": attempts}

@@ -32,6 +32,7 @@ from tui.cli.workers import workers_of
 from tui.commands.studies.run import (
     MAX_BATCH,
     Row,
+    check_of,
     columns_of,
     for_csv,
     for_json,
@@ -109,7 +110,10 @@ def _opened(options: argparse.Namespace) -> Iterator[IO[bytes] | None]:
             f"{printable(str(part))} is there: --resume goes on with it, --force starts anew.",
             Exit.DISK,
         )
-    with writing(part), part.open("r+b" if is_there and options.resume else "w+b") as file:
+    mode = "w+b"
+    if is_there and options.resume:
+        mode = "r+b"
+    with writing(part), part.open(mode) as file:
         hold(file)
         yield file
 
@@ -147,14 +151,31 @@ def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
     return done
 
 
-def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) -> Exit:
+def _check(options: argparse.Namespace, is_figure: bool) -> None:
+    if options.record:
+        raise UserError("--record is for one run; leave it out, or give each number one value.")
+    if is_figure:
+        raise UserError("a figure is of one run; write a .csv, or give each number one value.")
+    is_csv = options.output and options.output.suffix.lower() == ".csv"
+    if options.resume and not is_csv:
+        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
+    if options.resume and options.fail_if:
+        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")
+
+
+def run_list(
+    scenes: SceneList, options: argparse.Namespace, gate: Gate | None, is_figure: bool
+) -> Exit:
     """Run every combination, and print the rows, or keep them in the file as they come."""
+    _check(options, is_figure)
     runs = len(scenes)
     kept: list[Row] = []
     checks: list[Check] = []
     ended: UserError | None = None
     with _opened(options) as file:
-        done = _resumed(file, _tasks(scenes, options), runs) if file else 0
+        done = 0
+        if file:
+            done = _resumed(file, _tasks(scenes, options), runs)
         rest = islice(_tasks(scenes, options), done, None)
         try:
             with workers_of(options) as workers, progress(f"{runs:,} runs") as show:
@@ -167,7 +188,7 @@ def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) 
                     done += 1
                     show(done, runs)
                     if gate:
-                        checks.append(_check(scenes, task, rows, gate))
+                        checks.append(check_of(_place(scenes, task), rows, gate))
         except (KeyboardInterrupt, UserError, OwnMethodError) as error:
             ended = explained(error)
         if file and done == runs:
@@ -181,21 +202,22 @@ def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) 
         return conclude(options, f"pendu-tui run, {runs} runs", checks)
     if not done:
         raise ended
-    where = ""
-    if not kept:
-        where = f" and kept in {printable(str(partial_of(options.output)))}; --resume goes on"
-    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done{where}.")
+    _warn_of(ended, f"{done} of {runs} runs are done", None if kept else options.output)
     return ended.code
+
+
+def _warn_of(ended: UserError, what: str, path: Path | None) -> None:
+    if path:
+        what += f" and kept in {printable(str(partial_of(path)))}; --resume goes on"
+    warn(f"{str(ended).rstrip('.')}: {what}.")
 
 
 def _computed(task: Task) -> tuple[Task, list[Row]]:
     return task, task.rows()
 
 
-def _check(scenes: SceneList, task: Task, rows: Sequence[Row], gate: Gate) -> Check:
-    where = ", ".join(f"{name} {task.scene.numbers[name]:g}" for name in scenes.axes)
-    verdicts = ", ".join(f"{row['method']} {row['verdict']}" for row in rows)
-    return Check(where, verdicts, gate({row["method"]: row for row in rows}) or None)
+def _place(scenes: SceneList, task: Task) -> str:
+    return ", ".join(f"{name} {task.scene.numbers[name]:g}" for name in scenes.axes)
 
 
 def _report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:

@@ -8,9 +8,10 @@ from contextlib import nullcontext
 from functools import partial
 from typing import Any
 
+from engine.methods import Method
 from engine.run import compiled, loops
 from engine.run.judgement import Judgement, Progress
-from engine.run.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.scenes import Scene
 from recordings.errors import printable
 from recordings.fields import NUMBERS, OPTIONAL
@@ -18,7 +19,7 @@ from recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from recordings.recorder import Recorder
 from tui.cli.checks import Check, Gate, conclude
 from tui.cli.errors import Exit
-from tui.cli.files import stop_requests
+from tui.cli.files import check_free, stop_requests
 from tui.cli.report import (
     Column,
     Report,
@@ -40,96 +41,112 @@ Row = dict[str, Any]
 
 
 def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
-    curve: list[Sample] = []
+    if options.record:
+        check_free(options.record, options.force)
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
     began = time.perf_counter()
-    sample = _simulate(lockstep, options, steps, curve if is_figure else None)
+    samples = _simulate(lockstep, options, steps, is_figure)
     wall_seconds = time.perf_counter() - began
+    sample = samples[-1]
     is_whole = sample.step == steps
     rows = rows_of(scene, sample, lockstep, is_whole)
     if options.record:
         size = file_size(options.record.stat().st_size)
         warn(f"recorded {sample.t:g} s, {size}: {printable(str(options.record))}")
     if is_figure:
-        figures.draw_run(options, scene, curve)
+        figures.draw_run(options, scene, samples[1:] or samples)
     else:
         publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    failure = gate({row["method"]: row for row in rows}) if gate else ""
-    found = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
-    check = Check(f"{scene.name}: {options.fail_if or 'no check'}", found, failure or None)
+    check = check_of(f"{scene.name}: {options.fail_if or 'no check'}", rows, gate)
     return conclude(options, f"pendu-tui run {scene.name}", [check])
 
 
 def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
     """Return the lockstep of a run, in machine code where that pays."""
+    if not is_compiled:
+        return Lockstep(scene, judged=True)
     tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
-    return Lockstep(scene, loops=tiered if is_compiled else loops.PlainLoops, judged=True)
+    return Lockstep(scene, loops=tiered, judged=True)
 
 
-def _simulate(
-    lockstep: Lockstep, options: Namespace, steps: int, curve: list[Sample] | None
-) -> Sample:
-    """Run to the end, or until a signal; return the last sample, and append all to the curve."""
+def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: bool) -> list[Sample]:
+    """Run to the end, or until a signal; return the last sample, or for a figure all of them."""
     scene = lockstep.scene
-    batch = 16 if options.method else MAX_BATCH  # a user's method may be slow, and Ctrl+C waits
+    batch = MAX_BATCH
+    if options.method:  # the user's own may be slow, and Ctrl+C waits
+        batch = 16
     every = options.sample_every or batch
     recorder: Any = nullcontext()
     if options.record:
         every = options.sample_every or min(batch, max(1, round(SAMPLE_EVERY / scene.h)))
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    if curve is not None:
+    if is_figure:
         every = min(every, math.ceil(steps / MAX_POINTS))
+    samples: list[Sample] = []
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
             show(sample.step, steps)
-            if curve is not None and sample.step:
-                curve.append(sample)
+            if not is_figure:
+                samples.clear()
+            samples.append(sample)
             if stopped():
                 break
-    return sample
+    return samples
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
-    """Return the results by method, as in --json.  A method that failed has no theta to compare.
+    """Return the results by method, as in --json.
 
     Where evaluations vary they are counted, by running again, unless the run was interrupted.
     """
-    model = scene.equations
     exact = scene.exact().at(sample.t).theta
-    rows = []
-    for method, reading, judgement in zip(
-        scene.cast, sample.readings, lockstep.judgements, strict=True
-    ):
-        end = reading.diverged_at
-        error = model.theta_error(reading.theta, exact)
-        steps = sample.step if end is None else round(end / scene.h)
-        evaluations = method.evaluations(steps)
-        if method.varies and end is None and steps and is_whole:
-            start = model.start(scene.theta, scene.omega)
-            evaluations = loops.count_evaluations(method, model, start, scene.h, steps)
-        row = {"method": method.key, **fields_of(reading, *NUMBERS)}
-        if not model.energy_error.conserved:
-            row["log_energy_error"] = reading.energy_error
-        optional = fields_of(reading, *OPTIONAL)
-        row |= {name: value for name, value in optional.items() if value is not None}
-        row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
-        rows.append(
-            row
-            | {
-                "theta_error": None if math.isnan(error) or end is not None else abs(error),
-                "drift_per_second": judgement.slope,
-                "verdict": judgement.verdict,
-                "progress": judgement.progress and judgement.progress._asdict(),
-                "lyapunov_per_second": judgement.lyapunov,
-                "force_evaluations": evaluations,
-                "diverged_at": end,
-            }
-        )
-    return rows
+    each = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
+    return [_row(scene, sample.step, exact, is_whole, *one) for one in each]
+
+
+def _row(
+    scene: Scene,
+    steps: int,
+    exact: float,
+    is_whole: bool,
+    method: Method,
+    reading: Reading,
+    judgement: Judgement,
+) -> Row:
+    model = scene.equations
+    error = abs(model.theta_error(reading.theta, exact))
+    if reading.diverged_at is not None:  # no theta to compare
+        steps = round(reading.diverged_at / scene.h)
+        error = math.nan
+    evaluations = method.evaluations(steps)
+    if method.varies and reading.diverged_at is None and steps and is_whole:
+        start = model.start(scene.theta, scene.omega)
+        evaluations = loops.count_evaluations(method, model, start, scene.h, steps)
+    row = {"method": method.key, **fields_of(reading, *NUMBERS)}
+    if not model.energy_error.conserved:
+        row["log_energy_error"] = reading.energy_error
+    optional = fields_of(reading, *OPTIONAL)
+    row |= {name: value for name, value in optional.items() if value is not None}
+    row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
+    return row | {
+        "theta_error": None if math.isnan(error) else error,
+        "drift_per_second": judgement.slope,
+        "verdict": judgement.verdict,
+        "progress": judgement.progress and judgement.progress._asdict(),
+        "lyapunov_per_second": judgement.lyapunov,
+        "force_evaluations": evaluations,
+        "diverged_at": reading.diverged_at,
+    }
+
+
+def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
+    found = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
+    failure = gate and gate({row["method"]: row for row in rows})
+    return Check(name, found, failure or None)
 
 
 def _report(

@@ -2,7 +2,7 @@
 
 import math
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -95,21 +95,22 @@ def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], 
 
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
     """Return the report of a table's grid and a map's: neither for the linear oscillator."""
-    maps = computed[1:]
-    rows = table(scene, *computed[0]) if computed else []
-    if not (is_whole or maps):
+    linear = [_linear(scene, method) for method in scene.cast]
+    notes: list[Any] = [LINEAR]
+    rows: list[Row] = []
+    if computed:
+        rows = table(scene, *computed[0])
+    if not is_whole and len(computed) == 1:  # beyond the last z that was computed
         rows = [row for row in rows if row.failure]
     pendulum = [_row_fields(row) for row in rows]
-    here = [None if row.here["fate"] == UNKNOWN else _cell_fields(row.here) for row in rows]
-    notes: list[Any] = [LINEAR]
+    records: Iterable[dict[str, Any]] = pendulum
     if computed:
         notes = [*_words(scene), Table(_columns(scene, steps), pendulum)]
-    for grid, cells in maps:
-        on = console()
-        is_coloured = on.color_system is not None and not on.no_color and "utf" in on.encoding
-        palette = PALETTES["dark"] if is_coloured else None
-        notes += ["", *lines_of(picture(grid, cells, max(40, on.width), palette), None)]
-    linear = [_linear(scene, method) for method in scene.cast]
+    drawn = None
+    for grid, cells in computed[1:]:
+        notes += ["", *_picture(grid, cells)]
+        records = _swings(grid, cells)
+        drawn = _map_fields(grid, cells)
     return Report(
         name="stability",
         title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
@@ -127,24 +128,32 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
             "steps": steps,
             "band": BAND,
             "linear": [finite(row) for row in linear],
-            "pendulum": [row | {"at_scene": at} for row, at in zip(pendulum, here, strict=True)],
-            "map": _map_fields(*maps[0]) if maps else None,
+            "pendulum": [_row_fields(row) | {"at_scene": _cell(row.here)} for row in rows],
+            "map": drawn,
             "interrupted": not is_whole,
         },
-        records=_swings(*maps[0]) if maps else pendulum,
+        records=records,
     )
 
 
+def _picture(grid: Grid, cells: Cells) -> list[Any]:
+    on = console()
+    palette = None
+    if on.color_system is not None and not on.no_color and "utf" in on.encoding:
+        palette = PALETTES["dark"]
+    return lines_of(picture(grid, cells, max(40, on.width), palette), None)
+
+
 def _linear(scene: Scene, method: Method) -> dict[str, Any]:
-    theory = None if isinstance(method, OwnMethod) else method.linear_limit
+    theory = method.linear_limit
+    if isinstance(method, OwnMethod):
+        theory = None
     fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
     return fields | {"amplification": amplification(method, scene.z)}
 
 
 def _limit(z: float) -> str:
-    if z == math.inf:
-        return "any"
-    return f"{z:.9f}" if z else "none"
+    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.9f}"
 
 
 def _row_fields(row: Row) -> dict[str, Any]:
@@ -157,6 +166,10 @@ def _row_fields(row: Row) -> dict[str, Any]:
         "steps_survived": failure and failure.steps,
         "first_failure_z_early": row.early and row.early.z,
     }
+
+
+def _cell(cell: Any) -> dict[str, Any] | None:
+    return None if cell["fate"] == UNKNOWN else _cell_fields(cell)
 
 
 def _cell_fields(cells: Any) -> dict[str, Any]:
@@ -190,8 +203,9 @@ def _words(scene: Scene) -> Iterator[str]:
     if swing is None:
         yield "The start itself does not swing, so it has no row."
     elif not math.isclose(swing, scene.theta):
-        speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
-        start = f"{math.degrees(scene.theta):.4g} deg{speed}"
+        start = f"{math.degrees(scene.theta):.4g} deg"
+        if scene.omega:
+            start += f" with {scene.omega:g} rad/s"
         degrees = f"{math.degrees(swing):.4g} deg"
         yield f"The start at {start} swings as far as one from rest at {degrees}."
 
