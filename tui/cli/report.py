@@ -189,8 +189,12 @@ class Report:
 
 
 def finite(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row as JSON can hold it: null for a limit that is not there."""
-    return {name: None if value == math.inf else value for name, value in row.items()}
+    """Return a row as JSON can hold it: null for a number that is not finite."""
+
+    def is_finite(value: Any) -> bool:
+        return not isinstance(value, float) or math.isfinite(value)
+
+    return {name: value if is_finite(value) else None for name, value in row.items()}
 
 
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:

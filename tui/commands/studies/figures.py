@@ -5,6 +5,7 @@ from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from engine.methods import Cast
@@ -50,16 +51,12 @@ def lines_of(picture: "Picture", palette: Palette | None) -> "list[Text]":
     """Return a picture for the terminal; without a palette only styles colour it."""
     from rich.text import Text
 
-    lines = []
-    for row in picture.rows:
-        line = Text()
-        for text, ink in row:
-            if isinstance(ink, int):
-                line.append(text, palette and palette.colour(ink))
-            else:
-                line.append(text, ink)
+    def style(ink: Any) -> Any:
+        return palette and palette.colour(ink) if isinstance(ink, int) else ink
+
+    lines = [Text.assemble(*((text, style(ink)) for text, ink in row)) for row in picture.rows]
+    for line in lines:
         line.rstrip()
-        lines.append(line)
     return lines
 
 
@@ -82,12 +79,14 @@ def check_output(options: Namespace) -> bool:
 @contextmanager
 def _figure(options: Namespace, height: float = 6.0) -> Iterator[Any]:
     """Yield a Matplotlib figure of a height [cm], which is written to the output afterwards."""
-    import matplotlib as mpl
+    from matplotlib import style
     from matplotlib.figure import Figure
 
     suffix = options.output.suffix.lower()
-    defaults = {key: value for key, value in mpl.rcParamsDefault.items() if "backend" not in key}
-    with mpl.rc_context({**defaults, **STYLE}), whole_file(options.output, options.force) as part:
+    with (
+        style.context(STYLE, after_reset=True),
+        whole_file(options.output, options.force) as part,
+    ):
         figure = Figure((8.5 * CM, height * CM))  # a column of a journal
         yield figure
         figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
@@ -95,10 +94,10 @@ def _figure(options: Namespace, height: float = 6.0) -> Iterator[Any]:
 
 def _styles(cast: Cast) -> list[dict[str, Any]]:
     """Return colour, line style and label of each method; styles differ without colour, too."""
-    palette = PALETTES["light"]
+    colours = map(PALETTES["light"].colour, inks(cast))
     return [
-        {"color": palette.colour(ink), "linestyle": LINES[n % len(LINES)], "label": method.label}
-        for n, (method, ink) in enumerate(zip(cast, inks(cast), strict=True))
+        {"color": colour, "linestyle": line, "label": method.label}
+        for method, colour, line in zip(cast, colours, cycle(LINES))
     ]
 
 

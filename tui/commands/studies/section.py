@@ -23,7 +23,7 @@ from engine.phase_space.section import (
 )
 from engine.scenes import Scene
 from tui.cli.errors import UserError
-from tui.cli.report import Column, Report, Table, console, progress, publish, scene_line
+from tui.cli.report import Column, Report, Table, console, finite, progress, publish, scene_line
 from tui.cli.workers import workers_of
 from tui.commands.studies import figures
 from tui.drawing.palette import PALETTES, ink_of
@@ -113,19 +113,16 @@ def _report(scene: Scene, method: Method, title: str, steps: int, picture: list[
 
 
 def _fields(method: Method, kind: OrbitKind) -> dict[str, Any]:
-    return {
+    fields = {
         "method": method.key,
         "rotation": kind.rotation,
         "fraction": kind.fraction and fraction(kind),
         "island": kind.island,
-        "lyapunov": _finite(kind.lyapunov),
+        "lyapunov": kind.lyapunov,
         "chaotic": kind.chaotic,
         "over_the_top": kind.spins,
-        "energy_error": _finite(kind.energy_error),
+        "energy_error": kind.energy_error,
         "steps": kind.steps,
         "text": sentence(method, kind),
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return finite(fields)
