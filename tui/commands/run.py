@@ -57,12 +57,10 @@ def run(options: argparse.Namespace) -> int:
     for scene in scenes.corners():
         _check_time(scene, options.time)
     is_figure = figures.check_output(options)
+    from tui.commands.studies.run import run_list, run_one
+
     if len(scenes) > 1:
-        from tui.commands.studies.lists import run_list
-
         return run_list(scenes, options, gate, is_figure)
-    from tui.commands.studies.run import run_one
-
     (scene,) = scenes
     return run_one(scene, options, gate, is_figure)
 

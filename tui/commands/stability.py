@@ -50,14 +50,13 @@ def run(options: argparse.Namespace) -> int:
     options.steps = options.steps or (SECTION_STEPS if options.section else STEPS)
     suffix = options.output and options.output.suffix.lower()
     is_figure = figures.check_output(options)
+    from tui.commands.studies.stability import compute, grids_of, report, show_section, write_map
+
     if options.section:
         if options.csv or suffix in (".npz", ".csv"):
             raise UserError("--section is a picture: write an .svg, .pdf or .png, or use --json.")
-        from tui.commands.studies import section
-
-        section.run(scene, options, is_figure)
+        show_section(scene, options, is_figure)
         return Exit.FINE
-    from tui.commands.studies.stability import compute, grids_of, report, write_map
 
     is_map = is_figure or suffix == ".npz"
     computed, ended = compute(grids_of(scene, options, is_map), options)

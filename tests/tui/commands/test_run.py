@@ -19,7 +19,7 @@ from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.commands.studies.lists import partial_of
+from tui.commands.studies.run import partial_of
 from tui.words.numbers import about, file_size
 
 
