@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from engine.models.model import ExactMotion
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
     from tui.playback.ghost import Ghost
 
 
-class Playhead(NamedTuple):
+@dataclass(slots=True)
+class Playhead:
     """How far playback has come, in seconds of what is played."""
 
     position: float = 0.0  # s
@@ -26,12 +28,11 @@ class Playhead(NamedTuple):
     paused: bool = False
     seen: float | None = None  # s, the last clock reading
 
-    def at(self, now: float) -> "Playhead":
-        """Return the playhead at `now` [s] of a clock, which moves nothing by going back."""
-        if self.seen is None or self.paused:
-            return self._replace(seen=now)
-        elapsed = max(0.0, now - self.seen)
-        return self._replace(position=self.position + elapsed * self.speed, seen=now)
+    def follow(self, now: float) -> None:
+        """Follow a clock to `now` [s]; one that goes back moves nothing."""
+        if self.seen is not None and not self.paused:
+            self.position += max(0.0, now - self.seen) * self.speed
+        self.seen = now
 
 
 class RecordingStatus(NamedTuple):

@@ -98,11 +98,12 @@ class Live(Playback):
 
     def tick(self, now: float) -> Sample:
         """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
-        before = self.playhead
-        self.playhead = before.at(now)
-        if self.playhead.paused or before.seen is None:
+        seen = self.playhead.seen
+        before = self.playhead.position
+        self.playhead.follow(now)
+        if self.playhead.paused or seen is None:
             return self.sample
-        self._recorded += max(now - before.seen, 0.0)
+        self._recorded += max(now - seen, 0.0)
         began = self._clock()
         # A sample at home shows what each method misses its start by.
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
@@ -113,12 +114,12 @@ class Live(Playback):
             self._forward(min(left, chunk))
             if self.failure:
                 break
-        due = self.playhead.position - before.position
+        due = self.playhead.position - before
         if left > 0:
-            self.playhead = self.playhead._replace(position=self._run.x)
+            self.playhead.position = self._run.x
         if due:
-            share = (self.playhead.position - before.position) / due
-            self.pace += (share - self.pace) * (1 - math.exp(before.seen - now))  # over a second
+            share = (self.playhead.position - before) / due
+            self.pace += (share - self.pace) * (1 - math.exp(seen - now))  # over a second
         return self._take_sample(is_row=False)
 
     def _forward(self, steps: int) -> None:
@@ -149,7 +150,7 @@ class Live(Playback):
         if n < 0:
             with self._standing_still():
                 self._run.back_to(max(0, target))
-        self.playhead = self.playhead._replace(position=self._run.x)
+        self.playhead.position = self._run.x
         return self._take_sample()
 
     def go_to(self, run: int, step: int) -> bool:
@@ -170,12 +171,12 @@ class Live(Playback):
     def pause(self, paused: bool) -> None:
         self.failure = None
         if paused != self.playhead.paused:
-            self.playhead = self.playhead._replace(paused=paused)
+            self.playhead.paused = paused
             self._note_here("pause" if paused else "resume")
 
     def set_speed(self, speed: float) -> None:
         if speed != self.playhead.speed:
-            self.playhead = self.playhead._replace(speed=speed)
+            self.playhead.speed = speed
             self.pace = 1.0
             self._note_here("speed", speed=speed)
 
@@ -222,7 +223,7 @@ class Live(Playback):
     def _enter(self, run: RewindableRun, history: History) -> None:
         self._run = run
         self.history = history
-        self.playhead = self.playhead._replace(position=run.x)
+        self.playhead.position = run.x
         self._note_start()
         self._take_sample()
 

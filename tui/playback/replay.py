@@ -106,27 +106,28 @@ class Replay(Playback):
     # What can be done
 
     def tick(self, now: float) -> Sample:
-        self.playhead = self.playhead.at(now)
+        self.playhead.follow(now)
         if not self.playhead.paused:
             position = self.playhead.position
             end = min(max(position, 0.0), self.length)
             if self.looping and position != end:
-                self.playhead = self.playhead._replace(position=self.length - end)
+                self.playhead.position = self.length - end
             elif position != end:
-                self.playhead = self.playhead._replace(position=end, paused=True)
+                self.playhead.position = end
+                self.playhead.paused = True
             self._follow()
         self.fill()
         return self.sample
 
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
-        self.playhead = self.playhead._replace(paused=paused)
+        self.playhead.paused = paused
         end = self.length if self.playhead.speed > 0 else 0.0
         if not paused and self.playhead.position == end:
             self.seek(self.length - end)
 
     def set_speed(self, speed: float) -> None:
-        self.playhead = self.playhead._replace(speed=speed)
+        self.playhead.speed = speed
 
     def step(self, n: int) -> Sample:
         self.pause(True)
@@ -134,11 +135,11 @@ class Replay(Playback):
         for _ in range(abs(n)):
             if not self._closed and (place := move(self._place)):
                 self._show(place)
-        self.playhead = self.playhead._replace(position=self.recording.sample(self._place).clock)
+        self.playhead.position = self.recording.sample(self._place).clock
         return self.sample
 
     def seek(self, position: float) -> None:
-        self.playhead = self.playhead._replace(position=min(max(position, 0.0), self.length))
+        self.playhead.position = min(max(position, 0.0), self.length)
         self._follow()
 
     def go_to(self, run: int, step: int) -> bool:

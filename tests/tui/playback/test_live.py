@@ -72,15 +72,19 @@ def simulated(scene, step, changes=()) -> list[tuple[float, float]]:
 def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_looked(
     frames, speed, paused
 ):
-    playhead, now = Playhead(speed=speed, paused=paused).at(10.0), 10.0
+    now = 10.0
+    playhead = Playhead(speed=speed, paused=paused)
+    playhead.follow(now)
     assert playhead.position == 0.0
     for elapsed in frames:
         now += elapsed
-        playhead = playhead.at(now)
+        playhead.follow(now)
     # 50 additions and the clock's own rounding, each half a unit in the last place of at most 260 s
     expected = 0.0 if paused else (now - 10.0) * speed
     assert playhead.position == pytest.approx(expected, abs=260 * speed * 100 * 2**-53)
-    assert playhead.at(now - 9.0).position == playhead.position  # a clock set back
+    before = playhead.position
+    playhead.follow(now - 9.0)  # a clock set back
+    assert playhead.position == before
 
 
 def test_speeds_stay_within_their_limits_and_double_exactly_within_them():

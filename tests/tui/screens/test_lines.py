@@ -48,7 +48,7 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
     assert "  z 0.157  scene drift  REC 72 s" in text(status_row(live, 80))
     live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
-    live.playhead = live.playhead._replace(position=0.0)
+    live.playhead.position = 0.0
     live.history.sample = live.sample._replace(t=725.0)
     assert text(status_row(live, 80)) == (
         " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 72 s"
