@@ -18,7 +18,16 @@ ROOT = Path(__file__).parent.parent
 MODULES = [
     path for package in ("engine", "recordings", "tui") for path in (ROOT / package).rglob("*.py")
 ]
-HEAVY = ("textual", "numpy", "rich.console", "plotext", "mcap", "numba", "distributed")
+HEAVY = (
+    "textual",
+    "numpy",
+    "rich.console",
+    "plotext",
+    "mcap",
+    "numba",
+    "distributed",
+    "matplotlib",
+)
 
 
 def loaded_after(work: str, *prefixes: str) -> list[str]:

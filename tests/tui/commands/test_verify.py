@@ -39,8 +39,7 @@ def test_the_bundled_recordings_verify():
 def test_a_difference_is_exit_1_and_located(other):
     outcome = pendu("verify", other)
     assert outcome.code == 1
-    assert outcome.out.startswith("different ")
-    for word in (str(other), "run 1, step 6", "velocity_verlet", "omega", "-0x1.4"):
+    for word in ("different ", str(other), "run 1, step 6", "velocity_verlet", "omega", "-0x1.4"):
         assert word in outcome.out
     (found,) = pendu("verify", other, "--json").json["files"]
     first = found["first_difference"]
