@@ -96,7 +96,7 @@ class SourceScreen(SizedScreen[None]):
         shown = Shown().through(source.scene)
         self.set_reactive(SourceScreen.shown, shown)
         self.clock = clock
-        self.view = self.first_view(source)
+        self.view = source.scene.shot.view
         self._view_in_front = create(self.view, source, shown)
         self._lines: list[Pane] = []
         self._frames = 0
@@ -110,9 +110,6 @@ class SourceScreen(SizedScreen[None]):
     def host(self) -> Any:
         """The PenduApp, which imports this module."""
         return self.app
-
-    def first_view(self, source: Source) -> str:
-        return "lab"
 
     # What is on the screen
 

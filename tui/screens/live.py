@@ -14,7 +14,6 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.common import State
 from tui.playback.live import Live
-from tui.playback.source import Source
 from tui.screens.base import SourceScreen
 from tui.screens.lines import TourPanel
 from tui.views.view import Held, SceneChosen, StepSizeChosen
@@ -46,6 +45,8 @@ class LiveScreen(SourceScreen):
     begins_with_tour = False
     lecture: Mapping[str, Scene] = SCENES
     """The scenes that p leads through, by name."""
+    page = ""
+    """The scene from which p goes on."""
     is_on_tour = False
 
     @cached_property
@@ -204,12 +205,9 @@ class LiveScreen(SourceScreen):
 
     # The tour
 
-    def first_view(self, source: Source) -> str:
-        self.page = source.scene.name
-        return source.scene.shot.view
-
     def begin(self) -> None:
         super().begin()
+        self.page = self.live.scene.name
         if self.begins_with_tour:
             self.action_tour()
 
