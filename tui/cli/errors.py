@@ -51,6 +51,7 @@ def explained(error: BaseException) -> UserError:
 
 
 ADVICE = {
+    errno.ENOENT: "; create the folder first",
     errno.ENOSPC: "; free some space or write elsewhere",
     errno.EACCES: "; choose a writable location",
     errno.EROFS: "; choose a writable location",

@@ -214,7 +214,7 @@ def columns_of(scene: Scene, *trend: Column) -> list[Column]:
         Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
         Column("largest", "max_energy_error", ".2e"),
         *trend,
-        Column("last theta error [rad]", "theta_error", ".2e"),
+        Column("theta error [rad]", "theta_error", ".2e"),
         Column("force evaluations", "force_evaluations", "d"),
     ]
 
