@@ -16,9 +16,6 @@ pytestmark = pytest.mark.slow
 COMMANDS = (
     "doctor",
     "run --time 1 --record run.mcap",
-    "verify drift.mcap",
-    "export drift.mcap -o out.csv",
-    "snapshot --time 0.1 -o out.svg",
     "judge energies.csv --time 1 --energy 2",
     "stability --section --starts 9 --steps 50 -o map.svg",
     "stability --map --theta-values 1 --z-values 0.1:2:4 --steps 20 --workers 2",
@@ -86,7 +83,6 @@ def test_no_view_of_the_lab_runs_a_module_of_the_current_folder(tmp_path, hostil
         for keys, shown in (
             ("", "Quit"),
             ("\x1bOR", "area"),
-            ("x", "Own map of Velocity Verlet"),
             ("\x1bOS", "points left"),
             ("\x1b[15~", "300 steps"),  # of what another process has computed
         ):
