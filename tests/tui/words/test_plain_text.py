@@ -10,7 +10,6 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
 from tests.tui.harness import after, lab
-from tui.playback.ghost import Ghost
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
@@ -32,7 +31,7 @@ class Hour:
 
 
 def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
-    """What is printed in so many seconds of the clock, after the description."""
+    """The sentences of so many seconds of the clock, after the description."""
     clock, sentences = Hour(), []
     end = clock.now + seconds
     first = description(source, only)
@@ -44,12 +43,7 @@ def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
 def test_the_default_scene_after_twenty_seconds():
     live = after(DRIFT, 20)
     text = " ".join(description(live))
-    for part in (
-        '20.00 s of run 1 of the scene "drift"',
-        "57.3° 0 rad/s",
-        "2.1 s",
-        "0.05 s, z = 0.157",
-    ):
+    for part in ('20.00 s of run 1 of the scene "drift"', "57.3° 0 rad/s", "z = 0.157"):
         assert part in text
     for index, number in enumerate(("7.15 s", "0.079", "0.0057", "31 min")):
         assert number in method_sentence(live, index)
@@ -86,13 +80,6 @@ def test_the_description_follows_changes(change, words):
     assert words in " ".join(description(live))
 
 
-def test_the_description_has_a_recording_under_the_lab():
-    live = after(DRIFT, 1)
-    with Recording.open(GOLDEN / "drift.mcap") as recording:
-        live.laid_under = Ghost.recorded(recording)
-    assert "Under it, dim: drift, h 0.05 s." in description(live)
-
-
 async def test_d_opens_the_description_and_closes_it():
     async with lab() as theatre:
         await theatre.run(20)
@@ -113,14 +100,12 @@ def test_every_second_has_a_sentence_and_every_event_one_more_which_is_explained
     assert "went over the top at 7.15 s" in sentences[sentences.index(events[0]) + 1]
 
 
-def test_the_numbers_are_those_of_the_sample():
-    live = Live(DRIFT, clock=lambda: 0.0)
-    numbers = re.findall(r" ([-+][\d.e+-]+\d)", said(live, 5.01)[-1])
+def test_the_numbers_are_those_of_the_sample_and_seconds_those_of_the_clock_at_any_speed():
+    live = Live(DRIFT, 0.25, clock=lambda: 0.0)
+    sentences = said(live, 5.01)
+    assert len(sentences) == 5
+    numbers = re.findall(r" ([-+][\d.e+-]+\d)", sentences[-1])
     assert numbers == [f"{reading.energy_error:+.2g}" for reading in live.sample.readings]
-
-
-def test_seconds_are_those_of_the_clock_at_any_speed():
-    assert len(said(Live(DRIFT, 0.25, clock=lambda: 0.0), 5.1)) == 5
     fast = Live(DRIFT, 8, clock=lambda: 0.0)
     said(fast, 5)
     assert 39 < fast.sample.t < 41

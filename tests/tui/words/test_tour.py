@@ -48,11 +48,6 @@ def after(scene: Scene, seconds: float) -> tuple[Reading, ...]:
     return tuple(lockstep.sample().readings)
 
 
-def miss(reading: Reading, scene: Scene) -> float:
-    """Return the distance from the start [rad]."""
-    return math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0)
-
-
 @pytest.mark.parametrize("shot", STEPS, ids=lambda shot: shot.title)
 def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(shot):
     walked = Walked(shot)
@@ -115,7 +110,6 @@ def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s
     assert errors == pytest.approx([0.0057, 0.0014], abs=5e-5)
     assert errors[0] / errors[1] == pytest.approx(4, abs=0.1)
     assert whole[RK].energy_error / readings[RK].energy_error == pytest.approx(32, abs=2)
-    assert (VELOCITY_VERLET.order, RK4.order) == (2, 4)
     over = [each.t for each in walked.source.milestones if each.kind == "over the top"]
     assert over == [pytest.approx(12.45)]
     assert Walked(GAINS).source.milestones[0].t == pytest.approx(7.15)
@@ -135,7 +129,11 @@ def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
 def test_time_reversed_brings_verlet_home_and_no_other():
     walked = Walked(REVERSED)
     assert walked.source.sample.t == pytest.approx(0, abs=1e-9)
-    misses = [miss(reading, REVERSED.scene) for reading in walked.readings]
+    start = REVERSED.scene
+    misses = [
+        math.hypot(each.theta - start.theta, (each.omega - start.omega) / start.w0)  # rad
+        for each in walked.readings
+    ]
     assert misses[VERLET] < 1e-14
     assert misses[RK] == pytest.approx(4e-5, abs=5e-6)
     assert misses[SYMPLECTIC] > 0.1
@@ -151,9 +149,8 @@ def test_two_methods_keep_area():
     assert ratios[SYMPLECTIC] == pytest.approx(1, abs=1e-12)
     assert ratios[VERLET] == pytest.approx(1, abs=1e-12)
     assert ratios[EXPLICIT] == pytest.approx(2.4, abs=0.05)
-    for theta in (0.0, 0.5, 1.0, 2.0):
-        stretch = jacobian(EXPLICIT_EULER, scene.equations, theta, 0.3, scene.h).determinant
-        assert stretch == pytest.approx(1 + scene.z**2 * math.cos(theta), rel=1e-12)
+    stretch = jacobian(EXPLICIT_EULER, scene.equations, 0.5, 0.3, scene.h).determinant
+    assert stretch == pytest.approx(1 + scene.z**2 * math.cos(0.5), rel=1e-12)
     assert 1 - 1e-4 < ratios[RK] < 1
 
 
@@ -163,8 +160,6 @@ def test_above_its_limit_verlet_is_held_by_the_pendulum_and_not_by_the_spring():
     assert walked.source.sample.step == 10
     assert abs(walked.readings[VERLET].theta) == pytest.approx(0.47, abs=0.01)
     assert scene.z > VELOCITY_VERLET.linear_limit == 2
-    assert RK4.linear_limit == pytest.approx(2.83, abs=0.005)
-    assert EXPLICIT_EULER.linear_limit == 0
     lockstep, largest = Lockstep(scene), 0.0
     for _ in range(5000):
         lockstep.advance(1)
@@ -196,11 +191,11 @@ def tour() -> Tour:
     tour = Tour(Live(DRIFT, clock=lambda: 0.0))
     tour.live.set_stepping(tour.live.stepping.toggled())
     tour.begin(0)
-    assert tour.live.stepping == GAINS.stepping  # equal cost of one's own does not stay
     return tour
 
 
 def test_forward_goes_to_the_moment_then_to_the_truth_then_to_the_next_step(tour):
+    assert tour.live.stepping == GAINS.stepping  # equal cost of one's own does not stay
     for index, step in enumerate(STEPS):
         assert (tour.index, tour.stage) == (index, "watching")
         assert tour.forward()
@@ -234,12 +229,9 @@ def test_back_goes_from_the_truth_to_the_question_and_from_there_to_the_step_bef
     assert not tour.live.playhead.paused
 
 
-CHANGES = [lambda live: live.start(SCENES["spin"]), lambda live: live.set_stepping(Stepping(0.1))]
-
-
-@pytest.mark.parametrize("change", CHANGES, ids=["another scene", "another step"])
-def test_after_a_change_of_the_run_enter_begins_the_step_again(tour, change):
-    change(tour.live)
+def test_after_a_change_of_the_run_enter_begins_the_step_again(tour):
+    tour.live.start(SCENES["spin"])
+    tour.live.set_stepping(Stepping(0.1))
     assert not tour.follow()
     assert tour.text == (ASTRAY,)
     tour.forward()
@@ -248,7 +240,6 @@ def test_after_a_change_of_the_run_enter_begins_the_step_again(tour, change):
 
 
 def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
-    """Print the tour by a clock of its own; return what is printed when."""
     now = 0.0
     lines = []
 
@@ -256,10 +247,11 @@ def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
         nonlocal now
         now += seconds
 
+    def show(line: str) -> None:
+        lines.append((now, line))
+
     live = Live(DRIFT, clock=lambda: 0.0)
-    print_tour(
-        live, lambda line: lines.append((now, line)), lambda: now > stop_at, lambda: now, sleep
-    )
+    print_tour(live, show, lambda: now > stop_at, lambda: now, sleep)
     return lines
 
 
@@ -272,6 +264,6 @@ def test_without_a_screen_it_asks_waits_and_answers():
     assert all(step.truth in line for step, (_, line) in zip(STEPS, lines[3::4], strict=True))
 
 
-@pytest.mark.parametrize("stop_at", [1.0, 9.0, 15.0])
+@pytest.mark.parametrize("stop_at", [1.0, 15.0])
 def test_it_stops_when_it_is_asked_to(stop_at):
     assert printed(stop_at)[-1][0] <= stop_at + 0.1
