@@ -194,4 +194,5 @@ async def view_of(
         await until(pilot, lambda: app.screen.query(kind))
         pane = app.screen.query_one(kind)
         await until(pilot, lambda: complete(pane))
+        pane.draw()
         yield pilot, pane

@@ -12,10 +12,8 @@ from contextlib import aclosing
 from io import StringIO
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 
 pytestmark = pytest.mark.slow
@@ -45,18 +43,6 @@ def ends(process: int) -> bool:
             return True
         time.sleep(0.01)
     return False
-
-
-async def test_the_pieces_of_a_map_make_the_map_a_first_one_before_the_final_one():
-    grid = Grid(np.array([0.5, 1.5, 2.5]), np.linspace(0.2, 3, 14), 100)
-    cells = grid.unknown()
-    progress = []
-    async for piece in computed(pieces, grid, (10, 100), 5):
-        cells[piece.z, piece.method] = piece.cells
-        progress.append((piece.steps, piece.done))
-    assert cells.tobytes() == grid.cells().tobytes()
-    assert progress == sorted(progress)
-    assert (10, 1) in progress
 
 
 @pytest.mark.parametrize("function", [forever, busy])

@@ -82,7 +82,8 @@ def test_after_a_change_of_h_the_largest_error_and_the_theta_error_count_from_it
     live.step(400)
     head, _, _, verlet, rk4 = rows(live, 120)
     assert head.startswith("since h 0.01 s ")
-    largest, theta_error = float(verlet.split()[5]), float(verlet.split()[-2])
+    largest = float(verlet.split()[5])
+    theta_error = float(verlet.split()[-2])
     assert largest < at_change.readings[2].max_energy_error / 2  # 5.7e-3, with h = 0.05
     before, now = (
         each.readings[2].theta - live.exact.at(each.t).theta for each in (at_change, live.sample)

@@ -72,6 +72,11 @@ def test_it_fits_every_size_and_method(method, size):
     assert drawn.size(picture) == size
 
 
+@pytest.fixture(autouse=True)
+def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tui.views.phase.view.STARTS", 40)
+
+
 async def section_of(theatre, *keys: str) -> SectionPane:
     """The pane with a section that is complete, after these keys."""
     await theatre.press("f3", *keys)
@@ -100,7 +105,7 @@ async def test_the_section_is_the_engines():
     async with lab(SCENE, size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x")
         drawing = Section(pane.viewport, MODEL, VELOCITY_VERLET, MINE)
-        for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(pane.viewport, 300), 2000):
+        for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(pane.viewport, 40), 2000):
             drawing.add(piece)
         expected = drawing.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 2000), START).text
         shown = pane.text.splitlines()[:-1]
