@@ -10,6 +10,7 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
 from tests.tui.harness import after, lab
+from tui.playback.ghost import Ghost
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
@@ -78,6 +79,13 @@ def test_the_description_follows_changes(change, words):
     assert words not in " ".join(description(live))
     change(live)
     assert words in " ".join(description(live))
+
+
+def test_the_description_has_a_recording_under_the_lab():
+    live = after(DRIFT, 1)
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
+        live.laid_under = Ghost.recorded(recording)
+    assert "Under it, dim: drift, h 0.05 s." in description(live)
 
 
 async def test_d_opens_the_description_and_closes_it():
