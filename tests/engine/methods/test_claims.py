@@ -88,7 +88,7 @@ def test_newtons_iteration_solves_the_equation_of_the_step(method, theta, omega,
     assert theta_end == pytest.approx(theta + h * middle, abs=1e-11)
 
 
-@pytest.mark.parametrize("h", [0.01, 0.05, 0.3])
+@pytest.mark.parametrize("h", [0.01, 0.3])
 @pytest.mark.parametrize(
     ("method", "sign"), [(BACKWARD_EULER, -1), (HEUN, 1), (EXPLICIT_MIDPOINT, 1)]
 )
@@ -143,10 +143,7 @@ def test_one_definition_serves_floats_arrays_complex_and_mpmath(method, kind, si
 
 @pytest.mark.parametrize("field", ["key", "label", "letter", "phases", "formula"])
 def test_no_two_methods_share_a_name(field):
-    users = {}
-    for method in METHODS:
-        users.setdefault(getattr(method, field), []).append(method.key)
-    assert not [keys for keys in users.values() if len(keys) > 1]
+    assert len({getattr(method, field) for method in METHODS}) == len(METHODS)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)

@@ -64,6 +64,8 @@ def refusal(source, key="mine"):
 
 def test_verlet_written_again_is_measured_to_be_verlet():
     mine, verlet = loaded(VERLET), VELOCITY_VERLET
+    assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
+    assert pickle.loads(pickle.dumps(mine)) is mine
     assert mine.order == 2
     assert mine.measured.order == pytest.approx(2, abs=0.01)
     assert mine.linear_limit == pytest.approx(2, abs=1e-9)
@@ -71,13 +73,6 @@ def test_verlet_written_again_is_measured_to_be_verlet():
         assert getattr(mine, field) == getattr(verlet, field)
     assert (mine.key, mine.label, mine.letter) == ("mine", "Mine", "m")
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
-
-
-def test_it_keeps_its_text_and_the_hash_of_it_and_is_itself_after_a_pickle():
-    mine = loaded(VERLET)
-    assert mine.source == VERLET
-    assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
-    assert pickle.loads(pickle.dumps(mine)) is mine
 
 
 def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there():
@@ -101,10 +96,8 @@ WRONG = {
         "line 1: mine returns (1.015, ",
     ),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
-    "one step and no more": (euler("yield theta, omega; return"),
-                             "line 2: mine ends while the run goes on"),
+    "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
-    "three numbers": (euler(yields="theta, omega, h"), "line 2: mine yields (1.015, -0.11"),
     "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
     "an array changed in place": (
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
@@ -112,13 +105,10 @@ WRONG = {
         "mine changes an array in place; write theta = theta + x instead of theta += x",
     ),
     "something printed": (euler("print(theta)"), "line 7: `print(theta)` prints, but stdout is for results"),
-    "an end of the program": (euler("raise SystemExit"), "line 7: `raise SystemExit` raises SystemExit."),
     "an except that catches the limit of time": (
         "def mine(force, phase, h):\n    try: yield phase\n    except: pass", "line 3: this would catch Ctrl+C; use"
     ),
-    "the same by its name": (euler(above="suppressed = BaseException"), "line 1: this would catch Ctrl+C; use"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
-    "numbers that overflow": (euler("theta = (theta * 1e200) ** 2"), "mine overflows on an ordinary swing"),
     "a memory": (
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
         "mine keeps more than theta and omega from step to step",
@@ -127,12 +117,9 @@ WRONG = {
         euler("theta = theta + __import__('random').random()"), "mine gives other numbers when it is run again"
     ),
     "no force": ("def mine(force, phase, h):\n    while True:\n        yield phase", "mine never evaluates the force."),
-    "a comparison": (euler("theta = theta if theta > 0 else theta"), "line 7: `theta = theta if theta > 0"),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers for complex numbers"),
     "no Python": ("def mine(:", "line 1: invalid syntax."),
-    "a zero byte": ("\0", "source code string cannot contain null bytes."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
-    "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
     "too much text": ("#" * (MAX_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
