@@ -142,18 +142,6 @@ def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     assert "A chart needs 20×5" in " ".join(text.split())
 
 
-def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
-    t = np.linspace(0, 600, 2000)
-    errors = np.stack([1e-5 * t, 0.08 * np.sin(6 * t)] * 2, axis=1)
-    picture = plot(window(t, errors, repeats=1.0), places=[0, 1]).picture
-    assert picture.text.endswith(" 5 min")
-    heights = [[y for x, y in dots(picture) if x == at and y < 48] for at in range(16, 96)]
-    assert len({min(column) // 4 for column in heights}) == 1
-    growing = [max(column) for column in heights]
-    assert growing == sorted(growing, reverse=True)
-    assert growing[0] - growing[-1] >= 16
-
-
 def test_where_one_error_passes_another_for_good_there_is_a_cross():
     t = np.linspace(0, 20, 400)
     errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)

@@ -18,28 +18,12 @@ SMALL = Viewport.portrait(46, 15, DRIFT)
 PORTRAIT = Portrait.of(SMALL, DRIFT.equations)
 
 
-def test_the_portrait_and_nothing_for_what_is_not_a_number():
-    assert phase_picture(PORTRAIT, []).text == PICTURE
+PLAIN = phase_picture(PORTRAIT, [])
+
+
+def test_what_is_not_a_number_is_not_drawn():
     nowhere = PhasePoint(math.nan, math.nan, 0, "e", ring=(np.full(3, math.nan), np.zeros(3)))
-    assert phase_picture(PORTRAIT, [nowhere]).text == PICTURE
-
-
-PICTURE = """\
-          ⢀⣀⡠⠤⠒⠒⠉⠉⠁         ⠉⠉⠙⠒⠲⠤⣄⣀⡀
-⣀⣀⣀⣀⣀⠤⠤⠔⠒⠉⠁     ⣀ rotation ⠤⠤⣄⣀     ⠉⠙⠒⠦⠤⢤⣀⣀⣀⣀
-           ⣀⠤⠒⢊⣩⣤⠶⢶⣛⣛⠿⠯⠭⠽⢿⣛⣛⡶⠶⣬⣍separatrix
-5     ⢀⡠⠔⠊⢉⣠⡴⠞⣋⠥⠒⠉⠁         ⠉⠙⠲⢬⣙⠳⢦⣌⡉⠓⠦⣄⡀
-⠤⠤⠤⠔⠒⠉⠁⢀⣤⠞⠋⡡⠔⠉     ⣀⠤⠤⠔⠒⠦⠤⢤⣀    ⠈⠙⠦⣌⠙⠳⣤⡀⠉⠙⠒⠦⠤⠤
-    ⢀⣤⠞⠋ ⡠⠊     ⢀⠔⠉        ⠈⠙⢦⡀    ⠈⠳⣄ ⠙⠳⣤⡀
-  ⣠⠶⠋  ⢀⠎      ⡔⠁             ⠙⡆     ⠈⢧   ⠙⠶⣄
-0⣿⡁    ⢸      ⠰⡅   libration   ⡹      ⢸     ⢈⣿
-  ⠙⠶⣄  ⠈⢧⡀     ⠳⣄             ⡠⠃     ⢀⠎   ⣠⠶⠋
-    ⠈⠛⢦⣄ ⠙⢦⡀    ⠈⠳⢤⣀       ⣀⠤⠊     ⢀⠔⠁ ⣠⡴⠛⠁
-⠉⠉⠉⠓⠲⠤⣄⡈⠛⢦⣄⡉⠳⢤⣀    ⠈⠉⠉⠓⠒⠊⠉⠉     ⣀⠤⠊⢁⣠⡴⠛⢁⡠⠤⠒⠊⠉⠉
--5     ⠉⠓⠦⢬⣙⠳⢦⣌⡙⠲⠤⣄⣀⣀     ⣀⣀⡠⠤⠒⢉⣠⡴⠞⣋⠥⠔⠊⠁
-⣀⣀⣀⣀⣀      ⠈⠙⠒⠮⢽⣛⡶⠶⣤⣬⣭⣍⣉⣩⣭⣤⣤⠶⢶⣛⠯⠕⠒⠉       ⣀⣀⣀⣀
-    ⠈⠉⠉⠓⠲⠤⣄⣀⡀     rotation ⠉⠉⠁    ⢀⣀⡠⠤⠒⠊⠉⠉
--pi       -pi/2 ⠤⠤⡄    0    ⡠⠤⠤ pi/2        pi"""
+    assert phase_picture(PORTRAIT, [nowhere]) == PLAIN
 
 
 @pytest.mark.parametrize(("theta", "omega"), [(0.0, 0.0), (-3.0, -5.0), (1.0 + math.tau, 2.0)])
@@ -64,8 +48,9 @@ def test_a_trail_is_faint_and_where_the_method_was():
 
 
 def test_a_moving_point_takes_the_place_of_a_word():
-    row = next(y for y, line in enumerate(PICTURE.splitlines()) if "libration" in line)
-    column = PICTURE.splitlines()[row].index("libration") + 4
+    lines = PLAIN.text.splitlines()
+    row = next(y for y, line in enumerate(lines) if "libration" in line)
+    column = lines[row].index("libration") + 4
     picture = phase_picture(PORTRAIT, [PhasePoint(*SMALL.at_cell(column, row), 0, "e")])
     assert cells(picture)[row, column][1] == 0
     assert "libration" not in picture.text
@@ -89,7 +74,7 @@ def test_a_ring_is_closed_and_over_the_top_it_does_not_cross_the_picture():
 
 def test_the_crosshair_meets_at_its_state_and_the_orbit_passes_there():
     state = SMALL.at_cell(30, 4)
-    plain = cells(phase_picture(PORTRAIT, []))
+    plain = cells(PLAIN)
     picture = phase_picture(PORTRAIT, [], crosshair=state, orbit=state)
     assert (30, 4) in places(picture, EXACT)
     changed = [place for place, cell in cells(picture).items() if plain.get(place) != cell]
