@@ -10,8 +10,7 @@ def test_doctor_reports_and_never_fails(monkeypatch, tmp_path):
     outcome = pendu("doctor")
     assert (outcome.code, outcome.err) == (0, "")
     assert "cannot be written" in outcome.out
-    for what in ("lab", "size", "encoding", "colours", "recordings", "python", "versions", "numba"):
-        assert f"\n{what}" in outcome.out
+    assert all(f"\n{what}" in outcome.out for what in ("lab", "size", "encoding", "numba"))
     lab = pendu("doctor", "--json").json["findings"][0]  # without a terminal
     assert lab["found"] == "cannot start here"
     assert "Use pendu-tui run" in lab["advice"]

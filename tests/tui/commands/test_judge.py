@@ -209,7 +209,6 @@ def test_scales():
     assert judge(zero).refused(2, "the first energy is 0", "--scale")
     for scale, size in (("50", 50), ("kinetic:K", 4)):
         assert judge(zero, "--json", "--scale", scale).json["max_energy_error"] == 99 / size
-    assert judge(zero, "--scale", "-1").refused(2, "none of first, std, kinetic:COLUMN")
 
 
 def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_step():

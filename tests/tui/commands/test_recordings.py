@@ -62,7 +62,7 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
 def test_the_library_is_listed_newest_first(library):
     rows = pendu("recordings", "--json").json["recordings"]
     assert [row["file"] for row in rows] == [str(library / f"{name}.mcap") for name in "cba"]
-    assert (rows[0]["seconds"], rows[0]["scenes"]) == (4.0, ["test"])
+    assert rows[0]["seconds"] == 4.0
     with Recorder(library / "now.mcap"):
         out = pendu("recordings").out
     assert f"recording now: {library / 'now.mcap'}" in out

@@ -120,8 +120,6 @@ def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence()
         limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
         assert line_of(out, method.label)[-3:-1] == [limit, limit]
     assert "°" not in out
-    answer = pendu("stability", "--scene", "linear", "--json").json
-    assert (answer["pendulum"], answer["map"]) == ([], None)
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():

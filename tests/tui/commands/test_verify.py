@@ -54,14 +54,13 @@ def test_a_folder_means_all_recordings_below_it(tmp_path):
     assert first_words(pendu("verify", tmp_path)) == ["identical", "identical", "2"]
 
 
-def test_an_incomplete_recording_fails_the_check_with_its_reason(cut, whole):
+def test_an_incomplete_recording_fails_the_check_with_its_reason(cut):
     outcome = pendu("verify", cut)
     assert outcome.code == 1
     assert outcome.out.startswith("unfinished  ")
     assert "its end is missing" in outcome.out
     (found,) = pendu("verify", cut, "--json").json["files"]
     assert (found["complete"], found["identical"]) == (False, True)
-    assert pendu("verify", cut, whole).out.endswith("2 recordings, 1 identical\n")
     # the leftover of a killed lab
     outcome = pendu("verify", cut.rename(cut.with_name("a.mcap.part")))
     assert (outcome.code, first_words(outcome)) == (0, ["identical"])

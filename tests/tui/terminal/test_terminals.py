@@ -97,7 +97,7 @@ def stopped(lab: PtyLab, stop) -> bytes:
 
 
 def is_silent(lab: PtyLab) -> bool:
-    """Whether nothing is sent any more: a cursor that blinks sends something twice a second."""
+    """Whether nothing is sent any more; a cursor that blinks sends something twice a second."""
     end = lab.now + 20
     while lab.now < end:
         if not lab.run(1.4):
