@@ -80,24 +80,7 @@ async def test_the_current_h_is_marked_and_described_if_it_is_on_the_chart():
             assert "the current h is not on this chart" in words(pane)
 
 
-async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
-    async with accuracy_view() as (pilot, pane, live):
-        await pilot.press("left", "right", "right")
-        await complete(pilot, pane)
-        assert "O" in pane.text
-        point = pane.aim
-        run = live.sample.run
-        await pilot.press("enter")
-        await complete(pilot, pane)
-        assert live.stepping.h == point.h != 0.05
-        assert live.sample.run == run  # h changes, the run goes on
-        assert pane.here[VERLET] == point.steps
-        assert pane.cursor is None
-        await pilot.press("u")
-        assert live.stepping.h == 0.05
-
-
-async def test_another_h_moves_the_mark_and_another_start_the_points():
+async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_its_own_points():
     async with accuracy_view() as (pilot, pane, live):
         before = dict(pane.points)
         await pilot.press("plus")
@@ -107,8 +90,12 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
         await pilot.press("u", "n")
         await complete(pilot, pane)
         assert pane.here == [100, 100, 100, 25]  # at equal cost each method has its own
-        await pilot.press("left", "left", "enter")
+        await pilot.press("left", "left")
+        await complete(pilot, pane)
+        assert "O" in pane.text
+        await pilot.press("enter")
         assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
+        assert (live.sample.run, pane.cursor) == (1, None)  # the run goes on
         live.start(SCENES["large-swing"])
         await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)
