@@ -287,21 +287,19 @@ def orders(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[st
 
     A drift that is not significant at each step size has no order.
     """
-    found = {
-        "fluctuation_order": [fields["fluctuation"] for fields in results],
-        "drift_order": [
-            fields["verdict"] in ("grows", "loses") and abs(fields["absolute_trend"] or 0.0)
-            for fields in results
-        ],
-    }
-    return {name: _power(steps, values) for name, values in found.items()}
+    found = {"fluctuation_order": _power(steps, [fields["fluctuation"] for fields in results])}
+    found["drift_order"] = None
+    if all(fields["verdict"] in ("grows", "loses") for fields in results):
+        found["drift_order"] = _power(steps, [fields["absolute_trend"] for fields in results])
+    return found
 
 
-def _power(steps: Sequence[float], values: Sequence[float]) -> float | None:
-    """Return the slope of log value over log step by least squares."""
-    if not all(values):
+def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | None:
+    """Return the slope of log |value| over log step by least squares; None if one is unknown."""
+    sizes = [abs(value) for value in values if value]
+    if len(sizes) < len(steps):
         return None
-    return linear_regression([*map(math.log, steps)], [*map(math.log, values)]).slope
+    return linear_regression([*map(math.log, steps)], [*map(math.log, sizes)]).slope
 
 
 def title_of(fields: dict[str, Any]) -> str:

@@ -163,7 +163,6 @@ def test_over_seconds_all_there_is_includes_the_series_and_the_floor(hasty):
 def test_the_cheapest_may_be_that_of_the_fewest_seconds(hasty):
     asked = (*SECONDS, "--methods", "verlet,rk4", "--target", "1e-3")
     advice = pendu(*asked, "--json").json["recommendation"]
-    assert advice["error"] <= 1e-3
     assert advice["seconds"] == min(attempt["seconds"] for attempt in advice["attempts"])
 
 

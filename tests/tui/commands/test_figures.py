@@ -1,4 +1,4 @@
-"""Figures by Matplotlib: what is in them, as wide as a column, and the same bytes each time."""
+"""Figures by Matplotlib: as wide as a column, and the same bytes each time."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""`--plain` as one uses it: with a pipe instead of a terminal, ended by Ctrl+C."""
+"""`--plain` with a pipe instead of a terminal, ended by a signal."""
 
 import os
 import signal

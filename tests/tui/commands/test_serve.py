@@ -31,8 +31,6 @@ CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 
 class Tab:
-    """A terminal behind a websocket."""
-
     def __init__(self, socket, size) -> None:
         self.socket = socket
         self.screen = pyte.Screen(*size)

@@ -1,4 +1,4 @@
-"""`pendu-tui stability`: tables, maps, and with --section the portrait of a method's own map."""
+"""`pendu-tui stability`: tables, maps, and --section, a method's own map."""
 
 import csv
 import io

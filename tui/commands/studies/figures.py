@@ -51,12 +51,16 @@ def lines_of(picture: "Picture", palette: Palette | None) -> "list[Text]":
     """Return a picture for the terminal; without a palette only styles colour it."""
     from rich.text import Text
 
-    def style(ink: Any) -> Any:
-        return palette and palette.colour(ink) if isinstance(ink, int) else ink
-
-    lines = [Text.assemble(*((text, style(ink)) for text, ink in row)) for row in picture.rows]
-    for line in lines:
+    lines = []
+    for row in picture.rows:
+        line = Text()
+        for text, ink in row:
+            if isinstance(ink, int):
+                line.append(text, palette and palette.colour(ink))
+            else:
+                line.append(text, ink)
         line.rstrip()
+        lines.append(line)
     return lines
 
 
