@@ -1,11 +1,8 @@
 """`serve`, by way of the websocket that a browser would open."""
 
 import asyncio
-import base64
 import contextlib
-import io
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -18,7 +15,6 @@ import pytest
 from recordings.verification import verify
 from tests.tui.command_line import own_method, pendu
 from tests.tui.pty_lab import PENDU
-from tui.drawing.palette import PALETTES
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +23,6 @@ pytest.importorskip("textual_serve", reason="the extra web is not installed")
 
 PATIENCE = 50.0  # s, on a busy machine
 CTRL_Z = "\x1a"
-CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 
 class Tab:
@@ -127,32 +122,6 @@ async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path)
         assert await first.closed()
     await server.until_labs(0)
     assert files(tmp_path) == []
-
-
-@pytest.mark.skipif(not CHROMIUM, reason="Chromium is not there: apt install chromium")
-async def test_a_browser_paints_the_lab_in_the_colours_of_its_methods(server, tmp_path):
-    image = pytest.importorskip("matplotlib.image")
-    colours = [list(bytes.fromhex(colour[1:])) for colour in PALETTES["dark"].methods[:4]]
-    options = ("--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0")
-    process = subprocess.Popen(
-        [CHROMIUM, *options, f"--user-data-dir={tmp_path}/profile", server.address],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        tools = next(line for line in process.stderr if "ws://" in line).split("/")[2]
-        async with aiohttp.ClientSession() as session, asyncio.timeout(PATIENCE):
-            (page,) = await (await session.get(f"http://{tools}/json")).json()
-            async with session.ws_connect(page["webSocketDebuggerUrl"], max_msg_size=0) as socket:
-                pixels = [0]
-                while min(pixels) < 50:
-                    await socket.send_json({"id": 1, "method": "Page.captureScreenshot"})
-                    png = base64.b64decode((await socket.receive_json())["result"]["data"])
-                    shot = 255 * image.imread(io.BytesIO(png))[..., :3]
-                    pixels = [(abs(shot - each).max(axis=2) < 8).sum() for each in colours]
-    finally:
-        process.terminate()
-        process.communicate(timeout=PATIENCE)
 
 
 async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():

@@ -6,7 +6,10 @@ The studies are stored beside the pictures: chaos would show the last bits of an
 import html
 import pickle
 import re
+import subprocess
+import sys
 import zlib
+from pathlib import Path
 
 import pytest
 
@@ -118,3 +121,13 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, monkeypatch, ar
     monkeypatch.chdir(tmp_path)
     assert pendu("snapshot", "-o", "x.svg", *arguments).refused(2, words)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_the_pictures_are_the_same_on_processors_with_other_last_bits():
+    here = Path(__file__)
+    others = here.with_name("test_tour.py"), here.parents[1] / "views" / "phase"
+    options = ["-q", "-n0", "-k", "snapshots or command", "-p", "no:cacheprovider"]
+    python = [sys.executable, "-m", "pytest", "-p", "tests.tui.last_bits", *options]
+    done = subprocess.run([*python, here, *others], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
