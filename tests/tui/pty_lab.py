@@ -4,7 +4,6 @@ import fcntl
 import os
 import pty
 import re
-import resource
 import select
 import signal
 import struct
@@ -114,10 +113,6 @@ class PtyLab:
     def signal(self, number: int) -> None:
         os.kill(self.pid, number)
 
-    def resize(self, columns: int, rows: int) -> None:
-        """Give the terminal another size; the system tells the program."""
-        fcntl.ioctl(self.terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-
     def hang_up(self) -> None:
         if self.terminal >= 0:
             os.close(self.terminal)
@@ -127,7 +122,7 @@ class PtyLab:
         """Read until the program has ended; returns its exit code, negative for a signal."""
         end = self.now + seconds
         while self.code is None:
-            pid, status, self.usage = os.wait4(self.pid, os.WNOHANG)
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
                 self.code = os.waitstatus_to_exitcode(status)
             elif self.now > end:
@@ -144,5 +139,3 @@ class PtyLab:
         """Processor time used so far."""
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    usage: resource.struct_rusage
