@@ -41,6 +41,5 @@ def test_a_damaged_recording_is_compared_as_far_as_it_is_intact(whole, tmp_path)
     assert "the rest is compared" in pendu("diff", whole, tmp_path / "cut.mcap").err
 
 
-@pytest.mark.parametrize("name", ["swapped-cast", "stiff-slow"])
-def test_any_two_recordings_can_be_compared(name):
-    assert pendu("diff", "drift", name).code == 1
+def test_any_two_recordings_can_be_compared():
+    assert pendu("diff", "swapped-cast", "stiff-slow").code == 1

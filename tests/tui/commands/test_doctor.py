@@ -27,7 +27,6 @@ def test_the_advice_on_size_follows_the_layouts():
     [
         ({"TERM": "xterm-256color", "COLORTERM": "truecolor"}, "16 million", ""),
         ({"TERM": "xterm-256color"}, "256", "COLORTERM"),
-        ({"TERM": "xterm"}, "16", "COLORTERM"),
         ({}, "none", "set TERM"),
         ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as requested"),
     ],

