@@ -1,4 +1,4 @@
-"""What `pendu-tui live` does before there is a screen, and beside it."""
+"""`pendu-tui live` before there is a screen."""
 
 from engine.scenes import DEFAULT_SCENE
 from recordings.library import listing

@@ -1,4 +1,4 @@
-"""`pendu-tui recordings` with its verbs, and `pendu-tui export`."""
+"""`pendu-tui recordings` and `export`."""
 
 import csv
 import os
