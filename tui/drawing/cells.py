@@ -67,6 +67,9 @@ class CellWidget(Widget):
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the visible lines without consulting the style sheet inside a fixed border."""
         if crop != self._crop:
+            if self.room != self.size:  # the first paint comes before the first resize
+                self.room = self.size
+                self.draw()
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
             self._top, right, bottom, left = self.gutter
