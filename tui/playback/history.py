@@ -51,6 +51,7 @@ class History:
         self._current: Row | None = None
         self._last_row = -1  # its step
         self._waiting: list[Row] = []
+        self._trails: tuple[Row, Floats] | None = None
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
@@ -197,13 +198,13 @@ class History:
 
         At the last 300 samples, ten seconds, (samples, methods + 1, 2).
         """
-        return self._trails(300)
-
-    def _trails(self, length: int) -> "Floats":
-        assert self._current is not None
-        return self.rows.trails(self._current, length)
+        current = self._current
+        assert current is not None
+        if self._trails is None or self._trails[0] is not current:  # each pane reads them
+            self._trails = current, self.rows.trails(current, 300)
+        return self._trails[1]
 
     def thetas(self, index: int, length: int) -> list[float]:
         if self._rows is None:
             return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
-        return self._trails(length)[:, index, 0].tolist()  # type: ignore[no-any-return]
+        return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]
