@@ -18,17 +18,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 978_900,
-    "characters_of_engine": 313_200,
+    "characters": 969_600,
+    "characters_of_engine": 309_000,
     "characters_of_recordings": 78_790,
-    "characters_of_tui": 587_400,
-    "characters_of_tests": 841_500,
-    "files": 186,
+    "characters_of_tui": 581_900,
+    "characters_of_tests": 780_100,
+    "files": 183,
     "long_lines": 0,
     "parallel_assignments": 20,
-    "conditional_expressions_per_1000_lines": 16,
+    "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
-    "numeric_constants": 207,
+    "numeric_constants": 195,
 }
 """Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
