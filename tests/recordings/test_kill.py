@@ -75,7 +75,7 @@ def test_a_killed_lab_leaves_a_recording_that_verifies_and_lacks_less_than_a_sec
 
 def test_a_lab_killed_while_paused_has_every_single_step_on_disk(tmp_path):
     with PtyLab("live", "--record", str(tmp_path / "a.mcap")) as lab:
-        lab.wait_for("RK4")
+        lab.wait_for("REC ")
         lab.type(" ")
         lab.wait_for("paused")
         lab.type("." * 7)

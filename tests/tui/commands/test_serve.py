@@ -139,7 +139,7 @@ async def test_each_tab_records_into_the_folder_that_was_asked_for(tmp_path):
     library = str(tmp_path / "library")
     with serving("--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=library) as server:
         async with server.tab() as one, server.tab() as other:
-            await asyncio.gather(*(tab.shows("scene spin", "RK4") for tab in (one, other)))
+            await asyncio.gather(*(tab.shows("scene spin", "REC ") for tab in (one, other)))
         await server.until_labs(0)
     results = [verify(path) for path in folder.iterdir()]
     assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
