@@ -166,7 +166,8 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """Judge the energies of any program at increasing times.
 
     Errors and trend are relative to `scale`: "std", the standard deviation of the energies,
-    "first", the first energy, or a number.  Energies that end in nan or inf have `failed`.
+    "first", the first energy, or a number.  Energies of which one is nan or inf have
+    `failed` there, and what comes after is not judged.
     """
     import numpy as np
 
@@ -176,10 +177,12 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     e = _array("energies", energies)
     if len(t) != len(e):
         raise ValueError(f"{len(t)} times and {len(e)} energies do not belong together.")
-    end = int(np.flatnonzero(np.isfinite(e)).max(initial=0)) + 1
-    failed = end < len(e)
-    t = t[:end]
-    e = _finite("energies", e[:end])
+    finite = int(np.isfinite(e).cumprod().sum())
+    failed = 0 < finite < len(e)
+    if failed:
+        t = t[:finite]
+        e = e[:finite]
+    e = _finite("energies", e)
     later = np.diff(t) > 0
     if not later.all():
         place = int(np.argmin(later)) + 1

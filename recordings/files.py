@@ -21,7 +21,9 @@ def check_target(path: Path, force: bool = False) -> None:
         advice = "" if path.is_dir() else ", or --force to overwrite it"
         raise NameTakenError(f"already exists; choose another name{advice}", path)
     if not path.parent.is_dir():
-        raise DiskError(f"no folder {printable(str(path.parent))}; create the folder first", path)
+        raise DiskError(
+            f"no folder {printable(str(path.parent))}; choose a folder that exists", path
+        )
 
 
 def is_stream(path: Path) -> bool:

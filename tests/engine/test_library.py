@@ -101,9 +101,11 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         assert (found.verdict, found.trend, found.max_error) == ("bounded", 0, 0)
 
 
-@pytest.mark.parametrize("end", [math.nan, math.inf])
-def test_energies_that_end_in_nan_or_infinity_have_failed(end):
-    found = judge(TIMES, [*WAVE[:-10], *[end] * 10])
+@pytest.mark.parametrize("energy", [math.nan, math.inf])
+@pytest.mark.parametrize("after", [[], WAVE[-5:] + 100])
+def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
+    energies = [*WAVE[: -10 - len(after)], *[energy] * 10, *after]
+    found = judge(TIMES, energies)
     assert found.verdict == "failed"
     assert found.trend is None
     assert found.max_error < 10

@@ -30,8 +30,8 @@ REASONS = {
     "without_numbers": "without numbers",
     "time_not_later": "whose time is not later",
     "time_not_finite": "whose time is not finite",
-    "energy_not_finite": "whose energy is not finite",
     "before_start": "before --from",
+    "energy_not_finite": "from the first energy on that is nan or inf",
 }
 """Why a row is not used: in JSON, and for people."""
 
@@ -89,7 +89,7 @@ class Table:
     number: int = 0
     count: int = 0  # tables in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
-    failed_at: float | None = None  # the time from which on numbers are nan or inf, to the end
+    failed_at: float | None = None  # the time of the first energy that is nan or inf
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -110,13 +110,13 @@ class Table:
         ):
             self.skipped[why] = int(np.count_nonzero(bad & left))
             left &= ~bad
-        good = np.flatnonzero(finite & left)
-        lost = np.flatnonzero(~finite & left)
-        self.skipped["energy_not_finite"] = len(lost)
-        lost = lost[lost > good[-1]] if len(good) else lost
+        used = np.flatnonzero(left)
+        lost = np.flatnonzero(~finite[used])
         if len(lost):
-            self.failed_at = float(times[lost[0]])
-        self.columns = [column[good] for column in columns]
+            self.failed_at = float(times[used[lost[0]]])
+            self.skipped["energy_not_finite"] = len(used) - int(lost[0])
+            used = used[: lost[0]]
+        self.columns = [column[used] for column in columns]
 
 
 def read_table(

@@ -51,7 +51,7 @@ def explained(error: BaseException) -> UserError:
 
 
 ADVICE = {
-    errno.ENOENT: "; create the folder first",
+    errno.ENOENT: "; choose a folder that exists",
     errno.ENOSPC: "; free some space or write elsewhere",
     errno.EACCES: "; choose a writable location",
     errno.EROFS: "; choose a writable location",

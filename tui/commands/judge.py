@@ -207,6 +207,8 @@ def _read(name: str, options: argparse.Namespace) -> "Table":
         )
     if rows == 0:
         why = f"no row has a usable time and energy; skipped: {', '.join(_skipped(table.skipped))}."
+        if table.failed_at is not None:
+            why += f" Judge from a later time than {table.failed_at:g} on with --from."
         raise UserError(why, Exit.INPUT_UNREADABLE)
     return table
 
@@ -325,7 +327,7 @@ def lines_of(fields: dict[str, Any]) -> list[tuple[str, str]]:
     if progress := fields["progress"]:
         verdict += f": {Progress(**progress)}"
     if fields["diverged_at"] is not None:
-        verdict += f": the energies are nan or inf from {fields['diverged_at']:g}{time_unit} on"
+        verdict += f": the energy is nan or inf at {fields['diverged_at']:g}{time_unit}"
     if fields["transient"]:
         verdict += f", after a transient of {fields['transient']:.3g}{time_unit}"
     lines = [("verdict", verdict)]

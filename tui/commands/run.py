@@ -23,6 +23,8 @@ examples:
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
+drift_per_second: the slope of the relative energy error, null without evidence for a trend
+
 verdicts:
 """ + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
 

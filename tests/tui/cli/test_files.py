@@ -98,7 +98,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
     monkeypatch.setattr("tui.commands.export.write_csv", None)
     refusal = pendu(*WRITERS["export"], tmp_path / "no" / "file.csv")
-    assert refusal.refused(5, "no folder", "create the folder")
+    assert refusal.refused(5, "no folder", "choose a folder")
 
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):

@@ -150,11 +150,11 @@ def test_a_second_header_or_time_begins_a_table_and_neither_a_footer_nor_a_page(
 
 
 def test_rows_that_cannot_be_used_are_counted():
-    bad = "x,1\n1,\n,1\n2\n30.0,nan\n31.0,inf\nnan,1\ninf,1\n31.0,1\n"
+    bad = "x,1\n1,\n,1\n2\nnan,1\ninf,1\n29,1\n"
     answer = judge(table() + bad + "32,100.5\n", "--json", "--from", 10).json
     assert answer["skipped"] == {
         "without_numbers": 4,
-        "energy_not_finite": 2,
+        "energy_not_finite": 0,
         "time_not_finite": 2,
         "time_not_later": 1,
         "before_start": 100,
@@ -162,13 +162,21 @@ def test_rows_that_cannot_be_used_are_counted():
     assert (answer["samples"], answer["first_time"], answer["diverged_at"]) == (201, 10.0, None)
 
 
-@pytest.mark.parametrize("end", ["nan", "-inf", "1e999"])
-def test_energies_that_end_in_nan_or_inf_have_failed(end):
-    text = table() + f"30.0,{end}\n31.0,{end}\n"
+@pytest.mark.parametrize("after", ["", "32,100\n33,100\n"])
+@pytest.mark.parametrize("energy", ["nan", "-inf", "1e999"])
+def test_the_first_energy_that_is_nan_or_inf_has_failed(energy, after):
+    text = table() + f"30.0,{energy}\n31.0,{energy}\n{after}"
     outcome = judge(text, "--json")
     assert (outcome.code, outcome.json["verdict"], outcome.json["samples"]) == (1, "failed", 300)
     assert outcome.json["diverged_at"] == 30
-    assert "nan or inf from 30 on" in judge(text).out
+    assert outcome.json["skipped"]["energy_not_finite"] == 2 + after.count("\n")
+    assert "nan or inf at 30" in judge(text).out
+
+
+def test_energies_that_begin_with_nan_are_judged_from_a_later_time_on():
+    text = "-0.1,nan\n" + table(head="")
+    assert judge(text, time="1", energy="2").refused(3, "--from")
+    assert judge(text, "--from", 0, time="1", energy="2").code == 0
 
 
 GROWING = "Time (ps),E (eV),K\n" + "".join(
