@@ -35,14 +35,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     import asyncio
 
-    from tui.screens.still import portable, still
+    from tui.screens.still import still
 
     scene = scene_of(options)
     display = terminal_options_of(options, os.environ, "utf-8")
     path = options.output or Path(f"{scene.name}.svg")
     with whole_file(path, options.force) as file:
         svg = asyncio.run(still(scene, options.time, options.size, display))
-        file.write_text(portable(svg), encoding="utf-8")
+        file.write_text(svg, encoding="utf-8")
     if options.output is None:
         print(f"saved {path}")
     return Exit.FINE

@@ -58,6 +58,12 @@ class PenduApp(App[Exit | BaseException]):
     def source_screen(self) -> SourceScreen:
         return self.source_screens[-1]
 
+    def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
+        """Return the screen as an SVG picture for any viewer."""
+        from tui.screens.svg import portable
+
+        return portable(super().export_screenshot(title=title, simplify=simplify))
+
     def get_default_screen(self) -> Screen[None]:
         return self.source_screen
 

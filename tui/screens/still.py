@@ -1,11 +1,8 @@
 """A picture of the lab: the same every time, because the clock is moved by hand."""
 
 import asyncio
-import html
-import re
 from collections.abc import Sequence
 
-from rich.cells import cell_len
 from textual.widget import Widget
 
 from engine.scenes import Scene
@@ -13,6 +10,7 @@ from tui.drawing.cells import CellWidget
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
+from tui.screens.svg import normalised
 from tui.terminal.options import FPS, USUAL, TerminalOptions
 
 
@@ -52,30 +50,3 @@ def _is_settled(pane: Widget) -> bool:
     # what is on screen and not drawable is still to hear that it is shown
     is_shown = getattr(pane, "drawable", True) or not pane.is_on_screen
     return is_shown and getattr(pane, "settled", True)
-
-
-def normalised(svg: str) -> str:
-    return re.sub(r"terminal-\d+-", "terminal-", svg)
-
-
-def portable(svg: str) -> str:
-    """Return the picture with a position for each word, where Rich gives a text's length.
-
-    Inkscape and librsvg ignore the length, and their fonts have other widths, of braille above all.
-    """
-    fonts = "font-family: Fira Code, DejaVu Sans Mono, monospace"
-    text = r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'
-    return re.sub(text, _placed, svg).replace("font-family: Fira Code, monospace", fonts)
-
-
-def _placed(found: re.Match[str]) -> str:
-    opening, start, y, length, rest, escaped = found.groups()
-    text = html.unescape(escaped)
-    cell = float(length) / max(1, cell_len(text))
-    parts = []
-    for word in re.finditer(r"[!-~]+|[^\s]", text):
-        x = float(start) + cell_len(text[: word.start()]) * cell
-        width = cell_len(word[0]) * cell
-        place = f'{opening}x="{x:.5g}" {y} textLength="{width:.5g}"{rest}'
-        parts.append(f"{place}>{html.escape(word[0])}</text>")
-    return "".join(parts)

@@ -18,7 +18,8 @@ from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS
 from tests.tui.harness import player
 from tui.cli.options import resolve
-from tui.screens.still import normalised, still
+from tui.screens.still import still
+from tui.screens.svg import normalised
 from tui.terminal.options import TerminalOptions
 
 SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}

@@ -8,7 +8,7 @@ from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.screens.lines import InsightLine, TourPanel
 from tui.screens.live import LiveScreen
-from tui.screens.still import normalised
+from tui.screens.svg import normalised
 from tui.words.tour import STEPS
 
 
