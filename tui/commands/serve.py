@@ -20,6 +20,8 @@ From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0
 Ctrl+C ends it.
 """
 
+THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
+
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
@@ -36,7 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     try:
-        from tui.commands.web.server import is_local, serve
+        from tui.commands.web.server import serve
     except ImportError as error:
         advice = install_advice("textual-serve", "web")
         raise UserError(f"serve needs {error.name}: {advice}.") from None
@@ -50,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
 
     def listening(address: str) -> None:
         at_most = options.at_most
-        if not is_local(options.host):
+        if options.host not in THIS_COMPUTER:
             warn(
                 f"everybody who can reach {options.host} can use this computer's processor in up to"
                 f" {at_most} labs, without a password or encryption."

@@ -1,1 +1,1 @@
-"""The lab in a browser: `server` starts a process for each tab, in which `served` shows a lab."""
+"""The lab in a browser: `server` starts a process for each tab."""

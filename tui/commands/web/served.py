@@ -1,4 +1,4 @@
-"""A lab in a browser, in a process of its own."""
+"""The lab of one browser tab, in a process of its own."""
 
 import os
 import pickle
@@ -30,7 +30,6 @@ def bounded(size: Any) -> dict[str, int]:
 
 
 def main() -> None:
-    """Show a lab of the scene, look and folder of recordings that a file holds."""
     scene, terminal, folder = pickle.loads(Path(sys.argv[1]).read_bytes())
     size = bounded({"width": os.environ["COLUMNS"], "height": os.environ["ROWS"]})
     os.environ.update(COLUMNS=str(size["width"]), ROWS=str(size["height"]))

@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 
 from aiohttp import web
 from textual_serve.server import Server
+from yarl import URL
 
 from tui.cli.files import ENDING
 
@@ -23,7 +24,7 @@ POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'no
 
 
 class LabServer(Server):  # type: ignore[misc]
-    """Serves at most so many labs, to its own pages."""
+    """Serves a limited number of labs, to its own pages only."""
 
     def __init__(self, settings_file: str, max_labs: int, host: str) -> None:
         served = [sys.executable, "-P", "-m", "tui.commands.web.served", settings_file]
@@ -32,8 +33,8 @@ class LabServer(Server):  # type: ignore[misc]
         self._labs = 0
 
     async def run(self, port: int, listening: Callable[[str], None]) -> None:
-        """Serve until a signal; `listening` gets the address.  Raises OSError."""
-        logging.disable()  # anybody can cause errors that do not matter
+        """Serve until a signal, and call `listening` with the address.  Raises OSError."""
+        logging.disable()  # any client can cause harmless errors
         loop = asyncio.get_running_loop()
         stop = asyncio.Event()
         for number in ENDING:
@@ -53,7 +54,7 @@ class LabServer(Server):  # type: ignore[misc]
         try:
             listener = await loop.create_server(connect, self.host, port)
             address, port = listener.sockets[0].getsockname()[:2]
-            listening(f"http://{f'[{address}]' if ':' in address else address}:{port}")
+            listening(str(URL.build(scheme="http", host=address, port=port)))
             await stop.wait()
             listener.close()
         finally:
@@ -63,29 +64,27 @@ class LabServer(Server):  # type: ignore[misc]
         """Print nothing."""
 
     @web.middleware  # type: ignore[untyped-decorator]
-    async def check(self, request: web.Request, handler: Any) -> web.StreamResponse:
-        """Answer requests from own pages, while there are labs left."""
-        here = f"http://{request.host}"
+    async def check(self, request: web.Request, handler: Any) -> Any:
+        """Refuse other names of this host, foreign pages, and labs above the limit."""
+        pages = f"http://{request.host}", f"https://{request.host}"
         if not is_ours(request.host, self.host):
-            return web.Response(status=421, text="Wrong address.\n")
-        if request.headers.get("Origin", here) not in (here, f"https://{request.host}"):
-            return web.Response(status=403, text="Wrong page.\n")
+            raise web.HTTPMisdirectedRequest(text="Wrong address.\n")
+        if request.headers.get("Origin", pages[0]) not in pages:
+            raise web.HTTPForbidden(text="Wrong page.\n")
         if self._labs >= self._max_labs and request.path in ("/", "/ws"):
-            return web.Response(status=503, text="All labs are in use; reload later.\n")
+            raise web.HTTPServiceUnavailable(text="All labs are in use; reload later.\n")
         self.public_url = f"{request.scheme}://{request.host}"
-        response: web.StreamResponse = await handler(request)
-        return response
+        return await handler(request)
 
     async def _process_messages(self, websocket: web.WebSocketResponse, app_service: Any) -> None:
-        """Take messages; then end the lab, even if nobody reads what it draws."""
+        """End the lab when its tab closes, even while it is writing."""
         lab = app_service._process
         try:
             await super()._process_messages(websocket, app_service)
         finally:
             with suppress(ProcessLookupError):
                 lab.terminate()
-            while lab.returncode is None:
-                await asyncio.sleep(0.1)
+            await lab.wait()
 
     async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
         self._labs += 1
@@ -98,14 +97,13 @@ class LabServer(Server):  # type: ignore[misc]
 def serve(
     settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]
 ) -> None:
-    """Serve labs with these settings, which may hold code, in a file of mode 0600."""
-    with tempfile.NamedTemporaryFile(prefix="pendu-") as file:
+    with tempfile.NamedTemporaryFile(prefix="pendu-") as file:  # mode 600
         Path(file.name).write_bytes(pickle.dumps(settings))
         asyncio.run(LabServer(file.name, max_labs, host).run(port, listening))
 
 
 def is_ours(authority: str, host: str) -> bool:
-    """Return whether host:port is an address, localhost or the user's host: not rebound."""
+    """Return whether host:port is an address, localhost or `host`, which nobody can rebind."""
     try:
         name = urlsplit(f"//{authority}").hostname or ""
         return name in ("localhost", host) or bool(ipaddress.ip_address(name))
@@ -113,13 +111,5 @@ def is_ours(authority: str, host: str) -> bool:
         return False
 
 
-def is_local(host: str) -> bool:
-    """Return whether only this computer can reach the address."""
-    with suppress(ValueError):
-        return ipaddress.ip_address(host).is_loopback
-    return host == "localhost"
-
-
 async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
-    """Allow no frame around the lab, and nothing from elsewhere."""
     response.headers["Content-Security-Policy"] = POLICY
