@@ -13,8 +13,8 @@ from tui.screens.still import still
 
 TARGET = Path(__file__).parent.parent.parent / ".github" / "lab.svg"
 SIZE = (80, 24)
-TIMES = [0.5 * index for index in range(1, 25)]  # s: over the top at 7, then the curves part
-SECONDS_PER_FRAME = 0.5
+SECONDS_PER_FRAME = 0.6
+TIMES = [SECONDS_PER_FRAME * index for index in range(1, 21)]  # s: over the top at 7
 MAX_BYTES = 1_500_000
 
 
@@ -43,9 +43,12 @@ def film_of(frames: list[str]) -> str:
     ]
     shown = []
     for index, frame in enumerate(frames):
-        delay = SECONDS_PER_FRAME * index
+        delay = SECONDS_PER_FRAME * index - duration  # s; below zero: all are moving at once
         unique = frame.replace("terminal-", f"f{index}-")
-        shown.append(f'<g class="frame" style="animation-delay: {delay}s">{unique}</g>')
+        style = f"animation-delay: {delay:.1f}s"
+        if index == len(frames) - 1:
+            style += "; visibility: visible"  # where nothing moves
+        shown.append(f'<g class="frame" style="{style}">{unique}</g>')
     style = "<style>" + "\n".join(rules) + "</style>"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box}">{style}\n'
