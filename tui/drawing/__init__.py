@@ -1,1 +1,1 @@
-"""Numbers -> characters in colours."""
+"""From numbers to characters in colours."""

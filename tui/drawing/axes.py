@@ -1,4 +1,4 @@
-"""Axes: their range, round labels along them, and the part of a series in each of their columns."""
+"""Axes: ranges, round labels, and the part of a series in each column."""
 
 import math
 from dataclasses import dataclass
@@ -12,48 +12,48 @@ Ticks = list[tuple[float, str]]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A range of numbers with labels, by value, at the middle of a row or at a moment."""
+    """A range of numbers, and labels by value."""
 
     low: float
     high: float
     labels: dict[float, str]
 
     def share(self, values: ArrayLike) -> Floats:
-        """Positions of values along the axis, from 0 to 1, clipped."""
+        """Return the positions of values along the axis, from 0 to 1, clipped."""
         shares = (np.asarray(values, np.float64) - self.low) / (self.high - self.low)
         return np.clip(shares, 0.0, 1.0)
 
     @property
     def label_width(self) -> int:
-        """Columns of the widest label, at least 5: a chart does not jump with every digit."""
+        """Columns of the widest label; at least 5, or the chart would jump with each digit."""
         return max([5, *map(len, self.labels.values())])
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Two axes at a field of characters."""
+    """Two axes around a field of characters."""
 
     x_axis: Axis
     y_axis: Axis
     columns: int
     rows: int
-    left: int  # first column
+    left: int  # the first column
 
     def right(self, x: ArrayLike) -> Floats:
-        """Distances from the left edge, in characters."""
+        """Return distances from the left edge, in characters."""
         return self.columns * self.x_axis.share(x)
 
     def up(self, y: ArrayLike) -> Floats:
-        """Distances from the lower edge, in characters."""
+        """Return distances from the lower edge, in characters."""
         return self.rows * self.y_axis.share(y)
 
     def row(self, y: float) -> int:
-        """The row of characters, from the top, that a value is in."""
+        """Return the row of a value, from the top."""
         return max(self.rows - 1 - int(self.up(y)), 0)
 
 
 def nice(value: float) -> float:
-    """The smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
+    """Return the smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
     if not value > 0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
@@ -64,23 +64,23 @@ _DECADES = (
     *(1 / 16, 1 / 12, 1 / 8, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3),
     *(1, 3 / 2, 2, 3, 4, 6, 12, 50, 200, 500),
 )
-"""What a row of characters may be."""
+"""How many decades a row of characters may span."""
 
 
 def log_axis(low: float, high: float, rows: int) -> Axis:
-    """A vertical axis of log10 from low to high, at least two decades long, and hardly longer."""
+    """Return a vertical axis of log10 from low to high, at least two decades long."""
     low = min(low, high - 2)
     size = next(size for size in _DECADES if round(high / size) - round(low / size) < rows)
     bottom = (round(high / size) + 0.5 - rows) * size
     top = (round(high / size) + 0.5) * size
     values = _multiples(bottom, top, math.ceil(2 * size))
-    if len(values) < 2 and size >= 1:  # a few rows: each has its label
+    if len(values) < 2 and size >= 1:  # few rows: label each
         values = [top - (row + 0.5) * size for row in reversed(range(rows))]
     return Axis(bottom, top, {value: _power(value) for value in values})
 
 
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
-    """A horizontal axis of log10, with at most one label in 8 columns."""
+    """Return a horizontal axis of log10 with at most one label in 8 columns."""
     first = math.floor(low)
     last = max(math.ceil(high), first + 1)
     step = math.ceil((last - first) * 8 / columns)
@@ -92,7 +92,7 @@ def _power(exponent: float) -> str:
 
 
 def linear_axis(low: float, high: float, rows: int) -> Axis:
-    """A vertical axis from low to high or a little beyond, wider where the two hardly differ.
+    """Return a vertical axis from low to high or a little beyond, wider if they hardly differ.
 
     Its labels are equally spaced, two or more rows apart if possible.
     """
@@ -155,7 +155,7 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
         place = math.log10(seconds)
         if low <= place <= high and (not labels or place - max(labels) >= apart):
             labels[place] = text
-    if len(labels) < 2:  # so short that it is almost linear
+    if len(labels) < 2:  # short, and so almost linear
         linear = time_axis(start, end, columns, note).labels
         labels = {math.log10(value): text for value, text in linear.items() if value > 0}
     else:
@@ -164,13 +164,13 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
 
 
 def number_ticks(low: float, high: float, most: int) -> Ticks:
-    """Positions and labels of about `most` numbers."""
+    """Return positions and labels of about `most` numbers."""
     values = _multiples(low, high, nice((high - low) / most))
     return [(value, compact(value)) for value in values]
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """Positions and labels of about `most` angles in pi, at high zoom in rad."""
+    """Return positions and labels of about `most` angles, in pi or, zoomed in, in rad."""
     share = (high - low) / math.pi / most
     if high - low <= 0.02 * math.pi:
         return number_ticks(low, high, most)
@@ -188,12 +188,12 @@ def _multiples(low: float, high: float, step: float) -> list[float]:
 
 
 def compact(value: float) -> str:
-    """A number in few characters: "0.5", "-2e-7"."""
+    """Write a number in few characters: "0.5", "-2e-7"."""
     return f"{value:.6g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
 
 
 def in_pi(turns: float, wrap: bool = False) -> str:
-    """A multiple of pi: "-pi", "3pi/4", "0.35pi"; wrapped, one from -pi to pi."""
+    """Write a multiple of pi: "-pi", "3pi/4", "0.35pi"; `wrapped` to -pi to pi."""
     if wrap and abs(turns) > 1:
         turns = round(math.remainder(turns, 2), 12)
     if turns == 0:
@@ -206,7 +206,7 @@ def in_pi(turns: float, wrap: bool = False) -> str:
 
 
 def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
-    """First and last x of a chart.  Columns keep their place in time while the window moves."""
+    """Return the first and last x; columns keep their moments while the window moves."""
     latest = float(x.max(initial=0.0))
     if seconds is None:
         unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
@@ -219,14 +219,14 @@ def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, fl
 def per_column(
     x: Floats, low: Floats, high: Floats, edges: Floats, hold: float = 0.0
 ) -> tuple[Floats, Floats]:
-    """Return the lowest `low` and highest `high` of the rows in each column or `hold` before it.
+    """Return the lowest `low` and highest `high` in each column, or up to `hold` before it.
 
     x ascends; a column lies between two edges.  Returns (columns, series); nan where no row is, and
     in columns after the last row.
     """
     lows = np.full((len(edges) - 1, low.shape[1]), np.nan)
     highs = lows.copy()
-    # A row on an edge belongs to the right-hand column, however the edge is rounded.
+    # a row on an edge belongs to the column on the right, however the edge is rounded
     slack = 1e-9 * np.diff(edges)
     begins = np.searchsorted(x, edges[:-1] - slack - hold)
     ends = np.searchsorted(x, edges[1:] - slack)
@@ -235,7 +235,7 @@ def per_column(
     filled = np.flatnonzero((ends > begins) & begun)
     if len(filled):
         pairs = np.stack([begins[filled], ends[filled]], axis=1).ravel()
-        beyond = np.full((1, low.shape[1]), np.nan)  # so that the end is a row, too
+        beyond = np.full((1, low.shape[1]), np.nan)  # an empty row for the end
         lows[filled] = np.fmin.reduceat(np.vstack([low, beyond]), pairs, axis=0)[::2]
         highs[filled] = np.fmax.reduceat(np.vstack([high, beyond]), pairs, axis=0)[::2]
     return lows, highs

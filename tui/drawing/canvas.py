@@ -1,9 +1,9 @@
-"""Points, lines and words -> characters.
+"""Canvas: points, lines and words as characters.
 
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
 the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a
-cell, which has the ink of the last one drawn.  Points outside or not finite are not drawn.
-Pendulums have few dots: without NumPy they are faster, and the first paint need not wait for it.
+cell, which takes the ink drawn last.  Points outside or not finite are not drawn.
+Pendulums have few dots: drawing them without NumPy is faster, and does not import it.
 """
 
 import codecs
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     Numbers = NDArray[np.float64] | NDArray[np.intp]
 
 _BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
-"""A cell's dots, row by row, as Unicode's bits of braille."""
+"""The bits of Unicode's braille for a cell's dots, row by row."""
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
-"""Cells of one ink; blank ones look the same in any ink, so they belong to what is before them."""
+"""Cells of one ink and the blanks behind them, which look the same in any ink."""
 
 
 class Canvas:
@@ -39,7 +39,7 @@ class Canvas:
         self.width = 2 * columns  # dots
         self.height = 4 * rows
         self._bits = bytearray(columns * rows)  # the dots of each cell
-        self._inks = bytearray(columns * rows)  # counted from NOBODY
+        self._inks = bytearray(columns * rows)  # above NOBODY
         self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
 
     def copy(self) -> Self:
@@ -65,7 +65,7 @@ class Canvas:
                 inks[cell] = colour
 
     def scatter(self, x: "Numbers", y: "Numbers", ink: "int | NDArray[np.intp]") -> None:
-        """Set the dots of arrays x and y of one shape: faster than `points` for many."""
+        """Set the dots of arrays x and y; for many dots faster than `points`."""
         import numpy as np
 
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
@@ -91,7 +91,7 @@ class Canvas:
         high = min(floor(max(start, start + step)), size - 1)
         stride = 3 if dotted else 1
         dots = range(low, high + 1, stride) if step >= 0 else range(high, low - 1, -stride)
-        # it may begin and end before or beyond the middle of a dot
+        # the ends need not be in the middle of a dot
         shares = [(at + 0.5 - start) / (step or 1.0) for at in dots]
         if shares:
             shares[0] = min(max(shares[0], 0.0), 1.0)
@@ -103,7 +103,7 @@ class Canvas:
             self.points([(at, y0 + share * dy) for at, share in along], ink)
 
     def path(self, x: "Numbers", y: "Numbers", ink: int) -> None:
-        """Join points with lines; there is none to or from a point that is not finite."""
+        """Join points with lines, but for points that are not finite."""
         import numpy as np
 
         with np.errstate(all="ignore"):
@@ -125,7 +125,7 @@ class Canvas:
             self.scatter(right, np.where(steep[which], at, y[which] + share * dy[which]), ink)
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
-        """Set the dots within `radius` of (x, y); hollow: only the rim, one dot wide."""
+        """Set the dots within `radius` of (x, y); `hollow`: only the rim."""
         if not (-radius < x < self.width + radius and -radius < y < self.height + radius):
             return
         most = radius * radius
@@ -140,7 +140,7 @@ class Canvas:
         self.points(dots, ink)
 
     def label(self, column: int, row: int, text: str, ink: int) -> None:
-        """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
+        """Write text over the dots from a cell on, cut off at the edges."""
         if 0 <= row < self.rows:
             for at, character in enumerate(text, column):
                 if 0 <= at < self.columns:
@@ -152,7 +152,7 @@ class Canvas:
         return inside and row * self.columns + column not in self._letters
 
     def label_where_blank(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> bool:
-        """Write text at the first of some cells where it covers nothing, if there is one."""
+        """Write text at the first of these cells where it covers nothing, if any."""
         for column, row in places:
             first = row * self.columns + column
             is_free = all(self.is_free(column + at, row) for at in range(len(text)))
@@ -182,9 +182,9 @@ class Canvas:
         return Picture(tuple([_row(text[row], inks[row]) for row in rows]))
 
 
-@lru_cache(maxsize=512)  # most rows of a frame are those of the frame before
+@lru_cache(maxsize=512)  # most rows are the same in the next frame
 def _row(text: str, inks: bytes) -> Row:
-    """Return characters, each with its ink, in pieces of one ink."""
+    """Return a row in pieces of one ink."""
     return tuple(
         [
             (text[span.start() : span.end()], (span[1] or b"\0")[0] + NOBODY)

@@ -15,7 +15,7 @@ from tui.drawing.picture import Ink, Picture
 
 
 class CellWidget(Widget):
-    """Shows a picture; what is missing is blank, what is too long is cut off."""
+    """Shows a picture, cut off or filled with blanks where it does not fit."""
 
     ALLOW_SELECT = False
 
@@ -23,22 +23,22 @@ class CellWidget(Widget):
         super().__init__(id=id, classes=classes)
         self._picture = Picture()
         self._styles: dict[Ink, Style] = {}
-        self._lines: list[Strip] = []  # of all that is visible, border included
-        self._crop: Region | None = None  # of the lines; None: they are out of date
+        self._lines: list[Strip] = []  # the visible ones, with the border
+        self._crop: Region | None = None  # of the lines; None if they are stale
         self._changed: set[int] = set()  # rows
         self.room = Size()
         """Columns and rows of a picture.  Textual walks through the screen for `size`."""
 
     @property
     def drawable(self) -> bool:
-        """Whether there is anything to draw on: on screen and not empty."""
+        """Whether it is on screen and not empty."""
         return bool(self.room) and self.is_on_screen
 
     def draw(self) -> None:
-        """Bring what is shown up to date."""
+        """Show the current state."""
 
     def on_resize(self) -> None:
-        if self.room != self.size:  # lines may have been made for another room
+        if self.room != self.size:  # the lines may be of another size
             self.room = self.size
             self.refresh()
         self.draw()
@@ -65,7 +65,7 @@ class CellWidget(Widget):
         return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the visible lines without consulting the style sheet inside a fixed border."""
+        """Return the visible lines; the style sheet is only consulted for the border."""
         if crop != self._crop:
             if self.room != self.size:  # the first paint comes before the first resize
                 self.room = self.size
@@ -73,10 +73,10 @@ class CellWidget(Widget):
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
             self._top, right, bottom, left = self.gutter
-            filters = self.get_line_filters()  # the palettes' colours are true ones
+            filters = self.get_line_filters()  # the palettes have true colours
             self._filters = [each for each in filters if not isinstance(each, ANSIToTruecolor)]
             self._background = self.background_colors[1]
-            self._end = len(self._lines) - bottom  # `room` may be of another size yet
+            self._end = len(self._lines) - bottom  # `room` may still be the old one
             if self._lines:
                 inside = self._lines[min(self._top, len(self._lines) - 1)]
                 self._left = [*inside.crop(0, left)]
@@ -108,13 +108,13 @@ class CellWidget(Widget):
         return base if ink == NOBODY else base + Style(color=palette(self.app.theme).colour(ink))
 
     def notify_style_update(self) -> None:
-        """Forget styles that the theme or the sheet has changed."""
+        """Forget the styles of the old theme or sheet."""
         super().notify_style_update()
         self._styles = {}
         self._crop = None
 
     def _style(self, ink: Ink) -> Style:
-        """Return how characters in an ink look; to walk the sheet's chain each time is slow."""
+        """Return the style of an ink, from a cache: walking the style sheet is slow."""
         if ink not in self._styles:
             base = self.rich_style
             style = base + ink if isinstance(ink, Style) else self.style_of(ink, base)

@@ -1,7 +1,7 @@
 """Charts with two logarithmic axes, drawn by plotext.  The only module that imports plotext.
 
 plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
-numbers inside them; and its own logarithmic scale has wrong labels, so it gets logarithms.
+numbers inside them.  Its logarithmic scale has wrong labels, so it gets logarithms.
 """
 
 import math
@@ -23,10 +23,10 @@ MIN_ROWS = 7
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
+    """Marked points joined by lines, or a dotted reference line named at its end."""
 
     ink: int
-    mark: str  # a letter; a few for a reference
+    mark: str  # a letter; a name for a reference
     x: Floats | Sequence[float]  # (n,)
     y: Floats | Sequence[float]  # (n,)
     dotted: bool = False
@@ -39,7 +39,7 @@ class Series:
 
 
 class LogLog(Frame):
-    """Two logarithmic axes in a picture that has a line of words above and one below."""
+    """Two logarithmic axes, with a line of words above and one below."""
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
@@ -55,7 +55,7 @@ class LogLog(Frame):
         return cls(log_x_axis(left, right, columns), y_axis, columns, rows, width - columns - ROOM)
 
     def curve(self, series: Series) -> tuple[list[float], list[float]]:
-        """Return x and y in characters from the lower left corner, clipped for a reference."""
+        """Return x and y in characters from the lower left corner; references are clipped."""
         x, y = series.logs().T
         if series.dotted and len(x):
             across = np.linspace(self.x_axis.low, self.x_axis.high, self.columns)
@@ -66,14 +66,14 @@ class LogLog(Frame):
         return self.right(x).tolist(), self.up(y).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return column and row of the picture in which a point on the axes lies."""
+        """Return the column and row of a point."""
         return self.left + int(self.right(math.log10(x))), 1 + self.row(math.log10(y))
 
 
 def loglog_chart(
     series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str
 ) -> Picture:
-    """Draw points with marks on two logarithmic axes that fit them all, and dotted reference lines.
+    """Draw marked points and dotted reference lines on two logarithmic axes that fit the points.
 
     Points that are not finite and positive are left out; reference lines are clipped.
     """
@@ -106,8 +106,8 @@ def loglog_chart(
 def _plot(
     canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[float], list[float]]]
 ) -> None:
-    """Let plotext draw the curves and the axes on a canvas, between its first and its last row."""
-    import plotext  # 0.1 s, so only with the first chart
+    """Have plotext draw the curves and the axes between the first and the last row."""
+    import plotext  # takes 0.1 s
 
     def pixel(ink: int) -> "plotext.pixel":
         return plotext.pixel(foreground=(ink - NOBODY, 0, 0))

@@ -1,7 +1,7 @@
 """Inks, and their colours in each theme.
 
 Every character of a picture has an ink, a method's or one of those below; only here does an ink
-become a colour. Colour is never alone: methods also have a digit and a letter.
+become a colour.  Nothing depends on colour alone: methods also have a digit and a letter.
 """
 
 import itertools
@@ -16,16 +16,16 @@ WARN = -4
 QUIET = -5
 GOOD = -6
 NOBODY = -7
-"""Inks that are not methods'.  QUIET is text that matters less; FRAME is too faint for words."""
+"""The other inks.  QUIET is for less important text; FRAME is too faint for words."""
 
 FAINT = 64
-"""Added to a method's ink: its fainter colour, for trails."""
+"""Added to a method's ink it gives the fainter one of its trail."""
 
 
 class Palette(NamedTuple):
     """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
 
-    methods: tuple[str, ...]  # by ink: the classics', then six for all others
+    methods: tuple[str, ...]  # by ink: four classics, then six for all others
     exact: str
     frame: str
     text: str
@@ -34,7 +34,7 @@ class Palette(NamedTuple):
     good: str
 
     def colour(self, ink: int) -> str:
-        """Return the colour of an ink; beyond ten methods, other shades of the same ten."""
+        """Return the colour of an ink; after ten methods the ten come again, in other shades."""
         if ink >= FAINT:
             return mixed(self.colour(ink - FAINT), self.background, 0.5)
         if ink >= 0:
@@ -46,7 +46,7 @@ class Palette(NamedTuple):
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the
 # casts of the scenes: the classics are 13.3 apart at least, where red, green, yellow and blue are
-# 3.5 apart.  Light colours must be dark to be read on white, yet none looks black.
+# 3.5 apart.  The light theme's colours are dark enough to read on white, yet none looks black.
 PALETTES = {
     "dark": Palette(
         methods=(
@@ -107,23 +107,23 @@ SIGNS = {
     "chaotic": "!",
     "failed": "!",
 }
-"""Before a verdict, so that its colour is not alone."""
+"""Signs before verdicts, for those who cannot tell the colours."""
 
 
 def palette(theme: str) -> Palette:
-    """The palette of this name; for other themes, the one that suits the name best."""
+    """Return the palette of a theme; for Textual's own, guess it from the name."""
     like = next((name for name in ("ansi", "light") if name in theme), "dark")
     return PALETTES.get(theme, PALETTES[like])
 
 
 def inks(cast: Cast) -> tuple[int, ...]:
-    """Return the ink of each method of a cast: the classics' own, or the next free one."""
+    """Return the inks of a cast: classics have their own, others the next free one."""
     free = itertools.count(4)
     return tuple(next(free) if method.hue is None else method.hue for method in cast)
 
 
 def ink_of(method: Method, cast: Cast) -> int:
-    """Return a method's ink in a cast; outside of it QUIET, or a classic's own."""
+    """Return a method's ink in a cast; outside it a classic's own, or QUIET."""
     for each, ink in zip(cast, inks(cast), strict=True):
         if each.key == method.key:
             return ink
@@ -136,12 +136,12 @@ def faint(ink: int) -> int:
 
 
 def mark(place: int, method: Method) -> str:
-    """A method's digit, which is its place in the cast from 1, and its letter, as "1 e"."""
+    """Return a method's place in the cast from 1 and its letter, as "1 e"."""
     return f"{place + 1} {method.letter}"
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """Return `colour` mixed with `other`; of the terminal's own colours, the darker one."""
+    """Return `colour` mixed with `other`; the darker of two ANSI colours."""
     if not colour.startswith("#"):
         return colour if share < 0.2 else colour.removeprefix("bright_")
     parts = (

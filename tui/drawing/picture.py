@@ -9,21 +9,21 @@ from typing import Self
 from rich.style import Style
 
 Ink = int | Style
-"""What colours a character: a number that the palette of the theme knows, or a style of its own."""
+"""The colour of a character: a number for the theme's palette, or a style of its own."""
 
 Row = Sequence[tuple[str, Ink]]
-"""Characters next to each other, each piece in one ink."""
+"""Pieces of text from the left, each in one ink."""
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Rows from the top.  A row may be shorter than the widget that shows it."""
+    """Rows from the top, which may be shorter than the widget is wide."""
 
     rows: Sequence[Row] = ()
 
     @property
     def text(self) -> str:
-        """The characters alone, one line per row, without trailing blanks."""
+        """The characters without colours, a line per row, without trailing blanks."""
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self.rows)
 
     def changed_rows(self, before: "Picture") -> list[int]:

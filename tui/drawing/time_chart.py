@@ -1,4 +1,4 @@
-"""A quantity of all methods over time, as a chart that can be read out at each column."""
+"""A chart of one quantity of all methods over time, which can be read out by column."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -30,8 +30,8 @@ MIN_COLUMNS = 20
 MIN_ROWS = 5
 ROOM = 4  # columns for the letters at the right end
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
-LARGEST = 1e6  # larger values leave the chart: a method that fails leaves room for the others
-LONG = 60.0  # s; a whole run that is longer has a logarithmic time axis
+LARGEST = 1e6  # larger values are off the chart, which leaves room for the other methods
+LONG = 60.0  # s; longer runs have a logarithmic time axis
 CROSSING = "×"
 
 
@@ -42,14 +42,14 @@ class Reading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TimePlot:
-    """A chart, and the numbers in it."""
+    """A chart and its numbers."""
 
     picture: Picture
     places: Sequence[int] = ()  # in the cast
-    left: int = 0  # column of the picture with the first moment
+    left: int = 0  # the column of the first moment
     times: Sequence[float] = ()  # s, at the middle of each column
     values: Floats | None = None  # (columns, methods)
-    ends: tuple[float, float] = (0.0, 1.0)  # of its axis of time: s, or log10 of that
+    ends: tuple[float, float] = (0.0, 1.0)  # of the time axis: s, or log10 of it
     log_time: bool = False
 
     def at(self, column: int) -> Reading | None:
@@ -67,7 +67,7 @@ class TimePlot:
     ) -> tuple[float, float] | None:
         """Return the ends [s] of a stretch `factor` times as long.
 
-        What is in the column, or in the middle, stays there.  None where it would be the whole run.
+        The moment at the column, or in the middle, stays there.  Returns None for the whole run.
         """
         low, high = self.ends
         share = 0.5
@@ -84,7 +84,7 @@ class TimePlot:
 
 
 class _Run(NamedTuple):
-    """The quantity of some methods of a run, or of a ghost behind it, which has no letters."""
+    """The quantity of some methods of a run, or of a ghost, which has no letters."""
 
     window: Window
     inks: list[int]
@@ -101,11 +101,11 @@ class _Run(NamedTuple):
         if not log:
             return per_column(x, self.low, self.high, edges)
         hold = self.window.repeats
-        if not log_time:  # whole columns: nothing flickers while they move
+        if not log_time:  # in whole columns, or moving charts would flicker
             column = float(edges[-1] - edges[0]) / (len(edges) - 1)
             hold = column * math.ceil(hold / column)
         magnitude = np.maximum(np.fmax(abs(self.low), abs(self.high)), FLOOR)
-        # at the start errors are zero, which has no logarithm
+        # the errors at the start are zero
         logs = np.where(x[:, None] > 0, np.log10(magnitude), np.nan)
         _, largest = per_column(x, logs, logs, edges, hold)
         return largest, largest
@@ -124,10 +124,10 @@ def time_chart(
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 
     A column spans the lowest to the highest value in it.  On a logarithmic axis it shows the
-    largest magnitude of the half swing that ends there, so that zeros do not tear the lines; a long
-    run as a whole has logarithmic time, too: steady growth is a slope.  A CROSSING is where one
-    error passes another for the rest of the chart.  A ghost's same methods lie behind, fainter.
-    `changes` of the step: x [s] and a word.
+    largest magnitude of the half swing that ends there, so that zeros do not tear the lines; long
+    runs also have logarithmic time, so that a power law is straight.  A CROSSING is where one error
+    passes another for good.  The same methods of a ghost lie behind, fainter.  `changes` of the
+    step are pairs of x [s] and a label.
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
@@ -135,7 +135,7 @@ def time_chart(
     runs = _runs(window, cast, shown, ghost)
     levels = _levels(shown)
     log_time = _has_log_time(window, shown)
-    label_width = 5  # of decades
+    label_width = 5  # enough for decades
     if not shown.log:
         y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
@@ -182,7 +182,7 @@ def _runs(
 
 @dataclass(frozen=True, slots=True)
 class _Plot(Frame):
-    """A canvas with axes along its left edge and the lower one."""
+    """A canvas with axes at the left and at the bottom."""
 
     canvas: Canvas
     log: bool
@@ -197,7 +197,7 @@ class _Plot(Frame):
             row = self.row(value)
             canvas.label(0, row, text.rjust(left - 1), TEXT)
             canvas.label(left - 1, row, "┤", FRAME)
-        end = 0  # of the label before
+        end = 0  # of the previous label
         for value, text in self.x_axis.labels.items():
             column = left + min(int(self.right(value)), self.columns - 1)
             begin = min(column - (len(text) - 1) // 2, canvas.columns - len(text))
@@ -268,7 +268,7 @@ def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
 
 
 def _levels(shown: Shown) -> dict[str, float]:
-    """Return where on the vertical axis the reference line is, by its name, if there is one."""
+    """Return the height of the reference line by its name, if there is one."""
     line = shown.line
     if line is None or line.quantity != shown.quantity:
         return {}
@@ -284,7 +284,7 @@ def _has_log_time(window: Window, shown: Shown) -> bool:
 def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Axis:
     """Return the axis of a stretch, of the last seconds, or of the whole run.
 
-    A logarithmic one begins at a power of ten two or three decades before the end.
+    A logarithmic axis begins at a power of ten, two or three decades before its end.
     """
     begin, end = time_span(window.x, shown.seconds, columns)
     if shown.stretch is not None:
@@ -298,7 +298,7 @@ def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Ax
 
 
 def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
-    """Return the moments [s] at the edges and in the middle of all columns."""
+    """Return the moments [s] at the edges and in the middle of the columns."""
     half_columns = np.linspace(axis.low, axis.high, 2 * columns + 1)
     if log_time:
         half_columns = 10.0**half_columns
@@ -306,9 +306,9 @@ def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
 
 
 def _crossings(largest: Floats, times: Floats, repeats: float) -> Iterator[tuple[int, float]]:
-    """Yield (column, height) where one of two curves passes the other for good.
+    """Yield (column, height) where one curve passes another for good.
 
-    Before and after they are apart for half a swing, and for a tenth of the chart.
+    They must be apart for half a swing and a tenth of the chart, before and after.
     """
     for one, other in combinations(largest.T, 2):
         known = np.flatnonzero(~np.isnan(one - other))
@@ -324,7 +324,7 @@ def _crossings(largest: Floats, times: Floats, repeats: float) -> Iterator[tuple
 
 
 def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
-    """Return an axis to the largest error from the smallest one but for those at the start."""
+    """Return an axis of all errors but the smallest ones at the start."""
     limit = math.log10(LARGEST)
     known = [each[(each > math.log10(FLOOR)) & (each <= limit)] for each in largest.T]
     known = [each for each in known if len(each)]

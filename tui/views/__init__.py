@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
-if TYPE_CHECKING:  # the process that computes for a view starts sooner without Textual
+if TYPE_CHECKING:  # the process that computes for a view starts faster without Textual
     from tui.playback.shown import Shown
     from tui.playback.source import Source
     from tui.views.view import View

@@ -1,4 +1,4 @@
-"""Long computations in a process of their own: a thread would keep the interpreter from the lab."""
+"""Long computations in another process: a thread would slow the lab down."""
 
 import asyncio
 import multiprocessing
@@ -17,15 +17,15 @@ from tui.cli.time_limit import limited_steps
 async def computed(
     function: Callable[..., Iterator[Any]], *arguments: object
 ) -> AsyncIterator[Any]:
-    """Yield what function(*arguments) yields, as another process computes it.
+    """Yield what function(*arguments) yields in another process.
 
-    That is killed when this task is cancelled, and ends when this process does.
+    The process is killed when this task is cancelled, and ends with this process.
     """
-    os.environ["PYTHONSAFEPATH"] = "1"  # no module of the current folder is imported
+    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
     context = multiprocessing.get_context("spawn")
     results, sending = context.Pipe(duplex=False)
     process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
-    with redirect_stderr(sys.__stderr__):  # Textual's has no file number
+    with redirect_stderr(sys.__stderr__):  # Textual's replacement has no file number
         process.start()
     sending.close()
     try:
@@ -43,9 +43,9 @@ async def computed(
 def _send_all(
     results: Connection, function: Callable[..., Iterator[Any]], arguments: tuple[object, ...]
 ) -> None:
-    """Compute and send, None at the end; the main function of the other process."""
+    """Send all results, then None: the main function of the other process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing is to be written across the screen
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing may write across the screen
     os.nice(10)  # the lab comes first
     Thread(target=_end_with_parent, daemon=True).start()
     try:

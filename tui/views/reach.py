@@ -1,4 +1,4 @@
-"""How far the pendulums of a run can swing, which decides how large they are drawn."""
+"""How far the pendulums of a run can swing: it decides the scale of the drawing."""
 
 import math
 from collections.abc import Sequence
@@ -12,11 +12,11 @@ from engine.scenes import Scene
 
 
 class Reach(NamedTuple):
-    """How far [rad] methods may swing: those that stay, and all that are shown.
+    """How far [rad] the stable methods may swing (`frame`), and all methods (`widest`).
 
-    The frame is the exact motion's amplitude times a power of 1.3, so that it hardly ever changes;
-    pi where that is large.  Largest errors only grow during a run, so it never jumps back and
-    forth.  A method that is unstable at its h gets all the room at once.
+    The frame is the exact motion's amplitude times a power of 1.3, or pi, so it seldom changes.
+    It only grows during a run, because the largest errors do.  With a method that is unstable at
+    its h, all have the whole circle from the start.
     """
 
     frame: float
@@ -40,7 +40,7 @@ def _frame(model: Model, theta: float, omega: float, largest: float) -> float:
         return math.pi
     energy = model.energy()
     reference = model.reference(theta, omega)
-    while half < 0.8 * math.pi:  # a wider frame is all of phase space
+    while half < 0.8 * math.pi:  # a wider frame shows the whole turn
         if reference.error(energy(model.rest_phase(half))) > largest:
             return half
         half *= 1.3
@@ -63,7 +63,7 @@ def _staying(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[i
 
 @lru_cache(maxsize=8)
 def amplitude(model: Model, theta: float, omega: float) -> float:
-    """Return the angle [rad] at which a motion comes to rest, pi if it turns, by bisection."""
+    """Return the amplitude [rad] of a motion by bisection; pi if it turns over."""
     energy = model.energy()
     start = energy(model.start(theta, omega))
     low = 0.0

@@ -40,24 +40,24 @@ class StepSizeChosen(Message):
 
 @dataclass
 class Held(Message):
-    """The user holds the pendulums at an angle [rad], or no longer."""
+    """The user holds the pendulums at an angle [rad], or has let go (None)."""
 
     theta: float | None
 
 
 @dataclass
 class Zoomed(Message):
-    """The user wants to see this part of the run in the chart, or all of it."""
+    """The user zoomed the chart to this stretch, or back to the whole run (None)."""
 
     stretch: Stretch | None
 
 
 class Box(Container):
-    BLANK = True  # hidden by its children, which saves Textual a style lookup per paint
+    BLANK = True  # covered by its children; saves Textual a style lookup per paint
 
 
 class View(Box):
-    """Passes on to its panes what the screen has it show."""
+    """Has panes, which it shows each sample."""
 
     def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -81,7 +81,7 @@ class View(Box):
         self.follow(self.sample, self.shown)
 
     def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
-        """Show a sample in the panes that move and, if it is time to `read`, in all of them."""
+        """Show a sample in the moving panes or, with `read`, in all of them."""
         if not read and sample == self.sample:
             return
         self.sample = sample
@@ -91,17 +91,17 @@ class View(Box):
                 pane.follow(sample, shown)
 
     def zoom(self, factor: float) -> None:
-        """Zoom the chart of time, in views that have one."""
+        """Zoom the chart over time, if the view has one."""
 
 
 class Pane(CellWidget):
     MOVES: ClassVar[bool] = False
-    """Whether it follows every frame, and not only five a second."""
+    """Whether it is drawn at every frame, not five times a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
-    """Whether to draw after the first paint: importing NumPy takes as long as the rest."""
+    """Whether to draw after the first paint only: importing NumPy would double its time."""
 
     source: Source
-    """Its view or screen provides it."""
+    """Set by its view or screen."""
     shown = Shown()
     sample: Sample | None = None
     _titles = ("", "")
@@ -124,28 +124,28 @@ class Pane(CellWidget):
         return self.source.kind == "LIVE"
 
     def write_titles(self, above: str, below: str = "") -> None:
-        """Write on the border.  A new title has Textual paint all of the pane."""
+        """Write on the border, if it changed: Textual repaints the whole pane for it."""
         if (above, below) != self._titles:
             self._titles = above, below
-            self.border_title = Content(above)  # not markup: units stand in brackets
+            self.border_title = Content(above)  # not markup, as units are in brackets
             self.border_subtitle = Content(below)
 
     def draw(self) -> None:
         sample = self.sample
         if sample is None or not self.drawable:
             return
-        if sample.run == self.source.sample.run:  # else another has begun, maybe with other methods
+        if sample.run == self.source.sample.run:  # a new run may have other methods
             self.show(self.picture(self.source, sample))
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         raise NotImplementedError
 
     def start_at(self, theta: float, omega: float, h: float | None = None) -> None:
-        """Ask for a run from here [rad, rad/s]; without h [s], with the step size in force."""
+        """Ask for a run from here [rad, rad/s], with the current step size if h [s] is None."""
         h = h or self.source.stepping.smallest
         try:
             scene = self.source.scene.altered(theta=theta, omega=omega, h=h)
-        except SceneError as error:  # far out, omega may be beyond a scene's limits
+        except SceneError as error:  # zoomed out, omega may be beyond the scene's limits
             self.notify(str(error), severity="warning")
         else:
             self.post_message(SceneChosen(scene))
@@ -153,18 +153,18 @@ class Pane(CellWidget):
     def compute(
         self, function: Callable[..., Iterator[Any]], *arguments: object, group: str = "default"
     ) -> Worker[None]:
-        """Have another process compute, in place of the group's earlier work; `add` its results."""
+        """Compute in another process and `add` the results; cancel the group's earlier work."""
         from tui.views.background import computed  # not needed for the first paint
 
         async def work() -> None:
-            await asyncio.sleep(0.1)  # the next turn of a wheel may ask for something else
+            await asyncio.sleep(0.1)  # until the wheel stops turning
             async for result in computed(function, *arguments):
                 self.add(result)
 
         return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def add(self, result: Any) -> None:
-        """Take in a result of `compute`, which is drawn with one of the next samples."""
+        """Keep a result of `compute`, to be drawn with one of the next samples."""
         raise NotImplementedError
 
     @property
@@ -172,7 +172,7 @@ class Pane(CellWidget):
         return any(worker.node is self and not worker.is_finished for worker in self.workers)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Show a user's method error; any other error ends the program."""
+        """Show an error of the user's own method; any other error ends the program."""
         if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
             if not isinstance(error, OwnMethodError):
                 raise error
@@ -180,9 +180,9 @@ class Pane(CellWidget):
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
-    """A pane with a cursor that chooses how the lab goes on, and words about one method.
+    """A pane with a cursor to choose a start or a step from, and words about one method.
 
-    In a replay the arrows, enter and esc are the replay's.
+    In a replay, arrows, enter and esc belong to the replay.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -198,12 +198,12 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self.cursor: Place | None = None
-        self.pointer: Place | None = None  # what is under it
-        self.described = "velocity_verlet"  # key of a method
+        self.pointer: Place | None = None  # the place under it
+        self.described = "velocity_verlet"  # a method's key
 
     @property
     def index(self) -> int:
-        """The place of the described method, which is shown if any is."""
+        """The place in the cast of the described method, or of the first that is shown."""
         shown = self.places or range(len(self.cast))
         described = (place for place in shown if self.cast[place].key == self.described)
         return next(described, shown[0])
@@ -254,7 +254,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
 
 class StudyView(View):
-    """A view whose first pane has the keys."""
+    """A view whose pane gets the focus."""
 
     PANE: ClassVar[type[Chooser[Any]]]
 

@@ -1,4 +1,4 @@
-"""Points of an accuracy study -> log-log charts: of error over cost, and of error over time."""
+"""Log-log charts of an accuracy study: error over cost, and error over time."""
 
 import math
 from collections.abc import Sequence
@@ -14,17 +14,17 @@ from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
 
 Placed = list[tuple[int, int, Point]]
-"""Column and row of the chart, and the point there."""
+"""Column and row in the chart, and the point drawn there."""
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
-"""Of points that do not show how the error depends on h."""
+"""The marks of points whose error says nothing about the order."""
 
 ERROR_LABELS: dict[ErrorKind, str] = {
     "theta": "theta error [rad], the largest distance from the exact swing",
     "energy": "energy error, the largest of all steps, relative",
     "final": "theta error at the end [rad]",
 }
-BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
+BESIDE = 0.2  # the dotted line of an order runs at this share of the errors
 
 
 def accuracy_chart(
@@ -36,7 +36,7 @@ def accuracy_chart(
 def placed(
     series: Sequence[Series], points: Sequence[Point], kind: ErrorKind, width: int, height: int
 ) -> Placed:
-    """Return where points are on the chart of these series over force evaluations."""
+    """Return the cells of points on the chart of error over force evaluations."""
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return []
     axes = LogLog.fitting(series, width, height)
@@ -78,7 +78,7 @@ def accuracy_series(
 
     lines: list[Series] = []
     flaws: list[Series] = []
-    slopes: dict[int, Series] = {}  # one for all methods of an order
+    slopes: dict[int, Series] = {}  # by order
     for method in dict.fromkeys(point.method for point in points):
         ours = [point for point in points if point.method == method]
         ink = ink_of(method, cast)

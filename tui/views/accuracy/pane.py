@@ -41,16 +41,16 @@ class AccuracyPane(Chooser[Point]):
 
     def __init__(self) -> None:
         super().__init__()
-        self.time = 0.0  # s, of the study
-        self.steps: Sequence[int] = ()  # of each method's points, ascending
-        self.here: Sequence[int] = ()  # steps of each method of the run at the present h
+        self.time = 0.0  # s, the length of the study
+        self.steps: Sequence[int] = ()  # a point of each method for each, ascending
+        self.here: Sequence[int] = ()  # steps at the current h, by method of the run
         self.points: dict[tuple[str, int], Point] = {}  # by method's key and steps
-        self.growths: list[Growth] = []  # at the present h
-        self.all = False  # the methods that are not in the cast, too
+        self.growths: list[Growth] = []  # at the current h
+        self.all = False  # whether to include methods outside the cast
         self._chosen: Chart | None = None
-        self.placed: Placed = []  # on the chart
+        self.placed: Placed = []
         self._chart = Picture()
-        self._charted: object = None  # what the chart and the points are for
+        self._charted: object = None  # the state that the chart shows
         self._start: object = None
         self._grown: object = None
 
@@ -73,7 +73,7 @@ class AccuracyPane(Chooser[Point]):
             self.here = here
             known = {*self.steps, *(steps for _, steps in self.points)}
             wanted = [each for each in sorted({*here} - known) if 1 < each <= 2_000_000]
-            if wanted:  # more steps would take more than some seconds
+            if wanted:  # more steps would take too long
                 self.compute(measured, scene, self.time, wanted, group="here")
         if self.chart == "time" and self._grown != (start, own):
             self._grown = (start, own)
@@ -99,11 +99,11 @@ class AccuracyPane(Chooser[Point]):
         return self._chosen or ("theta" if self.shown.quantity == "theta_error" else "energy")
 
     def points_of(self, method: Method) -> list[Point]:
-        """Return the method's points that every method has, by cost."""
+        """Return the method's points at the shared numbers of steps, by cost."""
         return [point for each in self.steps if (point := self.points.get((method.key, each)))]
 
     def present(self, place: int) -> Point | None:
-        """Return the point at the present h; only methods of the run have one."""
+        """Return the point at the current h; only methods of the run have one."""
         if place >= len(self.here):
             return None
         return self.points.get((self.cast[place].key, self.here[place]))
@@ -133,14 +133,14 @@ class AccuracyPane(Chooser[Point]):
             self.write_titles("Accuracy (F4)")
             return Picture(self.words(why))
         self._compute_missing(source)
-        if self.cursor is not None:  # of the method that was described before, maybe
+        if self.cursor is not None:  # it may be on another method's line
             key = self.cast[self.index].key, self.cursor.steps
             self.cursor = self.points.get(key, self.cursor)
         if self._charted != self._state:
             self._charted = self._state
             words = 2
             if self.room.height >= 18:
-                words = 6 if self.all else 4  # with the letters of all methods
+                words = 6 if self.all else 4  # `all` adds the letters of all methods
             self._draw_chart(self.room.width, max(self.room.height - words, 1))
         if self.chart == "time":
             self.write_titles("Theta error over time, at each method's h")

@@ -23,20 +23,20 @@ class TableLine(NamedTuple):
     method: Method
     reading: Reading
     judgement: Judgement
-    h: float  # s, its own step size
+    h: float  # s, the method's own step size
     largest: float  # |dE/E0|, since h last changed
-    theta_error: float  # rad, since then
+    theta_error: float  # rad, since h last changed
 
 
 class Column(NamedTuple):
-    """A column: head and width, narrow and wide, and how its cells are made."""
+    """A column: its heads and widths, narrow and wide, and its cells."""
 
-    keep: int  # columns with the smallest numbers go first where there is no room
+    keep: int  # where there is no room the smallest goes first
     head: str
     width: int
     wide_head: str
     wide_width: int
-    cell: Callable[[TableLine, int], str]  # of this width, or shorter
+    cell: Callable[[TableLine, int], str]  # at most so many characters
 
 
 def _angle(line: TableLine, width: int) -> str:
@@ -100,16 +100,16 @@ def _chosen(columns: list[Column], room: int) -> list[Column]:
 
 
 def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[float], str]:
-    """Return the largest energy errors since h changed, the theta errors then, and a head."""
+    """Return the largest energy and theta errors since h changed, and a head."""
     change = change_before(source.changes, sample.step)
     if change.step and (errors := source.history.since(change)):
         return *errors, f"since h {change.stepping.h:.4g} s"
-    readings = sample.readings  # in a replay that has not read so far, too
+    readings = sample.readings  # a replay may not have read the change yet
     return [reading.max_energy_error for reading in readings], [0.0] * len(readings), "method"
 
 
 def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
-    """Return the rows, the head first; each method's own step size where they differ."""
+    """Return the rows, the head first; with step sizes where they differ."""
     cast = source.scene.cast
     model = source.scene.equations
     steps = source.stepping.own
@@ -149,7 +149,7 @@ def _ink(column: Column, text: str, line: TableLine) -> int:
 
 
 class ErrorTable(Pane):
-    """As many columns as fit.  The pointer on a head says what it means."""
+    """Shows as many columns as fit.  The pointer on a head explains it."""
 
     _head: Sequence[str] = ()
 

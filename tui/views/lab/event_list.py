@@ -1,4 +1,4 @@
-"""EventList: what was done and what happened, the newest last."""
+"""EventList: the user's changes and what happened, the newest last."""
 
 from textual import events
 
@@ -30,7 +30,7 @@ class EventList(Pane):
         return {"mark": TEXT}.get(line.kind, QUIET)
 
     def _fitted(self, text: str, line: EventLine) -> str:
-        """Return a text that fits: with letters for methods, or cut off with … at the end."""
+        """Shorten a text to fit: letters for the methods' names, then … at the end."""
         width = self.room.width
         if line.method and len(text) > width:
             for method in self.cast:

@@ -25,11 +25,11 @@ _Letter = tuple[int, int, str, int]  # row, column, letter, ink
 class Bob(NamedTuple):
     theta: float  # rad from the downward vertical
     ink: int
-    trail: Sequence[float] = ()  # rad; where it was, drawn faintly
-    letter: str = ""  # written next to it, so that colour is not alone
+    trail: Sequence[float] = ()  # rad, earlier angles, drawn faintly
+    letter: str = ""  # written beside it, for those who cannot tell colours
     ghost: bool = False  # the exact swing: dotted and hollow
-    length: float = 1.0  # of the rod, over that at rest
-    diverged: bool = False  # its numbers ended here: crossed out
+    length: float = 1.0  # of the rod, relative to that at rest
+    diverged: bool = False  # crossed out: its numbers ended here
 
     def enlarged(self, scale: int) -> "Bob":
         trail = [scale * theta for theta in self.trail]
@@ -101,7 +101,7 @@ class Pendulum(Pane):
     MOVES = True
 
     def __init__(self, drag: list[tuple[float, float]], place: int | None = None) -> None:
-        """`place` in the cast; None: all.  `drag`: s and rad of the pointer, for all panes."""
+        """`place` in the cast, or None for all; `drag` [s, rad] is shared by all panes."""
         super().__init__()
         self._drag = drag
         self._place = place
@@ -113,7 +113,7 @@ class Pendulum(Pane):
             self._down = event.screen_offset
 
     async def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Hold the bob at the pointer, once that has moved far enough to be no click."""
+        """Hold the bob at the pointer once this is clearly a drag, not a click."""
         if self._down is None:
             return
         across, down = event.screen_offset - self._down
@@ -142,7 +142,7 @@ class Pendulum(Pane):
             await self.run_action(f"screen.show_alone({self._place})")
 
     def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
-        """Ask for a run from the last angle, at the speed of the pointer's last 0.1 s."""
+        """Start a run from the last angle, at the pointer's speed over the last 0.1 s."""
         recent = [each for each in drag if now - each[0] < 0.1] or drag[-1:]
         seconds = (recent[-1][0] - recent[0][0]) * abs(self.source.playhead.speed)
         omega = 0.0

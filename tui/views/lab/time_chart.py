@@ -28,7 +28,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 
 
 def modified_energy_of(cast: Cast) -> str:
-    """Return for which methods the modified energy is known, unless it is for all."""
+    """Return a note that names the methods with a modified energy, "" if all have one."""
     letters = [method.letter for method in cast if method.modified_energy]
     if len(letters) == len(cast):
         return ""
@@ -71,12 +71,12 @@ class TimeChart(Pane):
     NEEDS_NUMPY = True
 
     def __init__(self, ahead: int = 0) -> None:
-        """`ahead`: the number of quantities from the chosen one to the one that is charted."""
+        """Chart the quantity that is `ahead` places after the chosen one."""
         super().__init__()
         self._ahead = ahead
         self.plot: TimePlot | None = None
         self._plotted: object = None
-        self.pointer: int | None = None  # the column under it
+        self.pointer: int | None = None  # its column
 
     @property
     def _look(self) -> Shown:
@@ -86,7 +86,7 @@ class TimeChart(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look
         plotted = (sample, look, self.room, source.ghost, source.history, source.knows_past)
-        if self.plot is None or plotted != self._plotted:  # the run may be paused
+        if self.plot is None or plotted != self._plotted:  # unchanged while paused
             self._plotted = plotted
             self.plot = self._charted(source, sample, look)
         above = title(look, source.exact, source.scene.equations)

@@ -19,13 +19,13 @@ from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
 from tui.views.view import Box, Pane, View
 
-CHART = 52  # columns at least: a title fits above it
+CHART = 52  # columns at least, so that its title fits
 NARROW = 28 + CHART  # columns below which there is no chart
-PANE = Size(26, 9)  # of one pendulum at least: the names of the usual cast fit above it
+PANE = Size(26, 9)  # at least, so that the names of the usual cast fit
 
 
 def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[str, Region]]:
-    """Return the regions of the methods' pendulums, unless they share one, and of other panes.
+    """Return the regions of the pendulums, none if they share one, and of the other panes.
 
     Pendulums and events are to the left, charts and phase space to the right.
     """
@@ -89,7 +89,7 @@ def _tiles(columns: int, rows: int, count: int, across: int) -> list[Region]:
 
 
 class CellLayout(Layout):
-    """Places widgets where a function of the size puts them; unplaced ones are hidden."""
+    """A layout computed by a function of the size; it hides widgets without a region."""
 
     name = "cells"
 
@@ -117,7 +117,7 @@ class Stage(Box):
 
 
 class LabView(View):
-    """Arranges the panes anew when their size, the cast or what is shown of it changes."""
+    """Rearranges its panes when their size or the methods shown change."""
 
     def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
         super().__init__(source, shown, id)
@@ -147,7 +147,7 @@ class LabView(View):
 
     def _regions(self, size: Size) -> dict[Widget, Region]:
         tiles, others = places(size.width, size.height, len(self._places))
-        self._others["phase"].can_focus = "phase" in others  # Tab leads to what one sees only
+        self._others["phase"].can_focus = "phase" in others  # Tab skips hidden panes
         shown = [self.pendulums[place] for place in self._places]
         regions: dict[Widget, Region] = dict(zip(shown, tiles, strict=False))
         return regions | {self._others[name]: region for name, region in others.items()}
@@ -156,5 +156,5 @@ class LabView(View):
         super().follow(sample, shown, read)
         if read and self._places != self._arranged_for:
             self._arranged_for = self._places
-            # of one pane: Textual forgets what it knows of what is around it
+            # refreshing one pane is enough: Textual then arranges its parent anew
             self._others["overlay"].refresh(layout=True)

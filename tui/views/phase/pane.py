@@ -1,4 +1,4 @@
-"""Phase space with the methods in it, and a start to choose."""
+"""PhasePane: the methods in phase space, where a new start can be chosen."""
 
 import math
 from typing import TYPE_CHECKING, ClassVar
@@ -18,14 +18,14 @@ from tui.views.phase.viewport import Viewport
 from tui.views.reach import amplitude, reach
 from tui.views.view import Chooser
 
-if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
+if TYPE_CHECKING:  # NumPy is imported after the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
 
-DOTS = 4  # that an arrow moves the crosshair
+DOTS = 4  # an arrow key moves the crosshair so far
 
 
 class PhasePane(Chooser[State]):
-    """Click or enter chooses a start; the orbit through the crosshair or the pointer is shown."""
+    """A click or enter starts a run there; the exact orbit under the pointer is drawn."""
 
     BINDING_GROUP_TITLE = "Phase space"
     HELP = "A click starts there, the pointer shows the orbit; the wheel zooms, arrows move."
@@ -40,7 +40,7 @@ class PhasePane(Chooser[State]):
         super().__init__()
         self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None
-        self._ringless: Scene | None = None  # a user's method cannot carry a ring there
+        self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
 
     @property
@@ -51,7 +51,7 @@ class PhasePane(Chooser[State]):
 
     @property
     def _cells(self) -> tuple[int, int]:
-        # a pane that is just being hidden still has one of each
+        # at least one, while the pane is being hidden
         return max(self.room.width, 1), max(self.room.height - 1, 1)
 
     @property
@@ -95,11 +95,11 @@ class PhasePane(Chooser[State]):
             return
         from engine.phase_space.area import Neighbours
 
-        # large enough to be seen, and it stays a ring for a while
+        # large enough to see, small enough to stay a ring for a while
         radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         if self.neighbours is None or self.neighbours.radius != radius:
             self.neighbours = Neighbours(radius)
-        steps = 100  # a frame; they cost 5 ms
+        steps = 100  # a frame, which cost 5 ms
         if has_own(scene):
             steps = 1
         try:

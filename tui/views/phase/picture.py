@@ -1,4 +1,4 @@
-"""Points in phase space on the theoretical portrait, a method's own map, and words about both."""
+"""Pictures of phase space: the methods on the portrait, sections, and text about both."""
 
 import math
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ from tui.views.phase.portrait import Portrait, axes, write_words
 from tui.views.phase.viewport import Viewport
 from tui.words.numbers import energy_share, motion_text, regime, scientific
 
-SPARSE = 60  # samples of a trail, whose single dots would be lost among the curves
+SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
 BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
 GAP = 2  # dots between orbits of a section
-NAME, CELL = 22, 14  # columns of the table
-# columns, rows from a point to its letter
+NAME, CELL = 22, 14  # characters across in the table
+# where to write a letter, in columns and rows from its point
 BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class PhasePoint(NamedTuple):
 def method_points(
     source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None
 ) -> list[PhasePoint]:
-    """Return the points that are shown of a sample, the exact one first."""
+    """Return the points to draw, the exact one first."""
     points = []
     exact = source.exact.at(sample.t)
     if shown.exact and math.isfinite(exact.theta):
@@ -67,7 +67,7 @@ def method_points(
     return points
 
 
-# a method may be farther out than dots can be counted
+# a diverging method may be too far out to count in dots
 @np.errstate(over="ignore", invalid="ignore")
 def phase_picture(
     portrait: Portrait,
@@ -76,7 +76,7 @@ def phase_picture(
     orbit: State | None = None,
     line: Line | None = None,
 ) -> Picture:
-    """Draw trails, rings and points, later ones in front; perhaps a crosshair, an orbit, a line."""
+    """Draw trails, rings and points, and a crosshair, an orbit or a line if given."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
     trails = [(point.trail, faint(point.ink)) for point in points if point.trail is not None]
@@ -128,7 +128,7 @@ def _draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
 
 
 def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
-    """Return points of a line in dots, with a break where it leaves one edge for the other."""
+    """Return a line in dots, broken where it wraps around the edge."""
     x = viewport.x(theta)
     y = viewport.y(omega)
     if viewport.wrap:
@@ -139,7 +139,7 @@ def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
 
 
 def _draw_point(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
-    """Draw a disc, and its letter in the first free cell around it or at the edge nearest to it."""
+    """Draw a disc with its letter beside it, at the nearest edge if it is outside."""
     canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
     if not (math.isfinite(x) and math.isfinite(y)):
         return
@@ -160,7 +160,7 @@ def starts(viewport: Viewport, count: int) -> Points:
 
 
 class Section:
-    """Orbits of one method on one viewport, with the separatrix of the true pendulum underneath."""
+    """Orbits of one method, over the separatrix of the true pendulum."""
 
     def __init__(self, viewport: Viewport, model: Model, method: Method, ink: int) -> None:
         self._viewport = viewport
@@ -171,12 +171,12 @@ class Section:
         size = self._ground.height + 2 * GAP, self._ground.width + 2 * GAP
         self._near = np.zeros(size, np.bool_)
 
-    @np.errstate(all="ignore")  # a method may be farther out than dots can be counted
+    @np.errstate(all="ignore")  # a diverging method may be too far out to count in dots
     def add(self, points: Points) -> None:
         x = np.floor(self._viewport.x(points[0]))
         y = np.floor(self._viewport.y(points[1]))
         inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)
-        most = 0.3  # of its dots in a gap of others'
+        most = 0.3  # the share of its dots that may lie close to other orbits
         if self._method.symplectic:
             most = 0.6
         for each in range(x.shape[1]):
@@ -190,12 +190,12 @@ class Section:
 
     @np.errstate(all="ignore")
     def picture(self, orbit: Points, start: State, crosshair: State | None = None) -> Picture:
-        """Return the drawing with one orbit in thick dots, or a joined spiral, and its start."""
+        """Draw one orbit over the others, in thick dots or as a spiral, and its start."""
         canvas = self._ground.copy()
         viewport = self._viewport
         if self._method.symplectic:
             _scatter(canvas, viewport, orbit, self._ink, BLOCK[:3])
-        else:  # of 300 steps
+        else:  # a spiral of 300 steps
             canvas.path(*_on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
         if crosshair is not None:
             _draw_crosshair(canvas, viewport, crosshair)
@@ -207,7 +207,7 @@ class Section:
 
 
 def caption(source: Source, aim: State | None, width: int) -> Row:
-    """Return the line below the portrait: the state aimed at, and the motion if it fits."""
+    """Return the line below the portrait: the state at the cursor, and the motion."""
     model = source.scene.equations
     motion = model.caption or motion_text(source.scene, source.exact)
     if aim is None:
@@ -219,7 +219,7 @@ def caption(source: Source, aim: State | None, width: int) -> Row:
 
 
 def place_text(model: Model, state: State, width: int) -> str:
-    """Return a state, with its energy relative to the separatrix and its regime if there is one."""
+    """Return a state in words, with E/Es and regime where the model has a separatrix."""
     theta, omega = state
     half_turns = round(theta / math.pi)
     angle = f"{theta:.15g}"
@@ -232,7 +232,7 @@ def place_text(model: Model, state: State, width: int) -> str:
 
 
 def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
-    """Return a line about the ring, the heads, and each method's row, in the columns that fit."""
+    """Return a line about the ring and a table of the methods, as wide as fits."""
     scene = source.scene
     model = scene.equations
     exact = source.exact.at(source.sample.t)

@@ -1,4 +1,4 @@
-"""The theoretical portrait: energy contours, separatrix, names of regimes, and axes."""
+"""The theoretical phase portrait: energy contours, separatrix, regimes and axes."""
 
 import math
 from collections.abc import Sequence
@@ -18,22 +18,22 @@ from tui.views.phase.viewport import Viewport
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Mask = NDArray[np.bool_]  # (dots down, dots right), or (rows, columns)
 Word = tuple[int, int, str, int]  # column, row, text, ink
-LABEL = 4  # columns of the numbers along the left edge
+LABEL = 4  # columns for the numbers along the left edge
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Portrait:
-    """The part that does not move, for one viewport."""
+    """The static part of the picture, for one viewport."""
 
     viewport: Viewport
     model: Model
     levels: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
     separatrix: Dots
-    ground: Canvas  # with all curves
+    ground: Canvas  # the curves
     words: Sequence[Word]
 
     @classmethod
-    @lru_cache(maxsize=2)  # for the lab's pane and the view's
+    @lru_cache(maxsize=2)  # one for the lab's pane, one for F3
     def of(cls, viewport: Viewport, model: Model) -> "Portrait":
         theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
@@ -53,7 +53,7 @@ class Portrait:
             return _dots(np.zeros((0, 0), np.bool_))
         level = self.model.level(theta, omega)
         curve = _border(self.levels < level)
-        # two orbits have this energy, one for each sense of rotation
+        # two orbits have this energy, one for each direction of rotation
         if self.model.has_separatrix and level < 0:
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows * omega > 0)[:, None]
@@ -61,7 +61,7 @@ class Portrait:
 
 
 def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
-    """Write words unless they cover part of a point, ring or orbit; blanks cover no trail."""
+    """Write words where they cover no point, ring or orbit; trails show between them."""
     for column, row, text, ink in words:
         below = [canvas.ink_at(at, row) for at in range(column, column + len(text))]
         if any(EXACT <= each < FAINT for each in below):
@@ -93,7 +93,7 @@ def axes(viewport: Viewport) -> list[Word]:
 
 
 def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return each dot's energy band: evenly spaced in amplitude, beyond the top in omega."""
+    """Return each dot's energy band: even steps of amplitude, above the separatrix of omega."""
     inside = np.arcsin(np.sqrt(np.clip(levels, 0, 1)))
     spacing = np.where(levels > 0, inside, -np.sqrt(np.maximum(-levels, 0)))
     step = nice(float(np.ptp(spacing)) / 8 or 1.0)  # about eight curves
@@ -101,7 +101,7 @@ def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _border(values: NDArray[Any], heavy: bool = False) -> Mask:
-    """Return dots that differ from the one to the right or below; heavy: also those beyond."""
+    """Return dots that differ from the one to the right or below; `heavy` doubles them."""
     border = np.zeros(values.shape, np.bool_)
     right = values[:, 1:] != values[:, :-1]
     below = values[1:] != values[:-1]
@@ -145,6 +145,6 @@ def _names(levels: Any, omega: Any) -> list[Word]:
 
 
 def _whole_cells(dots: Mask) -> Mask:
-    """Return the cells all of whose dots are in a region."""
+    """Return the cells that lie in a region with all their dots."""
     rows, columns = dots.shape
     return np.array(dots.reshape(rows // 4, 4, columns // 2, 2).all(axis=(1, 3)))

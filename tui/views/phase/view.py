@@ -20,12 +20,12 @@ from tui.views.phase.picture import Section, fact_rows, starts
 from tui.views.view import Pane, StudyView
 from tui.words.orbit import sentence
 
-STARTS = 300  # of a section
-ORBIT_STEPS = 2000  # some ms
+STARTS = 300  # orbits of a section
+ORBIT_STEPS = 2000  # they take a few ms
 
 
 class SectionPane(PhasePane):
-    """The portrait or, after x, the section of the method that is described."""
+    """The portrait or, after key x, a section of one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("x", "section", "Map", tooltip="a method's own map")
@@ -37,7 +37,7 @@ class SectionPane(PhasePane):
         super().__init__()
         self._drawn_for: object = None
         self._section: Section | None = None
-        self._orbits = 0  # of the section
+        self._orbits = 0  # of the section, so far
 
     @property
     def settled(self) -> bool:
@@ -98,7 +98,7 @@ def _orbit(method: Method, model: Model, h: float, start: State) -> tuple[Points
 
 
 class Facts(Pane):
-    """The table below: what each method made of the ring."""
+    """The table below: what each method did to the ring."""
 
     def __init__(self, pane: SectionPane) -> None:
         super().__init__(id="facts")

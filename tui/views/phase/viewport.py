@@ -1,4 +1,4 @@
-"""Viewport: which part of phase space a rectangle of character cells shows, in a canvas' dots.
+"""Viewport: the part of phase space that a rectangle of cells shows, in dots of a canvas.
 
 Its middle is the centre of its middle cell, so that theta = 0 and omega = 0 can be clicked.
 """
@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 from engine.models.model import State
 from engine.scenes import Scene
 
-MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad of theta from the left edge to the right one
+MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad from the left to the right edge
 
 
 class Viewport(NamedTuple):
-    """A stretch of phase space on `columns` × `rows` cells; its functions take arrays, too."""
+    """A part of phase space on `columns` × `rows` cells; its functions also take arrays."""
 
     columns: int
     rows: int
@@ -21,15 +21,15 @@ class Viewport(NamedTuple):
     omega: float  # rad/s, there
     theta_per_dot: float  # rad
     omega_per_dot: float  # rad/s
-    wrap: bool = True  # every angle is shown, in the one turn that is there
+    wrap: bool = True  # it shows one turn, in which every angle has its place
 
     @classmethod
     def portrait(
         cls, columns: int, rows: int, scene: Scene, theta: float = math.pi, omega: float = 0.0
     ) -> "Viewport":
-        """Return -theta to theta [rad], with the orbit that comes to rest there, and +-omega.
+        """Return -theta to theta [rad], high enough for the orbit with this amplitude.
 
-        At pi it reaches beyond the separatrix and the scene's orbit, by a power of 1.3, so that
+        At pi it shows more than the separatrix and the scene's orbit, by a power of 1.3, so that
         another start seldom changes it.
         """
         fastest = 2 * scene.w0 * math.sin(theta / 2)
@@ -41,7 +41,8 @@ class Viewport(NamedTuple):
             rows,
             theta=0.0,
             omega=0.0,
-            theta_per_dot=theta / (columns - 0.5),  # half a dot, or rounding loses points at pi
+            theta_per_dot=theta
+            / (columns - 0.5),  # half a dot more, or rounding loses points at pi
             omega_per_dot=max(fastest, 1.5 * omega) / max(2 * rows - 2, 2),
             wrap=scene.equations.turns,
         )
@@ -69,7 +70,7 @@ class Viewport(NamedTuple):
         return self.omega - (y - self.middle[1]) * self.omega_per_dot
 
     def at(self, x: float, y: float) -> State:
-        """Return the roundest state within half a dot of (x, y); best of all an equilibrium."""
+        """Return the roundest state within half a dot of (x, y), an equilibrium if possible."""
         theta = self._turned(self.theta_at(x))
         omega = roundest(self.omega_at(y), self.omega_per_dot / 2)
         equilibrium = math.pi * round(theta / math.pi)
@@ -90,7 +91,7 @@ class Viewport(NamedTuple):
         return 2 * self.columns * self.theta_per_dot
 
     def zoomed(self, factor: float, x: float, y: float) -> "Viewport":
-        """Return `factor` times as much of phase space; (x, y) [dots] keeps its state."""
+        """Return a viewport `factor` times as large; the state at (x, y) [dots] stays there."""
         factor = min(max(factor, MIN_SPAN / self.theta_span), MAX_SPAN / self.theta_span)
         left = (x - self.middle[0]) * (1 - factor)
         above = (y - self.middle[1]) * (1 - factor)
@@ -108,7 +109,7 @@ class Viewport(NamedTuple):
         )
 
     def stepped(self, start: State, right: float, up: float) -> State:
-        """Return the state so many dots from another, or from the middle if that is hidden."""
+        """Return the state so many dots from another one, or from the middle if it is outside."""
         x = float(self.x(start.theta))
         y = float(self.y(start.omega))
         width = 2 * self.columns

@@ -1,4 +1,4 @@
-"""StabilityPane: a panel of the stability map per method, to choose h and amplitude from."""
+"""StabilityPane: a map of each method's stability, to choose h and amplitude from."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by
 from tui.views.view import Chooser, StudyView
 
 PASSES = (300, 10_000)
-"""Steps of each swing: a first map at once, then the final one."""
+"""Steps of each swing: first a quick map, then the final one."""
 
 
 def _grid(cast: Cast) -> Grid:
@@ -67,7 +67,7 @@ def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: fl
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
-    """Draws the map as it is computed; another scene only moves the mark and the axis.
+    """Draws the map while it is computed; another scene only moves the mark and the axis.
 
     Places on the map are indices of z and theta.
     """
@@ -97,7 +97,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.cells[result.z, result.method] = result.cells
         self._is_begun = True
         self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]"
-        self._state = f"Computing {100 * result.done:.0f} %. "  # a title would repaint the pane
+        self._state = (
+            f"Computing {100 * result.done:.0f} %. "  # as a title it would repaint the pane
+        )
         if result.done == 1 and result.steps == PASSES[-1]:
             self._state = ""
 
@@ -162,14 +164,14 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     @property
     def _panel_size(self) -> tuple[int, int]:
-        """Columns of a panel and rows of its map, two panels side by side above the words."""
+        """Columns of a panel and rows of its map; two panels are side by side."""
         lines = -(-len(self.places) // 2) or 1
         rows = (self.room.height - 2 - len(self._legend)) // lines - 2
         return (self.room.width - 2) // 2, max(1, rows)
 
     @property
     def _legend(self) -> list[Row]:
-        # over the frame's columns, too
+        # it may use the columns of the frame, too
         lines = legend(self.grid.steps, self._colours, self.room.width + 2)
         return lines[: max(self.room.height // 7, 1)]
 

@@ -1,4 +1,4 @@
-"""The map of stability -> coloured half-blocks, or characters: z across, amplitude up."""
+"""The map of stability in coloured half-blocks or characters: z across, amplitude up."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -22,14 +22,14 @@ from tui.drawing.picture import Ink, Picture, Row
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
 MARGIN = 4  # for the labels of the amplitudes
-SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
+SHADES = 16  # of lost swings, by when; and as many of held ones, by error
 
 Scores = NDArray[np.float64]
 Cell = tuple[str, Ink]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """Return a score per swing: -1 unknown; 0 to 1 lost, later; 1 to 2 held, more accurately.
+    """Return a score per swing: -1 unknown, 0 to 1 lost (later is more), 1 to 2 held (better is more).
 
     Both parts are logarithmic, in steps survived and in the largest energy error, down to 1e-12.
     """
@@ -158,8 +158,8 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
     """Yield theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
 
-    Greene's threshold is the standard map's, which symplectic Euler is, and velocity Verlet half a
-    kick earlier. Verlet's catching orbit jumps between q and -q, z² sin q = 4 q.
+    Greene's threshold belongs to the standard map: symplectic Euler, and velocity Verlet but for
+    half a kick. Verlet's catching orbit jumps between q and -q, z² sin q = 4 q.
     """
     count = len(grid.theta)
     middles = (np.arange(rows)[::-1] + 0.5) / rows * count - 0.5
@@ -173,7 +173,7 @@ def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float
 
 
 def worst(values: Scores, columns: int, rows: int) -> Scores:
-    """Return the lowest value (z, theta) under each pixel (row, column): no failure vanishes."""
+    """Return the lowest value under each pixel (row, column), so that no failure vanishes."""
     lefts = np.arange(columns) * len(values) // columns
     bottoms = np.arange(rows) * values.shape[1] // rows
     across = np.minimum.reduceat(values, lefts, axis=0)
@@ -181,7 +181,7 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
 
 
 def colour(score: float, ink: int, palette: Palette) -> str:
-    """Return colours: the method's where held, brighter for smaller errors; else the warning's."""
+    """Return the method's colour where held, brighter for smaller errors; else the warning's."""
     if score < 0:
         return palette.background
     if score < 1:
@@ -190,7 +190,7 @@ def colour(score: float, ink: int, palette: Palette) -> str:
 
 
 def character(score: float, steps: int) -> str:
-    """Return characters: # + - where held, by energy error; a dot or n where lost in 10^n steps."""
+    """Return # + or - where held, by energy error; a dot or n where lost in 10^n steps."""
     if score < 0:
         return " "
     if score < 1:
