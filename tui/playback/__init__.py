@@ -1,1 +1,1 @@
-"""What a screen shows, without a screen: a lab that runs, or a recording that is played."""
+"""What a screen shows: a live run or a replay, without Textual."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Playhead:
-    """How far playback has come, in seconds of what is played."""
+    """The position of playback, in seconds of what is played."""
 
     position: float = 0.0  # s
     speed: float = 1.0  # seconds played per second of clock
@@ -29,7 +29,7 @@ class Playhead:
     seen: float | None = None  # s, the last clock reading
 
     def follow(self, now: float) -> None:
-        """Follow a clock to `now` [s]; one that goes back moves nothing."""
+        """Follow a clock to `now` [s]; ignore a clock that goes back."""
         if self.seen is not None and not self.paused:
             self.position += max(0.0, now - self.seen) * self.speed
         self.seen = now
@@ -38,36 +38,36 @@ class Playhead:
 class RecordingStatus(NamedTuple):
     name: str
     seconds: float  # of the recording clock
-    failed: str | None = None  # why nothing is recorded right now, in a sentence
+    failed: str | None = None  # why nothing is being recorded, in a sentence
 
 
 class RunState(NamedTuple):
     run: RewindableRun
     history: History
-    left: "Ghost | None"  # the run before it, if that is laid under
+    left: "Ghost | None"  # the previous run, if it is laid under this one
 
 
 class State(NamedTuple):
-    """All that an undo may change."""
+    """Everything that undo restores."""
 
     stepping: Stepping
     speed: float
     shown: Shown
-    run: RunState | None  # None: a replay has no other
+    run: RunState | None  # None in a replay
 
 
 class Playback(ABC):
-    """One Sample a frame, and what is known around it.  Times of the clock are passed in, in s."""
+    """One Sample a frame, and its run so far.  The caller passes the clock's times [s]."""
 
     playhead: Playhead
     history: History
-    """The run on screen up to the sample; after a jump, a replay's past grows for some frames."""
+    """The run up to the sample; after a jump, a replay reads it over some frames."""
     pace: float = 1.0
-    """1: in real time; below, the processor cannot follow."""
+    """The share of the chosen speed that the processor reaches."""
     knows_past = True
-    """Whether the whole past of the sample is at hand."""
+    """Whether the past of the sample has been read."""
     failure: str | None = None
-    """Why the run stands still: what is wrong with a user's method, in a sentence."""
+    """Why the run stands still: the error of a user's method, in a sentence."""
 
     @property
     def sample(self) -> Sample:
@@ -83,13 +83,13 @@ class Playback(ABC):
 
     @property
     def changes(self) -> Sequence[SteppingChange]:
-        """How the run steps, in order; in a recording including what is still to come."""
+        """The run's changes of step, in order; a recording's include later ones."""
         return self.history.changes
 
     @property
     @abstractmethod
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead, marks set in a replay last."""
+        """The user's changes up to the playhead, then the marks set in a replay."""
 
     @property
     def is_marked(self) -> bool:
@@ -98,5 +98,5 @@ class Playback(ABC):
 
 
 def doubled(speed: float, times: int) -> float:
-    """The speed doubled so many times, halved if negative; from 2^-10 to 2^20, its sign stays."""
+    """Return the speed doubled (or halved) so many times, from 2^-10 to 2^20; the sign stays."""
     return math.copysign(min(max(abs(speed) * 2.0**times, 2.0**-10), 2.0**20), speed)

@@ -1,4 +1,4 @@
-"""Compiling in a thread, so that the lab does not wait for it."""
+"""Compile methods in a thread, while the lab runs."""
 
 import math
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -11,7 +11,7 @@ from engine.run.loops import Loops
 
 
 def compiled_in_background(method: Method, model: Model) -> Loops:
-    """A method's loops: plain until a thread has compiled them; the bits are the same."""
+    """A method's loops: plain until a thread has compiled them, with the same bits."""
     return TieredLoops(method, model, _ready)
 
 

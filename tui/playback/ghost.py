@@ -1,4 +1,4 @@
-"""Ghost: an earlier run laid under the lab, at the lab's own simulated time."""
+"""Ghost: an earlier run laid under the lab, at the same simulated time."""
 
 import math
 from itertools import islice
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from recordings.recording import Recording
     from tui.playback.rows import Window
 
-MAX_ROWS = 1 << 14  # of a recording, 9 minutes of the usual samples, read in a second
+MAX_ROWS = 1 << 14  # 9 minutes at the default rate, read in a second
 
 
 class Ghost:
@@ -31,7 +31,7 @@ class Ghost:
 
     @classmethod
     def recorded(cls, recording: "Recording") -> "Ghost":
-        """The longest run of a recording, until time turns or MAX_ROWS are read."""
+        """Return the longest run of a recording, up to MAX_ROWS or the reversal of time."""
         run = max(recording.runs, key=lambda run: abs(run.t))
         history = History(run.scene, changes_of(run), MAX_ROWS)
         known = recording.samples_between(run.begin, run.end)
@@ -47,7 +47,7 @@ class Ghost:
         return text if len(text) <= room else f"dim: {self._step}"
 
     def rods(self, t: float) -> dict[str, float]:
-        """Return the angles [rad] at a time [s] by method key, without those that failed."""
+        """Return the angles [rad] at a time [s] by method key, without failed methods."""
         row = int(np.searchsorted(self._x, t + 1e-9, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
             return {}
@@ -55,6 +55,6 @@ class Ghost:
         return {method.key: theta for method, theta in pairs if not math.isnan(theta)}
 
     def window(self, until: float, seconds: float | None = None) -> "Window":
-        """Its errors up to a simulated time [s]: the last `seconds`, or all."""
+        """Return its errors up to a simulated time [s], of the last `seconds` or all."""
         back = (seconds or math.inf) + self._window.repeats
         return self._window.cut(until - back, until)

@@ -1,7 +1,7 @@
-"""History: a run up to a sample, with rows for charts and trails.
+"""History: a run up to a sample, in rows for charts and trails.
 
-A row is a sample at a fixed step of the run, so that neither depends on the frame rate.  The sample
-of a frame is the last point of both, and leaves with the frame.
+Rows are samples at fixed steps of the run, so that pictures do not depend on the frame rate.  The
+current sample is the last point, whether it is a row or not.
 """
 
 import math
@@ -15,7 +15,12 @@ from tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from recordings.recording import Run
-    from tui.playback.rows import Floats, Row, Rows, Window  # NumPy can wait for the first paint
+    from tui.playback.rows import (
+        Floats,
+        Row,
+        Rows,
+        Window,
+    )  # NumPy is imported after the first paint
 
 
 def changes_of(run: "Run") -> list[SteppingChange]:
@@ -34,7 +39,7 @@ class History:
     def __init__(
         self, scene: Scene, changes: Sequence[SteppingChange], capacity: int = 4096
     ) -> None:
-        """`changes` are those of the run, its start's first; a live run adds to them."""
+        """`changes` are those of the run, its start first; a live run appends to them."""
         self.scene = scene
         self.exact = scene.exact()
         self.changes = changes
@@ -47,9 +52,9 @@ class History:
         if self.exact.regime == "libration":
             self._repeats /= 2
         self._capacity = capacity
-        self.step = -1  # of the sample
+        self.step = -1  # of the current sample
         self._current: Row | None = None
-        self._last_row = -1  # its step
+        self._last_row = -1  # the step of the last row
         self._waiting: list[Row] = []
         self._trails: tuple[Row, Floats] | None = None
         self._rows: Rows | None = None
@@ -58,16 +63,16 @@ class History:
 
     @property
     def returned(self) -> Sample | None:
-        """The sample up to now with which time was back at its start."""
+        """The last sample so far at which reversed time was back at 0."""
         if self._returned is None or self._returned.step > self.step:
             return None
         return self._returned
 
     def add(self, sample: Sample, is_row: bool = True) -> None:
-        """Show a sample, and remember it if it is a row.
+        """Make this the current sample, and keep it if it is a row.
 
-        An earlier one leaves the rows after it for the way forward.  One of another run takes back
-        everything from its step on: that run goes on from this one's past.
+        Going back keeps the later rows.  A sample of another run, which branched off here, drops
+        all rows from its step on.
         """
         if self._current and sample.run != self.sample.run:
             self._last_row = sample.step - 1
@@ -85,11 +90,11 @@ class History:
         if is_row and is_new:
             self._last_row = sample.step
             self._waiting.append(row)
-            if len(self._waiting) >= 64:  # the first ones are shown without NumPy
+            if len(self._waiting) >= 64:  # the first rows are shown without NumPy
                 _ = self.rows
 
     def _row(self, sample: Sample, with_extremes: bool) -> "Row":
-        """Return a row; without extremes, of what is true at its end."""
+        """Return a row; without extremes, of the values at its end."""
         readings = sample.readings
         exact = self.exact.at(sample.t)
         states = [(reading.theta, reading.omega) for reading in readings]
@@ -107,7 +112,7 @@ class History:
         return sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others]
 
     def x(self, step: int, t: float) -> float:
-        """Return the simulated time run through [s] up to a step at t."""
+        """Return the simulated time [s] covered up to a step at t, forwards or backwards."""
         x = turn = 0.0
         for change in self.changes:
             if change.step >= step:
@@ -117,10 +122,10 @@ class History:
         return x + abs(t - turn)
 
     def _modified_energy_errors(self, sample: Sample) -> list[float]:
-        """Return each modified energy's relative change since the stepping changed.
+        """Return the relative change of each modified energy since the step size changed.
 
-        Another step size has another modified energy.  nan for a method without one, and where no
-        sample before this one has been added since the change.
+        Each step size has its own modified energy.  It is nan for a method without one, and for
+        the first sample after a change.
         """
         change = change_before(self.changes, sample.step)
         starts = self._modified_starts.get(change)
@@ -139,7 +144,7 @@ class History:
             energy = math.nan
             if method.modified_energy and not self._model.without_force:
                 energy = method.modified_energy(self._model, (reading.theta, reading.omega), h)
-            if not math.isfinite(energy):  # it overflows where H does not
+            if not math.isfinite(energy):  # it overflows sooner than H
                 energy = math.nan
             energies.append(energy)
         return energies
@@ -169,7 +174,7 @@ class History:
 
     def _named(self, extremes: "Floats") -> dict[Quantity, "Floats"]:
         named = {name: extremes[:, i] for i, name in enumerate(self._quantities)}
-        if self._model.energy_error.conserved:  # so that energies have extremes, too
+        if self._model.energy_error.conserved:  # then the energy's extremes are known, too
             start, scale, *_ = self._reference
             named["energy"] = start + scale * named["energy_error"]
         return named
@@ -178,9 +183,9 @@ class History:
         return self.window().cut(begin - self._repeats, end)
 
     def since(self, change: SteppingChange) -> tuple[list[float], list[float]] | None:
-        """Return the largest energy errors since a change, and the theta errors there.
+        """Return the largest energy errors since a change, and the theta errors at it.
 
-        None if no sample up to there is known.
+        Returns None where no sample up to the change has been read.
         """
         window = self.window()
         count = int((window.x <= self.x(change.step, change.t)).sum())
@@ -194,13 +199,13 @@ class History:
 
     @property
     def trails(self) -> "Floats":
-        """Theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
+        """Theta [rad] and omega [rad/s] at the last 300 samples (ten seconds), oldest first.
 
-        At the last 300 samples, ten seconds, (samples, methods + 1, 2).
+        Its shape is (samples, methods + 1, 2); the exact motion is last.
         """
         current = self._current
         assert current is not None
-        if self._trails is None or self._trails[0] is not current:  # each pane reads them
+        if self._trails is None or self._trails[0] is not current:  # several panes read them
             self._trails = current, self.rows.trails(current, 300)
         return self._trails[1]
 

@@ -1,4 +1,4 @@
-"""Live: a run that follows the clock, and is recorded."""
+"""Live: a run that follows the clock and is recorded."""
 
 import math
 import time
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from recordings.recorder import LiveRecorder
     from tui.playback.ghost import Ghost
 
-FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing
-CHUNK = 256  # steps between looks at the clock, about a millisecond
-ROW_RATE = 30  # rows of the history, and samples of the recording, a second at full pace
+FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
+CHUNK = 256  # steps between clock readings, about a millisecond
+ROW_RATE = 30  # rows of the history and samples of the recording per second
 
 
 class Live(Playback):
     kind: Literal["LIVE"] = "LIVE"
     _run: RewindableRun
-    _left: "Ghost | None" = None  # the run before the restart with another step
+    _left: "Ghost | None" = None  # the run before a restart with another step
 
     def __init__(
         self,
@@ -39,15 +39,15 @@ class Live(Playback):
         clock: Callable[[], float] = time.perf_counter,
         history: History | None = None,
     ) -> None:
-        """Begin a run, or go on from a history, which becomes the lab's own."""
+        """Begin a run, or continue the one in a history, which the lab then owns."""
         self.playhead = Playhead(speed=speed)
         self.recorder: LiveRecorder | None = None
         self.laid_under: Ghost | None = None
         self._events: list[Event] = []
-        self._recorded = 0.0  # s on the recording clock, which stands only while the lab is paused
+        self._recorded = 0.0  # s, the recording clock, which stops while the lab is paused
         self._clock = clock
-        self._clocked = 0.0  # s, of what was recorded last
-        self._noticed_step = 0  # up to which the milestones of the run are events
+        self._clocked = 0.0  # s, that of the last message
+        self._noticed_step = 0  # milestones up to here have been recorded
         self._runs = 1
         run = RewindableRun(scene, 1, compiled_in_background)
         if history is not None:
@@ -97,7 +97,7 @@ class Live(Playback):
     # Time
 
     def tick(self, now: float) -> Sample:
-        """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
+        """Follow the clock as far as the frame's budget allows, and drop the rest of the time."""
         seen = self.playhead.seen
         before = self.playhead.position
         self.playhead.follow(now)
@@ -105,7 +105,7 @@ class Live(Playback):
             return self.sample
         self._recorded += max(now - seen, 0.0)
         began = self._clock()
-        # A sample at home shows what each method misses its start by.
+        # stop at t = 0 exactly, to show how far each method is from its start
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
         chunk = CHUNK
         if has_own(self.scene):
@@ -119,11 +119,11 @@ class Live(Playback):
             self.playhead.position = self._run.x
         if due:
             share = (self.playhead.position - before) / due
-            self.pace += (share - self.pace) * (1 - math.exp(seen - now))  # over a second
+            self.pace += (share - self.pace) * (1 - math.exp(seen - now))  # averaged over a second
         return self._take_sample(is_row=False)
 
     def _forward(self, steps: int) -> None:
-        """Go so many steps forward, or to the next row, which depends on the run, not on frames."""
+        """Go so many steps forward, but no further than the next row."""
         # at most 10 000 steps apart: a processor may be too slow for the speed
         steps_a_row = abs(self.playhead.speed / self.stepping.h) / ROW_RATE
         spacing = max(1, round(min(steps_a_row, 10_000)))
@@ -134,7 +134,7 @@ class Live(Playback):
 
     @contextmanager
     def _standing_still(self) -> Iterator[None]:
-        """Pause where a user's method fails, as if the block had not been."""
+        """Pause if a user's method fails, and restore the state before the block."""
         try:
             with _limited(self.scene, self._run):
                 yield
@@ -185,8 +185,8 @@ class Live(Playback):
     def start(self, scene: Scene) -> None:
         """Begin a new run.
 
-        Raises SceneError, before anything has changed, for a step too large at equal cost, and
-        OwnMethodError.
+        Raises SceneError for a step too large at equal cost, or OwnMethodError; then nothing has
+        changed.
         """
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
@@ -200,12 +200,12 @@ class Live(Playback):
             self.set_stepping(stepping)
 
     def restart(self) -> None:
-        """Begin again with the step in force, over a run that began with another one."""
+        """Begin again with the current step; a run with another step is laid under it."""
         before = self.history
         number = self._run.run
         self.start(before.scene.altered(h=self.stepping.smallest))
         if self.scene != before.scene:
-            from tui.playback.ghost import Ghost  # with NumPy
+            from tui.playback.ghost import Ghost  # imports NumPy
 
             self._left = Ghost(f"run {number}", before)
 
@@ -214,7 +214,7 @@ class Live(Playback):
         return RunState(self._run, self.history, self._left)
 
     def return_to(self, state: RunState) -> None:
-        """Go on with an earlier run where it was left: as one more run, which shares its past."""
+        """Continue an earlier run from where it was left, as a new run that shares its past."""
         self._left = state.left
         self._runs += 1
         state.run.branch(self._runs)
@@ -228,9 +228,9 @@ class Live(Playback):
         self._take_sample()
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from here on.
+        """Change the step from here on.
 
-        Raises SceneError, before anything has changed, for an absurd step size, and OwnMethodError.
+        Raises SceneError for an absurd step size, or OwnMethodError; then nothing has changed.
         """
         stepping.check(self.scene.w0)
         if self._run.in_past:
@@ -269,13 +269,13 @@ class Live(Playback):
 
     @property
     def _due(self) -> float:
-        """The recording clock [s] at which the step was due, not before what was recorded last."""
+        """Return the recording clock [s] when the step was due; it never goes back."""
         late = (self.playhead.position - self._run.x) / abs(self.playhead.speed)
         self._clocked = max(self._clocked, self._recorded - max(late, 0.0))
         return self._clocked
 
     def _note_start(self) -> None:
-        """The run's start; a branch also has its parent's changes of h and milestones."""
+        """Record the run's start; a branch begins with its parent's changes and milestones."""
         run = self._run.run
         self._note(Event("start", run, 0, 0.0, scene=self._run.scene))
         for step, t, stepping in self._run.changes[1:]:
@@ -285,7 +285,7 @@ class Live(Playback):
         self._note_milestones()
 
     def _note_milestones(self) -> None:
-        """Note the milestones that are no events yet; a step that is repeated has them already."""
+        """Record new milestones; those of repeated steps have been recorded before."""
         for milestone in self._run.milestones:
             if milestone.step > self._noticed_step:
                 self._note(noticed(self._run.run, milestone))
@@ -311,7 +311,7 @@ def has_own(scene: Scene) -> bool:
 
 @contextmanager
 def _limited(scene: Scene, run: RewindableRun | None = None) -> Iterator[None]:
-    """Limit the time of a user's methods, if there are any; an error leaves the run as it was."""
+    """Limit the time of the user's own methods; an error leaves the run as it was."""
     if not has_own(scene):
         yield
         return

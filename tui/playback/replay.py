@@ -20,9 +20,9 @@ from tui.playback.marks import Mark, Marks
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run, SamplePlace
 
-MAX_FOLLOWED = 100  # samples; what lies further ahead is jumped to
-DENSE = 60.0  # s of the past that are read completely; what lies before,
-MAX_PIECES = 300  # in pieces of a second, evenly spread
+MAX_FOLLOWED = 100  # samples; over longer distances it jumps
+DENSE = 60.0  # s of the past that are read completely
+MAX_PIECES = 300  # of a second each, evenly spread over the time before
 
 
 class Replay(Playback):
@@ -33,7 +33,7 @@ class Replay(Playback):
     run_state = None
     next_step = None
     run: "Run"
-    _reading: Iterator[None]  # the past, while there is more of it
+    _reading: Iterator[None]  # reads more of the past at each step
 
     def __init__(
         self, recording: "Recording", clock: Callable[[], float] = time.perf_counter
@@ -42,14 +42,14 @@ class Replay(Playback):
         self.length = recording.length  # s
         self.marks = Marks(recording.path)
         self.playhead = Playhead()
-        self.looping = False  # plays the recording again and again
+        self.looping = False  # whether to play it again and again
         self._closed = False
         self._clock = clock
         first = recording.at(0.0)
         assert first is not None, "a recording without samples is refused before it gets here"
         self._show(first, jump=True)
 
-    # What is known at the playhead
+    # The state at the playhead
 
     @property
     def events(self) -> Sequence[Event]:
@@ -84,7 +84,7 @@ class Replay(Playback):
 
     @property
     def _past_changes(self) -> list[SteppingChange]:
-        """How the run steps, up to the sample and to the playhead."""
+        """The run's changes of step up to the sample and the playhead."""
         clocks = [clock for clock, event in self.run.events if event.h is not None]
         count = 1 + bisect_right(clocks, self.playhead.position)
         return [each for each in self.changes[:count] if each.step <= self.sample.step]
@@ -99,11 +99,11 @@ class Replay(Playback):
 
     @property
     def ticks(self) -> list[float]:
-        """The clocks of events, milestones and marks [s]; not the stops."""
+        """The times [s] of events, milestones and marks, but not of stops."""
         done = {clock for clock, event in self.recording.events if event.kind != "stop"}
         return sorted(done.union(mark.clock for mark in self.marks))
 
-    # What can be done
+    # The user's actions
 
     def tick(self, now: float) -> Sample:
         self.playhead.follow(now)
@@ -120,7 +120,7 @@ class Replay(Playback):
         return self.sample
 
     def pause(self, paused: bool) -> None:
-        """Pause or go on; from the end, go on from the start."""
+        """Pause or go on; at the end, go on from the start."""
         self.playhead.paused = paused
         end = self.length if self.playhead.speed > 0 else 0.0
         if not paused and self.playhead.position == end:
@@ -143,7 +143,7 @@ class Replay(Playback):
         self._follow()
 
     def go_to(self, run: int, step: int) -> bool:
-        """Pause and go to what was done or noticed at a step; return False if nothing was."""
+        """Pause and go to the event at a step; return False if there is none."""
         self.pause(True)
         known = [(clock, event.run, event.step) for clock, event in self.recording.events]
         known += [(mark.clock, mark.run, mark.step) for mark in self.marks]
@@ -166,7 +166,7 @@ class Replay(Playback):
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 
     def live(self) -> Live:
-        """Return a lab that goes on from here with the same bits.
+        """Return a lab that continues from here with the same bits.
 
         Raises RecordingError if the run has a user's own method that was not given.
         """
@@ -176,7 +176,7 @@ class Replay(Playback):
         return Live(self.scene, history=history)
 
     def close(self) -> None:
-        """Close the file; a frame that was due already shows what was there."""
+        """Close the file; a frame that is still due shows the last sample."""
         self._closed = True
         self._reading = iter(())
         self.recording.close()
@@ -184,10 +184,10 @@ class Replay(Playback):
     # Samples of the file
 
     def _follow(self) -> None:
-        """Show the last sample before the playhead, after those between where they are few."""
+        """Show the last sample before the playhead, adding those in between if they are few."""
         if self._closed:
             return
-        # clocks in a file are rounded to nanoseconds
+        # files round clocks to nanoseconds
         target = self.recording.at(self.playhead.position + 1e-9) or self._place
         for _ in range(MAX_FOLLOWED):
             if self._place < target and (following := self.recording.next(self._place)):
@@ -198,7 +198,7 @@ class Replay(Playback):
     def _show(self, place: "SamplePlace", jump: bool = False) -> None:
         """Show the sample at a place.
 
-        After a jump or in another run the trails are there at once, the rest over the next frames.
+        After a jump the trails are read at once, the rest of the past over the next frames.
         """
         self._place = place
         clock, sample = self.recording.sample(place)
@@ -215,8 +215,8 @@ class Replay(Playback):
         self.history.add(sample)
 
     def fill(self) -> bool:
-        """Read more of the past; return whether all of it that will be read has been."""
-        until = self._clock() + 0.006  # s of a frame
+        """Read more of the past for some milliseconds; return whether all has been read."""
+        until = self._clock() + 0.006  # s a frame
         for _ in self._reading:
             if self._clock() >= until:
                 return False
@@ -234,7 +234,7 @@ class Replay(Playback):
         self.history = history
 
     def _read(self, history: History, start: float, end: float, last: int) -> Iterator[None]:
-        """Add the run's samples from a piece of the recording clock before step `last`."""
+        """Add the run's samples before step `last` from a piece of the recording clock."""
         for _, sample in self.recording.samples_between(start, end):
             if sample.run == self.run.number and history.step < sample.step < last:
                 history.add(sample)
@@ -242,7 +242,7 @@ class Replay(Playback):
 
 
 def pieces(start: float, end: float) -> list[tuple[float, float]]:
-    """Return what to read of [start, end]: the last DENSE seconds, and short pieces before."""
+    """Split [start, end] into the last DENSE seconds and short pieces before."""
     middle = max(start, end - DENSE)
     count = min(MAX_PIECES, math.ceil(middle - start))
     edges = [start + (middle - start) * n / max(count, 1) for n in range(count + 1)]

@@ -1,7 +1,8 @@
-"""The rows of a history: the last ones as they were, and the whole run in ever wider ones.
+"""The rows of a history: the last ones as they were, and the whole run in merged ones.
 
-Rows are numbered from the run's start on, and a wide row always begins at a multiple of its width.
-So what is merged depends on the run alone, and memory does not grow.
+As a run gets longer, its rows are merged into ever wider ones, so memory does not grow.  Rows are
+numbered from the start, and a wide row begins at a multiple of its width: what is merged depends on
+the run alone.
 """
 
 import math
@@ -25,11 +26,11 @@ since the row before: low, high."""
 class Window:
     """A stretch of the past; rows in the order in which they were simulated."""
 
-    x: Floats  # s, (n,): simulated time run through, which goes up even while t goes down
+    x: Floats  # s, (n,): simulated time covered, which grows even while t goes back
     t: Floats  # s, (n,): simulated time
-    low: dict[Quantity, Floats]  # (n, methods): extremes since the row before; nan where not known
+    low: dict[Quantity, Floats]  # (n, methods): extremes since the previous row; nan if unknown
     high: dict[Quantity, Floats]
-    repeats: float  # s, after which errors repeat: half a swing, a whole turn, or 0
+    repeats: float  # s, the period of the errors: half a swing, a whole turn, or 0
 
     @property
     def turned(self) -> bool:
@@ -43,7 +44,7 @@ class Window:
 
 
 class Rows:
-    """The rows of one run with their quantities; the `capacity` is even."""
+    """The rows of one run; `capacity` is even."""
 
     def __init__(self, quantities: int, methods: int, capacity: int) -> None:
         extremes = (float, (quantities, methods))
@@ -52,9 +53,9 @@ class Rows:
         record = np.dtype([*row, ("states", *states), ("low", *extremes), ("high", *extremes)])
         self.count = 0
         self._capacity = capacity
-        self._first = 0  # of the recent rows
-        self._width = 1  # recent rows in one of the whole run
-        self._recent = np.zeros(capacity, record)  # a ring
+        self._first = 0  # number of the first recent row
+        self._width = 1  # rows merged into one
+        self._recent = np.zeros(capacity, record)  # a ring buffer
         self._whole = np.zeros(capacity, record)
 
     def append(self, row: Row) -> None:
@@ -75,7 +76,7 @@ class Rows:
         wide[:] = row
 
     def truncate(self, step: int) -> None:
-        """Forget what came after a step, or a little more where it is long ago."""
+        """Drop the rows after a step; long ago, the whole wide row."""
         number = self.number_after(step)
         begin = number - number % self._width
         if begin < self._first:
@@ -90,7 +91,7 @@ class Rows:
         return self._recent[self._slots(self._first, self.count)]
 
     def number_after(self, step: int) -> int:
-        """Return the number of the first row after a step; of old steps, that of their wide row."""
+        """Return the number of the first row after a step; long ago, of its wide row."""
         if step >= self.last_step(self.count):
             return self.count
         recent = self._recent["step"][self._slots(self._first, self.count)]
@@ -108,28 +109,28 @@ class Rows:
         return int(self._whole["step"][(number - 1) // self._width])
 
     def until(self, current: Row) -> Records:
-        """Return the rows of the whole run up to the current one, which may be between two rows.
+        """Return the rows of the whole run up to the current sample.
 
-        The wide rows end where the recent ones begin: every sample is in exactly one row.
+        The wide rows end where the recent ones begin, so every sample is in one row.
         """
         until = self.number_after(current[0])
         wide = min(-(-self._first // self._width), until // self._width)
         begin = max(wide * self._width, self._first)
         if begin > wide * self._width and until == self.count:
-            wide += 1  # which has just begun
+            wide += 1  # the one that has just begun
             begin = until
         recent = self._recent[self._slots(begin, until)]
         return np.concatenate([self._whole[:wide], recent, self._between(current, until)])
 
     def trails(self, current: Row, length: int) -> Floats:
-        """Return the last states up to the current row, (rows, methods + 1, 2), oldest first."""
+        """Return the last states up to the current sample, (rows, methods + 1, 2)."""
         until = self.number_after(current[0])
         slots = self._slots(max(until - length, self._first), until)
         last = self._between(current, until)["states"]
         return np.concatenate([self._recent["states"][slots], last])[-length:]
 
     def _between(self, current: Row, until: int) -> Records:
-        """Return the current row, unless the one before number `until` is at its step."""
+        """Return the current sample as a row, unless row `until` - 1 is at its step."""
         rows = [current]
         if self.last_step(until) == current[0]:
             rows = []

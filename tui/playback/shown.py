@@ -1,4 +1,4 @@
-"""Shown: the settings of the screen.  Nothing in it changes a number."""
+"""Shown: the settings of the screen, which change no number."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ Quantity = str
 """One of QUANTITIES, or a variable of the model outside its state."""
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
-"""How much of the past the chart shows [s]; None: the whole run."""
+"""The lengths of the chart [s]; None is the whole run."""
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
@@ -22,9 +22,9 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
 
 class Stretch(NamedTuple):
     run: int
-    begin: float  # s, simulated time run through
+    begin: float  # s, simulated time covered
     end: float
-    log_time: bool  # on a logarithmic axis of time
+    log_time: bool  # whether the time axis is logarithmic
 
 
 class Shown(NamedTuple):
@@ -32,15 +32,15 @@ class Shown(NamedTuple):
     exact: bool = False  # the exact motion, dotted
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
-    seconds: float | None = None  # of the chart, one of WINDOWS
-    stretch: Stretch | None = None  # in place of that
-    theta: float | None = None  # rad, the half width of phase space; None: frame the motion
-    overview: bool = False  # all of phase space, pendulums as they are
+    seconds: float | None = None  # the length of the chart
+    stretch: Stretch | None = None  # a zoom, in place of `seconds`
+    theta: float | None = None  # rad, half the width of phase space; None fits the motion
+    overview: bool = False  # all angles, pendulums not enlarged
     ring: bool = False
     line: Line | None = None
 
     def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
-        """Return these settings with a shot of the scene, or its own; a recording has none."""
+        """Return these settings with a shot, by default the scene's."""
         if shot is None:
             known = SCENES.get(scene.name)
             shot = known.shot if known == scene else scene.shot
@@ -62,7 +62,7 @@ class Shown(NamedTuple):
         return [place for place, method in enumerate(cast) if method.key not in self.hidden]
 
     def toggled(self, place: int, cast: Cast) -> "Shown":
-        """Show or hide a method of the cast; places after the last one are the exact motion's."""
+        """Show or hide a method of the cast, or the exact motion, which comes after the last."""
         if place >= len(cast):
             return self._replace(exact=not self.exact)
         return self._replace(hidden=self.hidden ^ {cast[place].key})
@@ -79,7 +79,7 @@ class Shown(NamedTuple):
     def next_window(self) -> "Shown":
         if self.stretch is not None:
             return self._replace(stretch=None)
-        known = [*WINDOWS, *({self.seconds} - {*WINDOWS})]  # a shot has any number
+        known = [*WINDOWS, *({self.seconds} - {*WINDOWS})]  # a shot may have any length
         return self._replace(seconds=known[(known.index(self.seconds) + 1) % len(known)])
 
     def zoomed(self, stretch: Stretch | None) -> "Shown":

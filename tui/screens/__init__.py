@@ -1,4 +1,4 @@
-"""The screens: the frame around the views, and the actions of the keys.
+"""The screens: the lines around the views, and the actions of the keys.
 
-Each key is a line of BINDINGS beside its action; styles are in app.tcss.
+Each key is a line of BINDINGS; styles are in app.tcss.
 """

@@ -24,7 +24,7 @@ from tui.terminal.signals import Job, SignalThread
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
-"""The classes of a terminal's size in the style sheet, each from so many columns or rows on."""
+"""Classes for the style sheet, each from so many columns or rows on."""
 
 
 class PenduApp(App[Exit | BaseException]):
@@ -32,18 +32,20 @@ class PenduApp(App[Exit | BaseException]):
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
-    CSS_PATH = Path(__file__).with_name("app.tcss")  # for those derived from it, too
+    CSS_PATH = Path(__file__).with_name("app.tcss")  # subclasses use it, too
     TITLE = "pendu"
-    ALLOW_SELECT = False  # Textual stumbles over a click on a notice where text can be selected
+    ALLOW_SELECT = False  # with selection, a click on a notice raises in Textual
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+c", "interrupt", show=False, priority=True),  # the terminal sends it as a key
+        Binding(
+            "ctrl+c", "interrupt", show=False, priority=True
+        ),  # the terminal sends a key, not a signal
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
     def __init__(self, screen: SourceScreen, terminal: TerminalOptions = USUAL) -> None:
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
-        # without colours Textual would only turn grey
+        # where there is no colour, Textual would use greys
         super().__init__(ansi_color="NO_COLOR" in os.environ or None)
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
@@ -68,7 +70,7 @@ class PenduApp(App[Exit | BaseException]):
         return self.source_screen
 
     def on_mount(self) -> None:
-        """Hear signals from now on, and paint everything again after a stop."""
+        """Handle signals from now on, and repaint after a stop."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         if not self.is_headless:
             job = None if self.is_web else self._job
@@ -76,7 +78,7 @@ class PenduApp(App[Exit | BaseException]):
             SignalThread(loop, self.action_interrupt, self.finish, job).start()
 
     async def on_event(self, event: Event) -> None:
-        """Survive a key that breaks Textual's palette or list: an error would end the app."""
+        """Survive a key that makes Textual's palette or list raise: it would end the app."""
         try:
             await super().on_event(event)
         except Exception as error:
@@ -87,23 +89,23 @@ class PenduApp(App[Exit | BaseException]):
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it.
 
-        Textual 8.2's palette and lists stumble over keys that come faster than they open and close;
+        Textual 8.2's palette and lists raise when keys come faster than they open and close; then
         only they are closed.
         """
         if isinstance(error, ScreenStackError):
-            return  # a key came when the screens were gone
+            return  # the screens are already gone
         if is_of_list(error):
             if self.screen is not self.source_screen:
                 self.call_later(self.screen.dismiss)
         elif self.is_headless:
             super()._handle_exception(error)
-        elif self.return_code is None:  # else the program is leaving
+        elif self.return_code is None:  # else it is ending already
             self.exit(error)
 
     def notify(self, message: str, **options: Any) -> None:
-        """Replace an equal notice: a key that is held down shall cover one line at most.
+        """Show a notice in place of an equal one, so that a held key covers one line only.
 
-        No notice has markup: units stand in brackets.
+        Notices have no markup, because units are in brackets.
         """
         if message == self._last_notice:
             self.clear_notifications()
@@ -140,7 +142,7 @@ class PenduApp(App[Exit | BaseException]):
 
 
 def is_of_list(error: BaseException) -> bool:
-    """Return whether an error, perhaps of a worker, was raised in Textual's palette or list."""
+    """Return whether an error, maybe of a worker, was raised in Textual's palette or list."""
     raised = getattr(error, "error", error)
     modules = {frame.f_globals["__name__"] for frame, _ in walk_tb(raised.__traceback__)}
     return not modules.isdisjoint({"textual.command", "textual.widgets._option_list"})
@@ -148,12 +150,14 @@ def is_of_list(error: BaseException) -> bool:
 
 def _theme(name: str, colours: Palette) -> Theme:
     def called(colour: str) -> str:
-        return colour if colour.startswith("#") else f"ansi_{colour}"  # Textual's names of the 16
+        return (
+            colour if colour.startswith("#") else f"ansi_{colour}"
+        )  # as Textual calls the 16 colours
 
     background = called(colours.background)
     variables = {"frame": called(colours.frame)}
     if name == "ansi":
-        variables |= BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections
+        variables |= BUILTIN_THEMES["ansi-dark"].variables  # for cursors and selections
     return Theme(
         name=name,
         dark=name != "light",

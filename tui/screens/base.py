@@ -1,4 +1,4 @@
-"""SourceScreen: the frame, the views, the settings and the undo that the lab and a replay share."""
+"""SourceScreen: the views, keys, settings and undo that the lab and a replay share."""
 
 import gc
 import time
@@ -27,7 +27,7 @@ from tui.words.command_line import command, reproduces
 from tui.words.events import event_lines, numbered
 from tui.words.plain_text import description
 
-STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
+STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
 
 _SPEED = Binding.Group("half, double speed")
 _STEPS = Binding.Group("one step back, forward")
@@ -37,7 +37,7 @@ _VIEWS = Binding.Group("view: lab, phase, …")
 
 
 class SourceScreen(SizedScreen[None]):
-    BLANK = True  # everything on it is covered
+    BLANK = True  # covered by its children
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -79,7 +79,7 @@ class SourceScreen(SizedScreen[None]):
 
     shown: var[Shown] = var(Shown())
     held: float | None = None
-    """The angle [rad] at which the user holds the pendulums; the clock stands meanwhile."""
+    """The angle [rad] at which the user holds the pendulums, while the clock stands still."""
 
     def __init__(
         self,
@@ -88,7 +88,7 @@ class SourceScreen(SizedScreen[None]):
         prepare: Callable[[], None] = lambda: None,
         notices: Sequence[str] = (),
     ) -> None:
-        """`prepare` is called after the first paint, for it may take time; it may raise OSError."""
+        """`prepare` is called after the first paint, as it may be slow; it may raise OSError."""
         super().__init__()
         self._prepare = prepare
         self._notices = notices
@@ -100,15 +100,15 @@ class SourceScreen(SizedScreen[None]):
         self._view_in_front = create(self.view, source, shown)
         self._lines: list[Pane] = []
         self._frames = 0
-        self._missed = 0.0  # s of the clock while the program was stopped
-        self._is_late = False  # the next frame shows everything
-        self._failure: str | None = None  # that a notice shows
+        self._missed = 0.0  # s, how long the program was stopped
+        self._is_late = False  # whether the next frame must show everything
+        self._failure: str | None = None  # the one last shown
         self._paused_by_dialog = False
-        self._undo: deque[State] = deque(maxlen=30)  # each may hold a run
+        self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
 
     @property
     def host(self) -> Any:
-        """The PenduApp, which imports this module."""
+        """The PenduApp, untyped because it imports this module."""
         return self.app
 
     # What is on the screen
@@ -133,11 +133,11 @@ class SourceScreen(SizedScreen[None]):
         return line
 
     def watch_shown(self) -> None:
-        if self.is_mounted:  # a command may set it before
+        if self.is_mounted:  # commands set it earlier
             self.show_now()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Keep the visitor of a browser from this computer's files and shell."""
+        """Keep visitors in a browser from this computer's files."""
         if self.app.is_web and action == "screenshot":
             return False
         return super().check_action(action, parameters)
@@ -155,14 +155,14 @@ class SourceScreen(SizedScreen[None]):
             self.app.exit(error)
             return
         gc.collect()
-        gc.freeze()  # what exists now stays: collecting it again and again would cost frames
+        gc.freeze()  # never collect what exists now, which would cost frames
         gc.enable()
         self.frame_timer.resume()
         for notice in self._notices:
             self.notify(notice, timeout=15)
 
     def frame(self) -> None:
-        """Follow the clock, and show where it has led unless the terminal is behind."""
+        """Follow the clock, and draw unless the terminal is behind."""
         now = self.clock() - self._missed
         seen = self.source.playhead.seen
         if seen is not None and (now - seen > STALL or self.held is not None):
@@ -176,7 +176,7 @@ class SourceScreen(SizedScreen[None]):
         if is_writing(self.app):
             return
         self._frames += 1
-        # what people read, five times a second
+        # text, which people read, changes five times a second
         turn = self._frames % max(self.host.fps // 5, 1) == 0
         self._follow(sample, read=turn or self._is_late)
         self._is_late = False
@@ -212,7 +212,7 @@ class SourceScreen(SizedScreen[None]):
         self._pause(not self.source.playhead.paused)
 
     def _pause(self, paused: bool) -> None:
-        self.frame()  # the clock goes on from here, not from the last frame
+        self.frame()  # catch up first, or pausing would drop part of a frame
         self.source.pause(paused)
         self.show_now()
 
@@ -262,7 +262,7 @@ class SourceScreen(SizedScreen[None]):
         self.change_shown(self.shown._replace(**changes))
 
     def action_show_alone(self, place: int) -> None:
-        """Show a method of the cast alone or, if it is, all of them again."""
+        """Show one method of the cast alone, or all again if it already is alone."""
         cast = self.source.scene.cast
         self.change_shown(self.shown.alone(place, cast))
         if self.shown.places(cast) == [place]:
@@ -284,7 +284,7 @@ class SourceScreen(SizedScreen[None]):
         self._view_in_front.zoom(factor)
 
     def on_zoomed(self, message: Zoomed) -> None:
-        # w leads back: no undo of every turn of the wheel
+        # not undone by u, or u would undo each turn of the wheel; w leads back
         self.shown = self.shown.zoomed(message.stretch)
 
     # Undo
@@ -357,7 +357,7 @@ class SourceScreen(SizedScreen[None]):
             self.notify(f"Saved {picture}")
 
     def action_copy_command(self) -> None:
-        """Copy the command for this moment, and show it: not every terminal has a clipboard."""
+        """Copy the command for this moment, and show it for terminals without a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
         notice = f"Copied: {text}"

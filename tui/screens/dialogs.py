@@ -1,4 +1,4 @@
-"""What lies over the lab until it is closed: texts, forms, and the help, made from BINDINGS."""
+"""Dialogs: texts, forms, and the help, which is made from BINDINGS."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -27,15 +27,15 @@ from tui.words.cards import glossary, method_card, scene_card
 from tui.words.numbers import counted, z_text
 from tui.words.plain_text import step_text
 
-KEY_WIDTH = 9  # columns of a key
-COLUMN_WIDTH = 36  # of a key and what it does
+KEY_WIDTH = 9  # characters
+COLUMN_WIDTH = 36  # characters, a key and what it does
 
 
 class Once(SizedScreen[ScreenResultType]):
-    """A screen that closes once, however fast the clicks and keys come."""
+    """A screen that closes once, however fast clicks and keys come."""
 
     def on_mount(self) -> None:
-        """With reduced motion no cursor blinks; Textual lets it."""
+        """Stop cursors from blinking with reduced motion, which Textual does not."""
         for field in self.query(Input):
             field.cursor_blink = self.app.animation_level != "none"
 
@@ -73,7 +73,7 @@ class TextScreen(ModalScreen[None], Once[None]):
 
 
 def bindings_of(owner: type[DOMNode]) -> list[Binding]:
-    """Return our own bindings of a class that have a description, then those of its bases."""
+    """Return the described bindings of a class, then of those of its bases that are ours."""
     classes = [each for each in owner.__mro__ if each.__module__.startswith("tui.")]
     found = [binding for each in classes for binding in each.__dict__.get("BINDINGS", ())]
     return [each for each in found if isinstance(each, Binding) and each.description]
@@ -142,7 +142,7 @@ class SceneList(Form[str]):
 
 
 class CastForm(Form[Scene]):
-    """Returns the scene with the methods in the order in which they were taken."""
+    """Returns the scene with the chosen methods, in the order of choosing."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,M,shift+m,q", "dismiss(None)"),
@@ -164,7 +164,7 @@ class CastForm(Form[Scene]):
         yield listed
 
     def _line(self, method: Method) -> Text:
-        """As "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit: not taken."""
+        """Return "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit if not chosen."""
         digits = {each: at for at, each in enumerate(self.cast, 1)}
         name = f"{digits.get(method, ' ')} {method.letter} {method.label:<22}"
         forces = f"{counted(method.force_evaluations, 'force')} a step"
@@ -210,7 +210,7 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
         for each in PARAMETERS.values()
     },
 }
-"""The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
+"""The unit and the parser of each number that the scene's model has."""
 
 
 class StartForm(Form[Scene]):

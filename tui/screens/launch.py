@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.report import progress, warn
 
-# Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+# Textual, NumPy and mcap are imported only where they are needed
 if TYPE_CHECKING:
     from engine.scenes import Scene
     from recordings.recording import Recording
@@ -33,7 +33,7 @@ def check(options: argparse.Namespace) -> None:
         from tui.terminal.check import check_terminal
 
         check_terminal()
-        # until the screen is up: collections would delay the first paint by a thirtieth
+        # until the screen is up; collections would delay the first paint by 3 %
         gc.disable()
 
 
@@ -63,7 +63,7 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
         return
     from recordings.errors import NameTakenError
     from recordings.library import free_path
-    from recordings.recorder import LiveRecorder  # brings mcap
+    from recordings.recorder import LiveRecorder  # imports mcap
 
     while live.recorder is None:
         try:
@@ -83,7 +83,7 @@ def live_screen(
 
 
 def open_recording(path: Path) -> "Recording":
-    """A recording to be shown.  Raises UserError if there is nothing in it."""
+    """Open a recording to replay it.  Raises UserError if it is empty."""
     from recordings.recording import Recording
 
     with progress(f"reading {path.name}") as show_progress:
@@ -95,7 +95,7 @@ def open_recording(path: Path) -> "Recording":
 
 
 def open_ghost(path: Path) -> "Ghost":
-    """A recording to be laid under the lab.  Raises UserError if there is nothing in it."""
+    """Open a recording to lay it under the lab.  Raises UserError if it is empty."""
     from tui.playback.ghost import Ghost
 
     with open_recording(path) as recording:
@@ -103,7 +103,7 @@ def open_ghost(path: Path) -> "Ghost":
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
-    """The replay's screen; a lab that continues it is recorded in the library, or not at all."""
+    """Return the replay's screen; a lab that continues it is recorded in the library, if at all."""
     from tui.screens.replay import ReplayScreen
 
     def go_live(live: "Live") -> "LiveScreen":
@@ -116,7 +116,7 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
 
 
 def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
-    """Run the app with this screen first, and say goodbye; returns the exit code."""
+    """Run the app with this screen first, say goodbye, and return the exit code."""
     from tui.screens.app import PenduApp
     from tui.terminal.check import background
     from tui.terminal.options import fitting_theme, terminal_options_of
@@ -141,8 +141,8 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
 
 
 def _sentence(error: BaseException) -> UserError:
-    """Return the error as a sentence; that on a bug names the place."""
-    error = getattr(error, "error", error)  # a worker's
+    """Return the error as a sentence, which names the place of a bug."""
+    error = getattr(error, "error", error)  # of a worker
     try:
         return explained(error)
     except BaseException:
@@ -180,17 +180,17 @@ def open_lab(
 
 
 def recover_leftovers(folder: Path) -> list[str]:
-    """Recover a folder's unfinished recordings; return a sentence on each, errors included."""
+    """Recover a folder's unfinished recordings; return a sentence on each, or its error."""
     from recordings.library import leftovers
 
     sentences = []
     for part in leftovers(folder):
-        from recordings.errors import printable  # it and mcap: only if there is something to do
+        from recordings.errors import printable  # imports mcap
 
         try:
             sentence = recover_leftover(part)
         except FileNotFoundError:
-            continue  # another lab was quicker
+            continue  # another lab recovers it
         except OSError as error:
             why = error.strerror or error
             sentence = f"The unfinished recording {part} cannot be recovered now: {why}."
@@ -199,9 +199,9 @@ def recover_leftovers(folder: Path) -> list[str]:
 
 
 def recover_leftover(leftover: Path) -> str:
-    """Make a recording of a leftover, and return a sentence about it.
+    """Turn a leftover into a recording, and return a sentence about it.
 
-    Unless all of it is in the recording, it is kept under a name that is not found again.
+    If a part is lost, the leftover is kept, under a name that is not recovered again.
     """
     from recordings.errors import NameTakenError, RecordingError
     from recordings.files import publish
@@ -234,7 +234,7 @@ def recover_leftover(leftover: Path) -> str:
 
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:
-    """Have `write` print what happens until a signal such as Ctrl+C, which is how it should end."""
+    """Have `write` print what happens until Ctrl+C or another signal, which is no error here."""
     from tui.cli.files import stop_requests
 
     try:

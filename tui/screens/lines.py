@@ -1,4 +1,4 @@
-"""The lines around a view: status, tour, insight and keys, or the message that nothing fits."""
+"""The lines around a view: status, tour, insight, keys, and "Terminal too small"."""
 
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -26,13 +26,13 @@ from tui.words.numbers import about, factor, seconds, start, two_digits
 from tui.words.tour import Tour
 
 BADGE = -10
-"""The ink of LIVE and REPLAY, and of the tour's titles."""
+"""The ink of LIVE, REPLAY and the tour's titles."""
 
 
 class SizedScreen(Screen[ScreenResultType]):
-    """A screen that leaves out sizes which the terminal has no longer.
+    """A screen that ignores outdated sizes.
 
-    Two of them could evoke each other for ever.
+    Two resize events could cause each other for ever.
     """
 
     def on_resize(self, event: events.Resize) -> None:
@@ -50,7 +50,7 @@ class Badged(CellWidget):
 
 
 class Segment(NamedTuple):
-    """A part of the status line; where there is no room the smallest priority goes first."""
+    """A part of the status line; where there is no room, the lowest priority goes first."""
 
     priority: int
     text: str
@@ -119,7 +119,7 @@ def _stepping(source: Source) -> Iterator[Segment]:
 def _recording(source: Source) -> Iterator[Segment]:
     status = source.recording_status
     if status is None:
-        if source.playhead.seen is not None:  # else it is yet to begin
+        if source.playhead.seen is not None:  # else it has not begun yet
             yield Segment(8, "not recorded", QUIET)
     elif status.failed:
         yield Segment(10, "NOT RECORDED", WARN)
@@ -130,7 +130,7 @@ def _recording(source: Source) -> Iterator[Segment]:
 
 
 def speed_text(speed: float) -> str:
-    """Return as "1×", "1/8×", "1024×", "-2×"."""
+    """Return "1×", "1/8×", "1024×" or "-2×"."""
     if speed < 0:
         return f"-{speed_text(-speed)}"
     if speed < 1:
@@ -139,9 +139,9 @@ def speed_text(speed: float) -> str:
 
 
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
-    """Return as "unstable: e, s v (z > 2), r (z > 2.83)"; "" below all limits.
+    """Return "unstable: e, s v (z > 2), r (z > 2.83)", or "" below all limits.
 
-    `zs` are in the order of the cast.  Explicit Euler, never stable, is named only beside others.
+    `zs` belong to the cast.  Explicit Euler, which is never stable, is named only beside others.
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):
@@ -155,7 +155,7 @@ def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
 
 
 class InsightLine(Pane):
-    """What to watch in the scene, and what to notice; trouble with the recording comes first."""
+    """What to watch in the scene and what to notice, or why there is no recording."""
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         width, height = self.room
@@ -176,7 +176,7 @@ class InsightLine(Pane):
 
 
 def fitted(text: str, width: int, height: int) -> list[str]:
-    """Return the text on `height` lines; where it does not fit it ends in …."""
+    """Return the text on at most `height` lines, cut off with an ellipsis."""
     return textwrap.wrap(text, max(width, 2), max_lines=height, placeholder=" …")
 
 
@@ -188,14 +188,14 @@ FORWARD = {
 
 
 class TourPanel(Badged):
-    """The words of the tour, in place of the insight line; a click goes forward."""
+    """The tour's text, in place of the insight line; a click goes forward."""
 
     def __init__(self, tour: Tour) -> None:
         super().__init__()
         self.tour = tour
 
     def draw(self) -> None:
-        """Show title and keys, then the sentences, the last of them in full."""
+        """Show title and keys, then the sentences; where room is short, the last ones."""
         if not self.drawable:
             return
         width, height = self.room
@@ -222,13 +222,13 @@ def key_text(binding: Binding) -> str:
 
 
 class KeyLine(CellWidget):
-    """The keys that are needed now; a click on one presses it."""
+    """The keys that can be used now; a click presses one."""
 
     ORDER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
-    """Hints in their order; "" stands for all of a focused pane."""
+    """The order of the hints; "" stands for those of the focused pane."""
 
     _keys: Sequence[str] = ()
-    """The key that a click on each column presses."""
+    """For each column, the key that a click presses."""
 
     def on_mount(self) -> None:
         self.screen.bindings_updated_signal.subscribe(self, lambda _: self.draw())
@@ -275,7 +275,7 @@ class KeyLine(CellWidget):
 
 
 class TooSmall(CellWidget):
-    """Stands in place of everything; the keys still work."""
+    """Replaces everything on a small terminal; the keys still work."""
 
     def draw(self) -> None:
         columns, rows = self.room

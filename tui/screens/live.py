@@ -38,15 +38,15 @@ class LiveScreen(SourceScreen):
         Binding("b", "reverse", "Back", tooltip="run back in time"),
         Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
         Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
-        Binding("enter", "tour_forward"),  # the tour's panel names these two
+        Binding("enter", "tour_forward"),  # the tour's panel shows these two
         Binding("backspace", "tour_back"),
     ]
 
     begins_with_tour = False
     lecture: Mapping[str, Scene] = SCENES
-    """The scenes that p leads through, by name."""
+    """The scenes that key p leads through, by name."""
     page = ""
-    """The scene from which p goes on."""
+    """The scene from which key p goes on."""
     is_on_tour = False
 
     @cached_property
@@ -62,7 +62,7 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def frame(self) -> None:
-        """Pause at the moment of the scene's shot, and where reversed time is back at 0."""
+        """Pause at the moment of the scene's shot, and when reversed time is back at 0."""
         before = self.source.history.returned
         step = self.source.sample.step
         super().frame()
@@ -76,7 +76,7 @@ class LiveScreen(SourceScreen):
             self.query_one(TourPanel).draw()
 
     def _pause_at_moment(self, before: int) -> None:
-        """Pause where the scene's moment has come since the step before, unless h has changed."""
+        """Pause if the scene's moment came after step `before`, unless h has changed."""
         scene = self.live.scene
         if scene.shot.moment is None or self.is_on_tour or len(self.live.changes) > 1:
             return
@@ -102,10 +102,10 @@ class LiveScreen(SourceScreen):
 
     def set_stepping(self, stepping: Stepping) -> None:
         if self._changed(lambda: self.live.set_stepping(stepping)):
-            self.shown = self.shown._replace(line=None)  # which belongs to the scene's own h
+            self.shown = self.shown._replace(line=None)  # it belongs to the scene's own h
 
     def _changed(self, change: Callable[[], None]) -> bool:
-        """Change the run so that it can be undone, or notify why not."""
+        """Change the run and keep its state for undo, or notify why it cannot be changed."""
         before = self.state
         try:
             change()
@@ -170,13 +170,12 @@ class LiveScreen(SourceScreen):
         self.shown = self.shown.through(scene)
         self.call_next(self.action_view, scene.shot.view)
 
-    # Forms; they are imported when they are needed
+    # Forms, imported when they are needed
 
     def _ask(self, form: ModalScreen[Any], use: Callable[[Any], None]) -> None:
-        """Lay a form over the lab, and use its answer unless it is cancelled.
+        """Open a form over the lab, and use its answer unless it is cancelled.
 
-        No worker waits for the answer: as the app ends, Textual would have it wait for the end of
-        this screen, and then cancel both.
+        The answer comes by callback: a worker waiting for it would hang when the app ends.
         """
 
         def answered(answer: Any) -> None:
@@ -227,7 +226,7 @@ class LiveScreen(SourceScreen):
         self._show_shot()
 
     def action_tour_forward(self) -> None:
-        """Go to the moment, to the truth, or to the next shot."""
+        """Go to the moment, the answer, or the next shot."""
         index = self.tour.index
         if not self.tour.forward():
             self._leave_tour(
@@ -252,7 +251,7 @@ class LiveScreen(SourceScreen):
             super().action_show(number)
 
     def action_back(self) -> None:
-        """Leave the tour, or else the zoom of the chart."""
+        """Leave the tour, else the zoom of the chart."""
         if self.is_on_tour:
             self.action_tour()
         else:

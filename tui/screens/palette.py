@@ -1,4 +1,4 @@
-"""The command palette: themes and scenes first, then what the keys do, and what has no key."""
+"""The command palette: scenes and themes first, then all actions."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -22,7 +22,7 @@ class Entry(NamedTuple):
 
 
 def entries(screen: SourceScreen) -> Iterator[Entry]:
-    """Yield what can be done on this screen, the action of a key once."""
+    """Yield all that can be done on this screen, each action once."""
     for name in PALETTES:
         yield Entry(f"theme {name}", f"app.use_theme({name!r})")
     if isinstance(screen, LiveScreen):
@@ -35,12 +35,12 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
             done.add(binding.action)
             press = f"app.simulate_key({binding.key!r})"
             yield Entry(purpose(binding), press, key_text(binding))
-    if not screen.app.is_web:  # it may name a file
+    if not screen.app.is_web:  # the command may name a file
         yield Entry("copy the command for this moment", "copy_command")
 
 
 class Commands(CommandPalette, Once[None]):
-    """The command palette; the app ignores its errors, which come of fast keys."""
+    """The command palette; the app ignores its errors, which fast keys cause."""
 
 
 class LabCommands(Provider):
@@ -50,7 +50,7 @@ class LabCommands(Provider):
         for text, action, key in entries(screen):
             if len(text) > room:
                 text = f"{text[: room - 1]}…"
-            # once the screen is in front again
+            # when the screen is in front again
             run = partial(screen.call_later, screen.run_action, action)
             yield f"{text:<{room}}{key:>{KEY_WIDTH}}", run
 

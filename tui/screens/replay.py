@@ -1,4 +1,4 @@
-"""ReplayScreen: a recording, with any moment a key or a click away."""
+"""ReplayScreen: plays a recording; any moment is a key or a click away."""
 
 import asyncio
 import time
@@ -29,13 +29,13 @@ _TENTHS = Binding.Group("back, forward 10 %")
 
 
 class SeekBar(Pane):
-    """The position in the replay, and its events; a click or a drag on it goes there."""
+    """Shows position and events; a click or a drag seeks."""
 
     _columns = 1  # of the bar
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         assert isinstance(source, Replay)
-        text = facts(source, self.room.width - 27)  # the bar has 24 columns or more
+        text = facts(source, self.room.width - 27)  # leaves 24 columns for the bar
         self._columns = max(self.room.width - len(text) - 3, 1)
         row = bar(source.playhead.position, source.length, source.ticks, self._columns)
         return Picture([[(" ", TEXT), *row, (f"  {text}", TEXT)]])
@@ -53,7 +53,7 @@ class SeekBar(Pane):
 
     async def _seek(self, event: events.MouseEvent) -> None:
         assert isinstance(self.source, Replay)
-        column = event.screen_x - self.content_region.x - 1  # clamped: a drag may leave the bar
+        column = event.screen_x - self.content_region.x - 1  # a drag may leave the bar
         share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
         position = share * self.source.length
         await self.run_action(f"screen.seek({position - self.source.playhead.position})")
@@ -77,9 +77,9 @@ def bar(position: float, length: float, ticks: Sequence[float], width: int) -> R
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Return position and length; loop, run, step and event as far as there is room.
+    """Return position and length, and what fits of loop, run, step and event.
 
-    A number has the room of the largest, so that the bar beside it stays where it is.
+    Numbers are as wide as the largest, so that the bar stays in place.
     """
     position = replay.playhead.position
     runs = replay.recording.runs
@@ -100,7 +100,7 @@ def facts(replay: Replay, room: int) -> str:
 
 
 class ReplayScreen(SourceScreen):
-    """Shows a replay.  `go_live` makes the screen of a lab that continues from its moment."""
+    """Shows a replay.  `go_live` makes the screen of a lab that continues it."""
 
     BINDING_GROUP_TITLE = "Replay"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -148,18 +148,18 @@ class ReplayScreen(SourceScreen):
         self.show_now()
 
     async def action_live(self) -> None:
-        """Continue live from here, once the run so far is known and simulated again up to here."""
+        """Continue live from here, after simulating the run again up to here."""
         replay = self.replay
         replay.pause(True)
         if not replay.fill():
             self.notify("Loading earlier samples ...", timeout=2)
         while not replay.fill():
             await asyncio.sleep(0)
-        if replay.sample.step > 100_000:  # a quarter of a second
+        if replay.sample.step > 100_000:  # takes more than 0.25 s
             self.notify(f"Simulating {replay.sample.step} steps ...", timeout=2)
         try:
             if has_own(replay.scene):
-                live = replay.live()  # it can be interrupted here, but not in a thread
+                live = replay.live()  # not in a thread, where it could not be interrupted
             else:
                 live = await asyncio.to_thread(replay.live)
             lab = self._go_live(live)

@@ -1,4 +1,4 @@
-"""A picture of the lab: the same every time, because the clock is moved by hand."""
+"""Pictures of the lab, always the same because the clock is moved by hand."""
 
 import asyncio
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ async def still(
     terminal: TerminalOptions = USUAL,
     keys: Sequence[str] = (),
 ) -> str:
-    """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
+    """Return the lab as an SVG picture, `seconds` after the start, with `keys` pressed then."""
     now = 0.0
     live = Live(scene, clock=lambda: 0.0)
     screen = LiveScreen(live, clock=lambda: now)
@@ -47,6 +47,6 @@ async def settled(app: PenduApp) -> None:
 
 
 def _is_settled(pane: Widget) -> bool:
-    # what is on screen and not drawable is still to hear that it is shown
+    # a pane on screen that is not drawable does not know its size yet
     is_shown = getattr(pane, "drawable", True) or not pane.is_on_screen
     return is_shown and getattr(pane, "settled", True)

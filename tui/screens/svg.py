@@ -11,9 +11,9 @@ def normalised(svg: str) -> str:
 
 
 def portable(svg: str) -> str:
-    """Return the picture with a position for each word, where Rich gives a text's length.
+    """Return the picture with a position for each word instead of a length for each text.
 
-    Inkscape and librsvg ignore the length, and their fonts have other widths, of braille above all.
+    Inkscape and librsvg ignore the length, and draw braille in fonts of other widths.
     """
     fonts = "font-family: Fira Code, DejaVu Sans Mono, monospace"
     text = r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'

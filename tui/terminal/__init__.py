@@ -1,1 +1,1 @@
-"""The terminal: what it can do, and when it is gone; Textual's own driver does all else."""
+"""The terminal: its abilities and its loss; Textual's driver does the rest."""

@@ -1,4 +1,4 @@
-"""Braille to half blocks or ASCII, for terminals without it."""
+"""Half blocks or ASCII in place of braille, for terminals without it."""
 
 import unicodedata
 
@@ -11,7 +11,7 @@ from tui.terminal.options import CharacterSet
 
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:
-    """Return what stands for each character of braille, by its dots above and below the middle."""
+    """Return a replacement for each braille character, by its upper and lower dots."""
     upper = 0x01 | 0x08 | 0x02 | 0x10  # in Unicode's order
     lower = 0x04 | 0x20 | 0x40 | 0x80
     return {
@@ -38,7 +38,7 @@ _LIKE = {
 
 
 class _Ascii(dict[int, str]):
-    """A table for str.translate; a character without a likeness becomes question marks."""
+    """A table for str.translate; characters without an equivalent become question marks."""
 
     def __missing__(self, code: int) -> str:
         width = cell_len(chr(code))

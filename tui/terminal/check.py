@@ -1,4 +1,4 @@
-"""Whether the lab can be shown on this terminal, and whether the terminal is there and keeps up."""
+"""Whether a terminal can show the lab, still exists, and keeps up."""
 
 import os
 import re
@@ -11,7 +11,7 @@ from tui.cli.errors import Exit, UserError
 
 
 def check_terminal() -> None:
-    """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
+    """Raise UserError unless the lab can be shown; Textual would print garbage."""
     streams = (sys.__stdin__, sys.__stdout__, sys.__stderr__)
     if not all(stream is not None and stream.isatty() for stream in streams):
         why = "not a terminal: the lab is interactive. Use pendu-tui run, or --plain."
@@ -23,7 +23,7 @@ def check_terminal() -> None:
 
 
 def is_gone() -> bool:
-    """Whether the terminal has been closed: writing to it fails then, or blocks for ever."""
+    """Return whether the terminal has been closed; writing would fail or block for ever."""
     try:
         os.get_terminal_size(0)
     except OSError:
@@ -32,10 +32,9 @@ def is_gone() -> bool:
 
 
 def is_writing(app: Any) -> bool:
-    """Return whether frames still wait to be written: on a slow line, another adds only delay.
+    """Return whether frames still wait to be written; on a slow line more would only add delay.
 
-    Textual queues 30 of them, some seconds at 64 KiB/s.  Where it has no such queue the answer is
-    no.
+    Textual queues 30 of them, some seconds at 64 KiB/s.  Returns False where it has no queue.
     """
     writer = getattr(app._driver, "_writer_thread", None)
     queue = getattr(writer, "_queue", None)
@@ -43,10 +42,10 @@ def is_writing(app: Any) -> bool:
 
 
 def background() -> Literal["light", "dark"] | None:
-    """Ask the terminal for its background, before Textual reads from it; None if it does not say.
+    """Ask the terminal for its background before Textual reads from it; None if it does not tell.
 
-    OSC 11 asks for the colour, DA1 for the terminal's attributes, which every terminal answers, in
-    order: whatever comes before that answer is not left for Textual to take for keys.
+    OSC 11 asks for the colour, then DA1 for attributes, which every terminal reports.  Terminals
+    answer in order, so after the second answer none is left that Textual could take for keys.
     """
     try:
         import termios
@@ -58,7 +57,7 @@ def background() -> Literal["light", "dark"] | None:
     keyboard = sys.__stdin__.fileno()
     before = termios.tcgetattr(keyboard)
     reply = b""
-    end = time.monotonic() + 1.0  # s, for a terminal that never answers
+    end = time.monotonic() + 1.0  # s; some terminals never answer
     try:
         tty.setcbreak(keyboard, termios.TCSANOW)
         os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")

@@ -9,7 +9,7 @@ from tui.cli.options import count
 from tui.drawing.palette import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
-"""What pictures are drawn with; with ASCII, all lines and words are ASCII, too."""
+"""The characters of pictures; with ASCII, lines and words are ASCII, too."""
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS = 30
@@ -41,7 +41,7 @@ def add_terminal_options(parser: argparse.ArgumentParser) -> None:
 def add_picture_options(
     parser: argparse.ArgumentParser, theme: str, character_set: str
 ) -> argparse._ArgumentGroup:
-    """Add only those that also apply to a picture of the lab, with these defaults."""
+    """Add the options that also apply to a picture of the lab, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
     about = "auto: detected from the terminal (see pendu-tui doctor)"
     group = parser.add_argument_group("display", about)
@@ -103,7 +103,7 @@ def fitting_theme(environment: Mapping[str, str]) -> str:
 
 
 def colours(environment: Mapping[str, str]) -> int:
-    """How many colours the terminal reports, by the variables that Rich reads."""
+    """Return how many colours the terminal has, by the variables that Rich reads."""
     if environment.get("COLORTERM", "").strip().lower() in ("truecolor", "24bit"):
         return 1 << 24
     term = environment.get("TERM", "").lower()

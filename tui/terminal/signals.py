@@ -1,4 +1,4 @@
-"""Signals and a lost terminal, heard even where the event loop does not turn."""
+"""Handle signals and a lost terminal even while the event loop is stuck."""
 
 import os
 import select
@@ -14,14 +14,14 @@ from tui.cli.files import ENDING
 from tui.cli.time_limit import PLAIN_SCREEN
 from tui.terminal.check import is_gone
 
-MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
+MARGIN = 0.1  # s; the order of two signals closer than this is unknown
 
 
 class Job:
-    """The program as a job of a shell, which stops and continues it."""
+    """The program as a shell's job, which can be stopped and continued."""
 
     def __init__(self, suspend: Callable[[], AbstractContextManager[None]]) -> None:
-        """`suspend` gives the terminal back while its context lasts."""
+        """`suspend` is a context that gives the terminal back."""
         self._suspend = suspend
         self._asked_at = 0.0  # s, to stop
         self._continued_at = 0.0  # s
@@ -34,7 +34,7 @@ class Job:
         self._continued_at = time.monotonic()
 
     def stop(self) -> None:
-        """Stop, unless somebody has already continued the program, and then take the terminal."""
+        """Stop, unless the program has been continued already, and then take the terminal back."""
         if self._is_due:
             with self._suspend():
                 if self._is_due:
@@ -46,7 +46,7 @@ class Job:
         return self._continued_at + MARGIN < self._asked_at
 
     def take_terminal(self) -> None:
-        """Take the whole terminal after a stop that nobody announced: a shell may have used it."""
+        """Set the terminal up again after an unannounced stop, as a shell may have used it."""
         if self._continued_at > self._taken_at:
             with self._suspend():
                 pass
@@ -54,10 +54,10 @@ class Job:
 
 
 class SignalThread(Thread):
-    """Passes signals on to the event loop, and ends a program whose loop is stuck.
+    """Passes signals on to the event loop, and ends the program if the loop is stuck.
 
-    Textual's own handlers run wherever a signal interrupts Python, which may be in the middle of a
-    write to the terminal; what they write would then wait for that write for ever.
+    Textual's own handlers would run in the middle of whatever Python does.  If that is a write to
+    the terminal, their own write would wait for it for ever.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class SignalThread(Thread):
         close: Callable[[], object],
         job: Job | None,
     ) -> None:
-        """`leave` ends the program in the loop; `close` finishes the recording, in any thread."""
+        """`leave` ends the program from the loop; `close` finishes the recording from any thread."""
         super().__init__(name="signals", daemon=True)
         self._loop = loop
         self._leave = leave
@@ -79,7 +79,7 @@ class SignalThread(Thread):
         signal.set_wakeup_fd(written, warn_on_full_buffer=False)
         self._handlers: dict[int, Callable[[], object]] = {}
         for number in ENDING:
-            if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
+            if signal.getsignal(number) != signal.SIG_IGN:  # ignored, as under nohup
                 self._handlers[number] = leave
                 signal.signal(number, lambda *_: None)
         if job is not None:
@@ -89,7 +89,7 @@ class SignalThread(Thread):
 
     def run(self) -> None:
         while True:
-            # without a signal, look at the terminal each second
+            # check the terminal each second
             ready, _, _ = select.select([self._pipe], [], [], 1.0)
             numbers = b""
             if ready:
@@ -97,18 +97,20 @@ class SignalThread(Thread):
             called = [self._handlers[number] for number in numbers if number in self._handlers]
             if is_gone() if self._has_terminal else os.getppid() != self._server:
                 called.append(self._leave)
-            with suppress(RuntimeError):  # the loop is closed: the program is leaving
+            with suppress(RuntimeError):  # the loop is closed: the program is ending
                 for handler in called:
                     self._loop.call_soon_threadsafe(handler)
             if self._leave in called:
-                time.sleep(5.0)  # the loop has ended the program by then, or is stuck
-                closing = Thread(target=self._end, daemon=True)  # may wait for what the loop holds
+                time.sleep(5.0)  # by then the loop has ended the program, or is stuck
+                closing = Thread(
+                    target=self._end, daemon=True
+                )  # it may wait for a lock that the loop holds
                 closing.start()
                 closing.join(3.0)
                 os._exit(Exit.INTERRUPTED)
 
     def _end(self) -> None:
-        """Finish the recording, and set the terminal as a shell expects it."""
+        """Finish the recording and reset the terminal for the shell."""
         self._close()
         os.system(
             f"stty icrnl ixon echo icanon iexten isig 2>/dev/null && printf '{PLAIN_SCREEN}' >&2"
