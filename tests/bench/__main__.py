@@ -4,8 +4,8 @@ python -m tests.bench                     # everything; takes hours
 python -m tests.bench kill signals        # some benches
 python -m tests.bench monkey --share 0.1  # a tenth of the attempts
 
-A bench is a module with `measure(share)`, which returns figures, and LIMITS, the most that some of
-them may be.  Exit code 1: a figure is above its limit.
+A bench is a module with `measure(share)`, which returns figures, and LIMITS, the largest values
+allowed for some of them.  The exit code is 1 if a figure is above its limit.
 """
 
 import argparse
@@ -18,8 +18,16 @@ from multiprocessing import get_context
 from typing import Any
 
 BENCHES = (
-    *("command_lines", "damage", "foreign", "hostile", "judging", "kill", "memory", "monkey"),
-    *("peers", "recording", "signals", "yardstick"),
+    "damage",
+    "foreign",
+    "hostile",
+    "judging",
+    "kill",
+    "monkey",
+    "peers",
+    "recording",
+    "signals",
+    "yardstick",
 )
 
 
@@ -42,7 +50,8 @@ def main() -> int:
     reports = {}
     exit_code = 0
     for name in options.benches or BENCHES:
-        with ProcessPoolExecutor(1, get_context("fork")) as pool:  # for its memory
+        # A process of its own, so that its peak memory is its own.
+        with ProcessPoolExecutor(1, get_context("fork")) as pool:
             reports[name], passes = pool.submit(report, name, options.share).result()
         exit_code |= not passes
     print(json.dumps(reports, indent=1))
