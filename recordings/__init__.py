@@ -1,11 +1,7 @@
-"""Recordings: MCAP in and out.
+"""Recordings: MCAP files of runs.
 
-    samples, events --format--> messages --recorder--> file --reader--> chunks --recording--> any
-    moment
-
-- What a file holds: `events`; `fields`, the one table of names and units; `arithmetic`.
-- Writing: `recorder`; `headless`, without a screen; `files`, whole or not at all.
-- Using: `verification`, `recovery`, `diff`; `library`, the folder; `errors`; `pytest`, a plugin.
+Written: samples and events --`format`--> messages --`recorder`--> file.
+Read: file --`reader`--> chunks --`recording`--> samples and events of any moment.
 """
 
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""Arithmetic: what the bits of a run depend on besides its inputs."""
+"""Arithmetic: what the bits of a run depend on, apart from its inputs."""
 
 import hashlib
 import math
@@ -10,9 +10,9 @@ from engine.run import NUMERICS
 
 
 class Arithmetic(NamedTuple):
-    """The version of the numerics, and fingerprints of library functions, where a run was made.
+    """The version of the numerics, and fingerprints of the library functions, that made a run.
 
-    The simulation calls no others; + - * / give the same bits everywhere.
+    The simulation calls no other functions; + - * / give the same bits everywhere.
     """
 
     numerics: int
@@ -21,7 +21,8 @@ class Arithmetic(NamedTuple):
 
     def other_functions(self) -> tuple[str, ...]:
         """Return the names of the functions that this machine computes differently."""
-        return tuple(each for each in ("sin", "sqrt") if getattr(self, each) != fingerprint(each))
+        names = ("sin", "sqrt")
+        return tuple(name for name in names if getattr(self, name) != fingerprint(name))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Diff: what was done differently in two recordings, and where their numbers part."""
+"""Diff: what was done differently in two recordings, and where their numbers diverge."""
 
 from collections.abc import Iterator
 from heapq import merge
@@ -7,7 +7,7 @@ from operator import itemgetter
 from typing import Any
 
 from engine.run.lockstep import Sample
-from recordings.events import NOT_DONE, name_of
+from recordings.events import NOT_INPUTS, name_of
 from recordings.fields import EXTREMES, differences
 from recordings.recording import Recording, Run
 
@@ -17,8 +17,9 @@ SAME_TIME = 9  # decimals of a second: multiples of h are rounded
 def compare(a: Recording, b: Recording) -> dict[str, Any]:
     """Compare two open recordings, damaged ones as far as they are intact.
 
-    Returns `done`: what was done differently; `first`: the first number that differs; how many
-    samples are at equal times, or in one only; `errors`: the largest at equal times, by method.
+    Returns `done`: what was done differently; `first`: the first number that differs; the numbers
+    of samples at equal times and in one recording only; `errors`: the largest of each method at
+    equal times.
     """
     samples = 0
     only_in = {"a": 0, "b": 0}
@@ -30,18 +31,21 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
         if len(at_once) == 1:
             only_in[min(at_once)] += 1
             continue
-        one, other = at_once["a"], at_once["b"]
         samples += 1
-        theirs = dict(zip(b.methods_of(other.run), other.readings, strict=True))
-        for method, x in zip(a.methods_of(one.run), one.readings, strict=True):
-            if (y := theirs.get(method)) is None:
+        in_a = at_once["a"]
+        in_b = at_once["b"]
+        readings_of_b = dict(zip(b.methods_of(in_b.run), in_b.readings, strict=True))
+        for method, reading_a in zip(a.methods_of(in_a.run), in_a.readings, strict=True):
+            if method not in readings_of_b:
                 continue
-            known = errors.setdefault(method, {"a": 0.0, "b": 0.0})
-            known["a"] = max(known["a"], x.max_energy_error)
-            known["b"] = max(known["b"], y.max_energy_error)
-            for name, p, q in differences(x, y):
+            reading_b = readings_of_b[method]
+            largest = errors.setdefault(method, {"a": 0.0, "b": 0.0})
+            largest["a"] = max(largest["a"], reading_a.max_energy_error)
+            largest["b"] = max(largest["b"], reading_b.max_energy_error)
+            for name, p, q in differences(reading_a, reading_b):
                 if first is None and name not in EXTREMES:
-                    first = {"run": one.run, "t": one.t, "step_a": one.step, "step_b": other.step}
+                    first = {"run": in_a.run, "t": in_a.t}
+                    first |= {"step_a": in_a.step, "step_b": in_b.step}
                     first |= {"method": method, "field": name, "a": p, "b": q}
     found: dict[str, Any] = {"done": list(_done(a, b)), "first": first}
     found |= {f"only_in_{side}": count for side, count in only_in.items()}
@@ -51,7 +55,8 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
 def _done(a: Recording, b: Recording) -> Iterator[tuple[str, str, str]]:
     """Yield what was done differently: where, in a, in b."""
     for number in sorted({run.number for run in (*a.runs, *b.runs)}):
-        in_a, in_b = _inputs(a.run_of(number)), _inputs(b.run_of(number))
+        in_a = _inputs(a.run_of(number))
+        in_b = _inputs(b.run_of(number))
         for where in in_a | in_b:
             pair = in_a.get(where, "-"), in_b.get(where, "-")
             if pair[0] != pair[1]:
@@ -59,22 +64,24 @@ def _done(a: Recording, b: Recording) -> Iterator[tuple[str, str, str]]:
 
 
 def _inputs(run: Run | None) -> dict[str, str]:
-    """Return all that determines a run, and what was done in it."""
+    """Return everything that determines a run, and what was done in it."""
     if run is None:
         return {}
     inputs = {name: str(value) for name, value in run.scene.numbers.items()}
     inputs["model"] = run.scene.model
     inputs["methods"] = ", ".join(map(name_of, run.scene.cast))
     for _, event in run.events:
-        if event.kind not in NOT_DONE:
-            value = event.h or event.speed or event.text or event.kind
-            where = f"{event.kind} at step {event.step}, t = {event.t:g} s"
-            inputs[where] = f"{value} at equal cost" if event.equal_cost else str(value)
+        if event.kind in NOT_INPUTS:
+            continue
+        value = str(event.h or event.speed or event.text or event.kind)
+        if event.equal_cost:
+            value += " at equal cost"
+        inputs[f"{event.kind} at step {event.step}, t = {event.t:g} s"] = value
     return inputs
 
 
 def _timed(recording: Recording, side: str) -> Iterator[tuple[tuple[int, float], str, Sample]]:
-    """Yield (run, time simulated since its start, forwards or backwards [s]), side and sample."""
+    """Yield (run, simulated time since its start, in either direction [s]), side and sample."""
     run, elapsed, t = 0, 0.0, 0.0
     for _, sample in recording.samples_between():
         if sample.run != run:

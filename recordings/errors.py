@@ -1,4 +1,4 @@
-"""Errors: what can go wrong with a recording, and how text from a file becomes safe to print."""
+"""Errors of reading and writing, and text from files made safe to print."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,11 +8,11 @@ MAX_TEXT = 200  # characters of one text from a file; a mark or a scene's name i
 
 
 class RecordingError(Exception):
-    """A recording that cannot be read; its text is a sentence for the user."""
+    """A recording cannot be read; the text is a sentence for the user."""
 
 
 class DiskError(OSError):
-    """A recording that can no longer be written; its text is a sentence for the user."""
+    """A file cannot be written; the text is a sentence for the user."""
 
     def __init__(self, why: str, path: object, errno: int = 0) -> None:
         super().__init__(errno, why, str(path))
@@ -22,25 +22,22 @@ class DiskError(OSError):
 
 
 class NameTakenError(DiskError):
-    """A recording that cannot be made because its name is taken."""
+    """A file cannot be written because its name is taken."""
 
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Turn whatever goes wrong while `path` is read into a RecordingError that names it."""
+    """Turn errors while `path` is read into a RecordingError that names it."""
     try:
         yield
-    except RecordingError as error:
-        raise RecordingError(f"{printable(str(path))}: {str(error).removesuffix('.')}.") from error
-    except DiskError:
-        raise
-    except OSError as error:
-        raise RecordingError(f"{printable(str(path))}: {error.strerror or error}.") from error
+    except (OSError, RecordingError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise RecordingError(f"{printable(str(path))}: {why.removesuffix('.')}.") from error
 
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn whatever the disk does while `path` is written into a DiskError."""
+    """Turn an OSError while `path` is written into a DiskError."""
     try:
         yield
     except DiskError:
@@ -50,8 +47,9 @@ def writing(path: Path) -> Iterator[None]:
 
 
 def printable(text: str, limit: int = MAX_TEXT) -> str:
-    """Return the text without what controls a terminal: escapes, line ends, overrides."""
-    text = text if len(text) <= limit else text[: limit - 1] + "…"
+    """Return at most `limit` characters of the text, without those that control a terminal."""
+    if len(text) > limit:
+        text = text[: limit - 1] + "…"
     if text.isprintable():
         return text
-    return "".join(each if each.isprintable() else "\N{REPLACEMENT CHARACTER}" for each in text)
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -1,4 +1,4 @@
-"""Events: actions in the lab, and milestones.  An entry is a sample or an event at its time."""
+"""Events: actions in the lab, and milestones that it noticed."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -17,19 +17,17 @@ if TYPE_CHECKING:
     from engine.run.judgement import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
-MAX_EVENTS = 50_000  # of a recording; a lesson has a few hundred
-NOT_DONE = ("start", "stop", "noticed")
-"""Events that nobody did in a run."""
+MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred
+NOT_INPUTS = ("start", "stop", "noticed")
+"""Kinds of events that are no action of a user in a run."""
 
 
 class Event(NamedTuple):
-    """An action in the lab, or a milestone that the lab noticed.  It applies before `step` of
-    `run`.
+    """An action or a milestone, before `step` of `run`.
 
     A `start` (the scene with its model and methods) and the `set_h` after it determine a run; the
-    other kinds change no number.  A run that continues from an earlier step of another one begins
-    with that one's start and repeats its `set_h`.  A milestone is noticed somewhat later than it
-    happens.
+    other kinds change no number.  A run that continues from an earlier step of another run begins
+    with the same start and the same `set_h`.  A milestone is noticed shortly after it happens.
     """
 
     kind: EventKind
@@ -43,14 +41,14 @@ class Event(NamedTuple):
     text: str | None = None  # mark
     milestone: "Milestone | None" = None  # noticed
     arithmetic: Arithmetic | None = None  # start; None: of this version on this machine
-    sources: tuple[str, ...] = ()  # start; the texts of a user's own methods, never executed
+    sources: tuple[str, ...] = ()  # start; source code of a user's own methods, never executed
 
 
 class Entry(NamedTuple):
     """A sample or an event at its time in a recording."""
 
     clock: float  # s, running time since the recording began, pauses excluded
-    value: Sample | Event | None  # None: a gap; what was here is lost
+    value: Sample | Event | None  # None: a gap, where entries are lost
 
 
 def noticed(run: int, milestone: "Milestone") -> Event:
@@ -62,22 +60,23 @@ _own: dict[str, "OwnMethod"] = {}
 
 
 def remember(own: Iterable["OwnMethod"]) -> None:
-    """Use these methods where a recording names them; nothing in a recording is ever executed."""
+    """Use these methods where a recording names them, whose source code is never executed."""
     _own.update({name_of(method): method for method in own})
 
 
 def name_of(method: Method) -> str:
-    """Return a method's name in recordings: its key, and of a user's own the hash of its source."""
+    """Return a method's name in recordings: its key, with the source's hash for a user's own."""
     if method.phases is _no_phases:
         return method.reference
-    sha256 = getattr(method, "sha256", "")
-    return f"{method.key}@{sha256}" if sha256 else method.key
+    if sha256 := getattr(method, "sha256", ""):
+        return f"{method.key}@{sha256}"
+    return method.key
 
 
 def method_named(name: str) -> Method:
     """Return the method of this name.
 
-    A user's own that was not given plays as recorded, and cannot be simulated.
+    A user's own method that was not passed to `remember` can be replayed, but not simulated.
     """
     key, is_own, _ = name.partition("@")
     if name in _own:
@@ -103,7 +102,7 @@ def method_named(name: str) -> Method:
 
 
 def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
-    """Raise RecordingError if a method of the scene, or of these keys, cannot be simulated."""
+    """Raise RecordingError if one of the scene's methods, or of `only`, cannot be simulated."""
     for method in scene.cast:
         if method.phases is _no_phases and (only is None or method.key in only):
             raise RecordingError(
@@ -113,7 +112,7 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
 
 
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Yield phases that are no numbers, so that no loop takes a step."""
+    """Yield phases of NaN, which every loop stops at."""
     theta, omega = phase
     while True:
         yield math.nan * theta, math.nan * omega

@@ -1,12 +1,11 @@
-"""Fields: the one table of names and units of what a recording holds.
+"""Fields: the names and units of all that a recording holds.
 
-Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use it.  To record another
+Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use them.  To record another
 value of a reading, add it to `Reading` and to READING.
 """
 
 import math
 from collections.abc import Iterator, Sequence
-from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
@@ -18,23 +17,25 @@ MAX_INTEGER = 1 << 53
 
 
 class Field(NamedTuple):
-    """A value of a message."""
+    """A field of a message."""
 
     name: str
-    unit: str = ""  # of a number that has one
-    about: str = ""  # shown by viewers where there is no unit
-    type: str = "number"  # of JSON
-    required: bool = True  # in every message of its kind
+    unit: str = ""
+    about: str = ""  # shown by viewers in place of a unit
+    type: str = "number"  # in JSON
+    required: bool = True
 
     @property
     def column(self) -> str:
         """The head of its column in a table: name and unit."""
+        if not self.unit:
+            return self.name
         unit = self.unit.replace("/", "_per_").replace("s^-", "per_s").removesuffix("1")
-        return f"{self.name}_{unit}" if unit else self.name
+        return f"{self.name}_{unit}"
 
     @property
     def schema(self) -> dict[str, Any]:
-        """Its JSON Schema: one type, no references, because the simplest viewer needs that."""
+        """Its JSON Schema, with one type and no references, as the simplest viewers require."""
         schema: dict[str, Any] = {"type": self.type}
         if about := self.unit or self.about:
             schema["description"] = about
@@ -57,7 +58,7 @@ class Field(NamedTuple):
                 return value
             case "string", str():
                 return printable(value)
-            case "array", list() if all(isinstance(each, str) for each in value):
+            case "array", list() if all(isinstance(item, str) for item in value):
                 return value
         raise RecordingError(f"{self.name!r} of a message is no {self.type}, or not finite")
 
@@ -71,7 +72,7 @@ def _optional(type: str, *names: str) -> tuple[Field, ...]:
 
 
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
-"""Where a sample or an event belongs."""
+"""The run and the time of a sample or an event."""
 
 READING = (
     Field("theta", "rad"),
@@ -84,13 +85,13 @@ READING = (
     Field("diverged_at", "s", required=False),
     Field("max_invariant_error", about="over every step so far", required=False),
 )
-"""One method in a sample: the attributes of a Reading but `extra`.  `verify` compares them."""
+"""The attributes of a Reading except `extra`."""
 
 EXTRA = {
-    key: tuple(Field(each.name, _ascii(each.unit), each.about) for each in model.variables)
+    key: tuple(Field(own.name, _ascii(own.unit), own.about) for own in model.variables)
     for key, model in MODELS.items()
 }
-"""The variables of each model's own."""
+"""The additional variables of each model."""
 
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
@@ -100,8 +101,8 @@ EVENT = (
     Field("length", "m", required=False),
     Field("gravity", "m/s^2", required=False),
     Field("h", "s", required=False),
-    *(Field(each.name, _ascii(each.unit), required=False) for each in PARAMETERS.values()),
-    *_optional("array", "methods", "sources"),  # texts of a user's own methods
+    *(Field(own.name, _ascii(own.unit), required=False) for own in PARAMETERS.values()),
+    *_optional("array", "methods", "sources"),  # source code of a user's own methods
     *_optional("integer", "numerics"),
     *_optional("string", "sin", "sqrt"),  # fingerprints
     *_optional("boolean", "equal_cost"),
@@ -111,19 +112,21 @@ EVENT = (
     Field("trend", "s^-1", required=False),
     Field("lyapunov", "s^-1", required=False),
 )
-"""An event: its kind, and what that kind needs."""
+"""The kind of an event, and the fields of all kinds."""
 
 NUMBERS = tuple(field.name for field in READING if field.required)
 EXTREMES = ("energy_error_low", "energy_error_high")
-OPTIONAL = tuple(each.name for each in READING if not (each.required or each.name in EXTREMES))
+OPTIONAL = tuple(
+    field.name for field in READING if not field.required and field.name not in EXTREMES
+)
 EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
-VALUES = (*(field.name for field in READING), *EXTRA_NAMES)
-_scalars_of = attrgetter(*(field.name for field in READING))
 
 
-def values_of(reading: Reading) -> tuple[float | None, ...]:
-    """Return the values of a reading in the order of VALUES; None for missing ones."""
-    return *_scalars_of(reading), *map(reading.extra.get, EXTRA_NAMES)
+def values_of(reading: Reading) -> dict[str, float | None]:
+    """Return the values of a reading by name."""
+    values = reading._asdict()
+    del values["extra"]
+    return values | dict(reading.extra)
 
 
 def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
@@ -141,24 +144,31 @@ EVENT_SCHEMA = schema_of("pendu.Event", (*MOMENT, *EVENT))
 
 def sample_schema(model: str) -> dict[str, Any]:
     """Return the schema of the samples of a model."""
-    title = "pendu.Sample" if model == DEFAULT_MODEL else f"pendu.Sample.{model}"
+    title = "pendu.Sample"
+    if model != DEFAULT_MODEL:
+        title += f".{model}"
     return schema_of(title, (*MOMENT, *READING, *EXTRA[model]))
 
 
 def differences(a: Reading, b: Reading) -> Iterator[tuple[str, float | None, float | None]]:
-    """Yield the name and both numbers of each value that does not have the same bits."""
-    ours, theirs = values_of(a), values_of(b)
-    if ours == theirs and 0.0 not in ours:  # 0.0 == -0.0
+    """Yield the name and both numbers of each value whose bits differ."""
+    values_a = values_of(a)
+    values_b = values_of(b)
+    if values_a == values_b and 0.0 not in values_a.values():  # 0.0 == -0.0
         return
-    for name, x, y in zip(VALUES, ours, theirs, strict=True):
+    for name in values_a | values_b:
+        x = values_a.get(name)
+        y = values_b.get(name)
         if repr(x) != repr(y):
             yield name, x, y
 
 
 def without_extremes(sample: Sample) -> Sample:
-    """Return the sample as the first of its run or after a gap: the steps before it are unknown."""
+    """Return the sample as the first of a run or after a gap, where no steps precede it."""
     readings = (
-        each._replace(energy_error_low=each.energy_error, energy_error_high=each.energy_error)
-        for each in sample.readings
+        reading._replace(
+            energy_error_low=reading.energy_error, energy_error_high=reading.energy_error
+        )
+        for reading in sample.readings
     )
     return sample._replace(readings=tuple(readings))

@@ -1,10 +1,11 @@
 """Files that are written whole or not at all.
 
-A file is written under a temporary name beside its target, and gets its name only once it is
-finished and only if the name is still free, or may be replaced.
+A file is written under a temporary name beside its target.  It gets its name when it is finished,
+if the name is still free or may be replaced.
 """
 
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,9 +18,11 @@ def check_target(path: Path, force: bool = False) -> None:
     """Raise DiskError if the name is taken, its folder is missing, or it is "-"."""
     if str(path) == "-":
         raise DiskError("is no name for a file; choose another", path)
-    if os.path.lexists(path) and (not force or path.is_dir()):
-        advice = "" if path.is_dir() else ", or --force to overwrite it"
-        raise NameTakenError(f"already exists; choose another name{advice}", path)
+    why = "already exists; choose another name"
+    if path.is_dir():
+        raise NameTakenError(why, path)
+    if not force and os.path.lexists(path):
+        raise NameTakenError(f"{why}, or --force to overwrite it", path)
     if not path.parent.is_dir():
         raise DiskError(
             f"no folder {printable(str(path.parent))}; choose a folder that exists", path
@@ -27,16 +30,16 @@ def check_target(path: Path, force: bool = False) -> None:
 
 
 def is_stream(path: Path) -> bool:
-    """Return whether this is a device, a pipe or a socket, which is never replaced by a file."""
+    """Return whether this is a device, a pipe or a socket, which no file may replace."""
     return path.exists() and not path.is_file() and not path.is_dir()
 
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """Yield the path to write to; what is there at the end gets the name `path`.
+    """Yield a temporary path to write to, which is renamed to `path` after the block.
 
-    If the block raises, nothing is left of it and an older file stays as it was.  A device or a
-    pipe is written to as it is.  Raises DiskError before the block if the name is taken.
+    If the block raises, the temporary file is deleted and an older file stays as it was.  Devices
+    and pipes are written to directly.  Raises DiskError before the block if the name is taken.
     """
     if is_stream(path):
         yield path
@@ -49,7 +52,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     try:
         umask = os.umask(0)
         os.umask(umask)
-        part.chmod(0o666 & ~umask)  # mkstemp makes it private
+        part.chmod(0o666 & ~umask)  # mkstemp makes files private
         yield part
         publish(part, path, force)
     finally:
@@ -57,22 +60,23 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
 
 def publish(part: Path, path: Path, force: bool = False) -> None:
-    """Give a finished file its name.  Raises NameTakenError if another one has it by now."""
-    try:
-        with writing(path):
-            if force:
-                part.replace(path)
-                return
-            try:
-                os.link(part, path)
-            except FileExistsError:
-                raise
-            except OSError:  # no links on this file system
-                with part.open("rb") as source, path.open("xb") as target:
-                    while block := source.read(1 << 20):
-                        target.write(block)
-            part.unlink()
-    except DiskError as error:
-        if isinstance(error.__cause__, FileExistsError):
+    """Give a finished file its name.  Raises NameTakenError if another file took it meanwhile."""
+    with writing(path):
+        if force:
+            part.replace(path)
+            return
+        try:
+            _link_or_copy(part, path)
+        except FileExistsError as error:
             raise NameTakenError("a file of this name appeared meanwhile", path) from error
+        part.unlink()
+
+
+def _link_or_copy(source: Path, target: Path) -> None:
+    try:
+        os.link(source, target)
+    except FileExistsError:
         raise
+    except OSError:  # the file system has no links
+        with source.open("rb") as old, target.open("xb") as new:
+            shutil.copyfileobj(old, new)

@@ -1,9 +1,9 @@
-"""Format 3: samples and events to messages and back, by name, side by side.
+"""Format 3: samples and events to messages and back.
 
-One topic per method and model, one message per reading: scalars that Foxglove, PlotJuggler and
-pandas plot directly.  The messages of a sample are consecutive, in the order of the run's methods,
-with one clock and one sequence number.  An unknown field is ignored, a missing optional one is
-None; anything else that is not written here raises RecordingError.
+There is a topic for each method of a model, and a message for each reading, of scalars that
+Foxglove, PlotJuggler and pandas plot directly.  The messages of a sample are consecutive, in the
+order of the run's methods, with one clock and one sequence number.  Unknown fields are ignored and
+missing optional ones are None; anything else unexpected raises RecordingError.
 """
 
 import json
@@ -22,21 +22,23 @@ from recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
 FORMAT_VERSION = "3"
 PROFILE = "pendu"  # in the file's header
 EVENTS = "/pendu/events"
-CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a 0
+CLOCK_OFFSET = 1_000_000_000  # ns: log_time at clock 0, as several readers mishandle 0
 
 _EVENT = (*MOMENT, *EVENT)
 _SAMPLE = {model: (*MOMENT, *READING, *extra) for model, extra in EXTRA.items()}
-_NEEDED = {"set_h": "h", "speed": "speed"}
+_REQUIRED = {"set_h": "h", "speed": "speed"}
 
 
 def topics_of(scene: Scene) -> tuple[str, ...]:
     """Return the topics of a run's readings, in the order of its methods."""
-    folder = "/pendu" if scene.model == DEFAULT_MODEL else f"/pendu/{scene.model}"
+    folder = "/pendu"
+    if scene.model != DEFAULT_MODEL:
+        folder += f"/{scene.model}"
     return tuple(f"{folder}/{method.key}" for method in scene.cast)
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
-    """Return one message per method, in order, without extremes equal to the energy error."""
+    """Return a message for each method, in order, without extremes equal to the energy error."""
     messages = []
     for reading in sample.readings:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t, **reading._asdict()}
@@ -49,7 +51,7 @@ def encode_readings(sample: Sample) -> list[bytes]:
 
 
 def decode_reading(data: bytes, model: str = DEFAULT_MODEL) -> tuple[int, int, float, Reading]:
-    """Return (run, step, t, reading) of a message, with the values of its model's own variables."""
+    """Return (run, step, t, reading) of a message."""
     fields = _loads(data, _SAMPLE[model])
     moment = fields.pop("run"), fields.pop("step"), fields.pop("t")
     for name in EXTREMES:
@@ -88,12 +90,14 @@ def decode_event(data: bytes) -> Event:
         if kind not in get_args(EventKind):
             raise RecordingError(f"unknown kind of event {kind!r}")
         if kind == "start":
-            made = Arithmetic(fields["numerics"], fields["sin"], fields["sqrt"])
+            arithmetic = Arithmetic(fields["numerics"], fields["sin"], fields["sqrt"])
             sources = tuple(fields.get("sources", ()))
-            return Event(kind, run, 0, 0.0, _scene(fields), arithmetic=made, sources=sources)
+            scene = _scene(fields)
+            return Event(kind, run, 0, 0.0, scene, arithmetic=arithmetic, sources=sources)
         if kind == "noticed":
             return noticed(run, _milestone(fields))
-        fields[_NEEDED.get(kind, "kind")]  # raises KeyError
+        if kind in _REQUIRED and _REQUIRED[kind] not in fields:
+            raise KeyError(_REQUIRED[kind])
         names = ("h", "equal_cost", "speed", "text")
         return Event(kind, run, step, t, **{name: fields[name] for name in names if name in fields})
     except KeyError as error:
@@ -103,8 +107,8 @@ def decode_event(data: bytes) -> Event:
 
 
 def _dumps(fields: dict[str, Any]) -> bytes:
-    known = {name: value for name, value in fields.items() if value is not None}
-    return json.dumps(known, separators=(",", ":"), allow_nan=False).encode()
+    present = {name: value for name, value in fields.items() if value is not None}
+    return json.dumps(present, separators=(",", ":"), allow_nan=False).encode()
 
 
 def _loads(data: bytes, fields: Sequence[Field]) -> dict[str, Any]:
@@ -143,8 +147,8 @@ def _milestone(fields: dict[str, Any]) -> Milestone:
     verdict = fields["verdict"]
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
-    given = {name: fields[name] for name in Milestone._fields if name in fields}
-    given |= {"kind": kind, "method": method_named(fields["method"])}
+    values = {name: fields[name] for name in Milestone._fields if name in fields}
+    values |= {"kind": kind, "method": method_named(fields["method"])}
     if kind == "errors cross":
-        given["other"] = method_named(fields["other"])
-    return Milestone(**given)
+        values["other"] = method_named(fields["other"])
+    return Milestone(**values)

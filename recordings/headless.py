@@ -1,4 +1,4 @@
-"""Headless runs.  Their clock is the simulated time, so the same run gives the same bytes."""
+"""Headless runs, whose clock is the simulated time: the same run gives the same bytes."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
 
 
 def steps_for(scene: Scene, time: float) -> int:
-    """The number of steps in this much simulated time [s]."""
+    """Return the number of steps in a simulated time [s]."""
     return max(0, round(time / scene.h))
 
 
@@ -24,15 +24,14 @@ def simulate(
     loops: LoopsOf = PlainLoops,
     lockstep: Lockstep | None = None,
 ) -> Iterator[Sample]:
-    """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
+    """Run a scene for `time` [s]; record and yield its samples, the last of which is the result.
 
-    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and
-    the last step.  A caller that reads milestones or verdicts passes the `lockstep` of the scene,
-    and one that records closes the recorder.
+    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps, and include the first
+    and the last step.  Pass a `lockstep` to read its milestones or verdicts; close the recorder.
     """
     lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
     last = steps_for(scene, time)
-    noticed_by_now = 0
+    recorded = 0  # milestones
     every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
     if recorder:
         recorder.event(Event("start", 1, 0, 0.0, scene=scene), 0.0)
@@ -40,9 +39,9 @@ def simulate(
         sample = lockstep.sample()
         if recorder:
             recorder.sample(sample, sample.t)
-            for milestone in lockstep.milestones[noticed_by_now:]:
+            for milestone in lockstep.milestones[recorded:]:
                 recorder.event(noticed(1, milestone), sample.t)
-            noticed_by_now = len(lockstep.milestones)
+            recorded = len(lockstep.milestones)
         yield sample
         if lockstep.step >= last:
             return

@@ -1,14 +1,13 @@
 """Library: the folder of recordings, their names and locks.
 
-A writer locks a recording exclusively, readers share it.  A lock ends with its process, so a
-leftover differs from a recording in progress.  Only POSIX has such locks.
+A writer locks a recording exclusively; readers share it.  A lock ends with its process, which
+tells leftovers from recordings in progress.  Only POSIX has such locks.
 """
 
 import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from itertools import chain, count
 from os.path import lexists
 from pathlib import Path
 from typing import IO, Any, BinaryIO, NamedTuple
@@ -19,8 +18,8 @@ from recordings.errors import DiskError, RecordingError
 from recordings.files import is_stream
 
 SUFFIX = ".mcap"
-PART = ".part"  # appended to the name of a recording that is not finished
-MARKS = ".marks.json"  # appended to the name of a recording: what was marked while it was replayed
+PART = ".part"  # appended to the name of an unfinished recording
+MARKS = ".marks.json"  # appended to a recording's name, for marks made in its replay
 GOLDEN = Path(__file__).parent / "golden"
 
 
@@ -38,15 +37,17 @@ def part_of(path: Path) -> Path:
 
 
 def free_path(path: Path) -> Path:
-    """Return `path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
-    numbered = (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2))
-    return next(
-        free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free))
-    )
+    """Return `path`, or the first of NAME-2, NAME-3, … that is free, also with PART appended."""
+    candidate = path
+    number = 1
+    while lexists(candidate) or lexists(part_of(candidate)):
+        number += 1
+        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
+    return candidate
 
 
 def folder() -> Path:
-    """Return $PENDU_RECORDINGS, or recordings in the user's data folder.  It need not exist."""
+    """Return $PENDU_RECORDINGS, or else a folder in the user's data, which need not exist."""
     chosen = os.environ.get("PENDU_RECORDINGS")
     if not chosen:
         return platformdirs.user_data_path("pendu-tui", False) / "recordings"
@@ -56,9 +57,9 @@ def folder() -> Path:
         raise DiskError("PENDU_RECORDINGS names no folder", chosen) from error
 
 
-def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:
-    """Return a free name, by date and time."""
-    name = time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX
+def new_path(where: Path | None = None) -> Path:
+    """Return a free name made of date and time."""
+    name = time.strftime("%Y-%m-%dT%H-%M-%S") + SUFFIX
     return free_path((where or folder()) / name)
 
 
@@ -78,7 +79,7 @@ def golden_names() -> list[str]:
 
 
 def leftovers(where: Path | None = None, being_made: bool = False) -> list[Path]:
-    """Return the unfinished recordings that no lab is writing any more, or those being made."""
+    """Return the unfinished recordings that no lab is writing, or those that are being made."""
     unfinished = _files(where or folder(), SUFFIX + PART)
     return [path for path in unfinished if in_use(path) == being_made]
 
@@ -91,14 +92,16 @@ def _files(where: Path, suffix: str) -> list[Path]:
 
 
 def hold(file: IO[Any], shared: bool = False) -> None:
-    """Lock an open file until it is closed, where the file system has locks."""
-    # a writer waits for probes; readers go on without the lock
+    """Lock an open file until it is closed, where the file system has locks.
+
+    An exclusive lock waits for the probes of `in_use`; without a shared one a reader goes on.
+    """
     with suppress(OSError):
         _lock(file, shared, wait=not shared)
 
 
 def in_use(path: Path) -> bool:
-    """Return whether a recorder or a reader has this file open.  In doubt, yes."""
+    """Return whether a recorder or a reader has this file open; if in doubt, True."""
     try:
         with path.open("rb") as file:
             _lock(file, shared=False, wait=False)
@@ -109,7 +112,7 @@ def in_use(path: Path) -> bool:
 
 @contextmanager
 def alone_with(path: Path) -> Iterator[None]:
-    """Lock the file; raises FileNotFoundError if its former user has moved it meanwhile."""
+    """Lock the file.  Raises FileNotFoundError if whoever held the lock before moved the file."""
     with path.open("rb") as file:
         hold(file)
         path.stat()
@@ -117,7 +120,7 @@ def alone_with(path: Path) -> Iterator[None]:
 
 
 def open_file(path: Path) -> BinaryIO:
-    """Open a file to read, locked as in use until it is closed."""
+    """Open a file to read, locked until it is closed."""
     if is_stream(path):
         raise RecordingError("this is a device or a pipe; save it as a file")
     try:
@@ -133,5 +136,7 @@ def _lock(file: IO[Any], shared: bool, wait: bool) -> None:
         import fcntl
     except ImportError:
         return
-    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
-    fcntl.flock(file, kind if wait else kind | fcntl.LOCK_NB)
+    operation = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
+    if not wait:
+        operation |= fcntl.LOCK_NB
+    fcntl.flock(file, operation)

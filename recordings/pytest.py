@@ -1,7 +1,7 @@
-"""A pytest plugin for tests of one's own: a gate on energies, and recordings as tests.
+"""A pytest plugin: a check of energies, and recordings as tests.
 
-Name it, with `-p recordings.pytest` in addopts or with `pytest_plugins = ["recordings.pytest"]` in
-the root conftest.py: installed, but not named, it changes nobody's tests.
+Load it with `-p recordings.pytest` in addopts, or with `pytest_plugins = ["recordings.pytest"]` in
+the root conftest.py.  It is not loaded by being installed.
 """
 
 from collections.abc import Callable
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class EnergyDrift:
-    """Fails a test whose energies drift."""
+    """Checks the energies of one test."""
 
     def __init__(self, properties: list[tuple[str, object]]) -> None:
         self._properties = properties
@@ -43,24 +43,23 @@ class EnergyDrift:
         max_drift: float | None = None,
         scale: float | str = "std",
     ) -> "Judged":
-        """Fail unless `engine.judge` finds this verdict, and a trend of at most `max_drift`.
+        """Fail unless `engine.judge` returns this verdict and a trend of at most `max_drift`.
 
         The trend is that of the energies over the scale, per unit of time.
         """
         __tracebackhide__ = True
-        refusal = "" if verdict in VERDICTS else f"there is no verdict {verdict!r}"
+        if verdict not in VERDICTS:
+            pytest.fail(f"there is no verdict {verdict!r}")
         try:
-            found = judge(times, energies, scale)
+            judged = judge(times, energies, scale)
         except ValueError as error:
-            refusal = str(error)
-        if refusal:  # outside: the report has no other traceback
-            pytest.fail(refusal)
-        self._properties += [("verdict", found.verdict), ("trend", found.trend)]
-        if found.verdict != verdict:
-            pytest.fail(f"the verdict is not {verdict}: {found}")
-        if max_drift is not None and (found.trend is None or abs(found.trend) > max_drift):
-            pytest.fail(f"the energies drift by more than {max_drift:g}: {found}")
-        return found
+            raise pytest.fail.Exception(str(error)) from None
+        self._properties += [("verdict", judged.verdict), ("trend", judged.trend)]
+        if judged.verdict != verdict:
+            pytest.fail(f"the verdict is not {verdict}: {judged}")
+        if max_drift is not None and (judged.trend is None or abs(judged.trend) > max_drift):
+            pytest.fail(f"the energies drift by more than {max_drift:g}: {judged}")
+        return judged
 
 
 @pytest.fixture
@@ -70,10 +69,9 @@ def energy_drift(request: pytest.FixtureRequest) -> EnergyDrift:
 
 
 def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
-    """Return a test of each recording below a folder, as `test_... = verify_recordings(FOLDER)`.
+    """Return a test of each recording below a folder: `test_... = verify_recordings(FOLDER)`.
 
-    It fails where a recording is damaged, where simulating it again gives another bit, and where
-    there is none.
+    It fails if a recording is damaged or is not reproduced to the bit, and if there is none.
     """
     names = sorted(path.relative_to(folder).as_posix() for path in Path(folder).rglob("*.mcap"))
 
@@ -90,12 +88,13 @@ def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
 def _flaw(path: Path) -> str:
     """Return what is wrong with a recording; "" if nothing is."""
     try:
-        found = verify(path)
+        verification = verify(path)
     except RecordingError as error:
         return str(error)
-    if first := found.first_difference:
-        where = (
-            f"run {first.run}, step {first.step}, t = {first.t:g} s, {first.method} {first.field}"
-        )
-        return f"{path}: {where} is {first.computed!r}, recorded {first.recorded!r}"
-    return "" if found.complete and found.identical else f"{path}: {found.reason}"
+    if first := verification.first_difference:
+        where = f"run {first.run}, step {first.step}, t = {first.t:g} s"
+        numbers = f"{first.computed!r}, recorded {first.recorded!r}"
+        return f"{path}: {where}, {first.method} {first.field} is {numbers}"
+    if verification.reason:
+        return f"{path}: {verification.reason}"
+    return ""

@@ -1,8 +1,8 @@
 """Reader: the intact chunks of an MCAP file, past any damage.
 
-mcap takes chunks apart.  A chunk is intact or lost: its checksum covers all that is in it.  A
-finished file ends with a summary of where its chunks are.  Without one, or if the file's checksum
-is wrong, a search finds the intact chunks.  All work stays in proportion to the file's bytes.
+A chunk is intact or lost, as its checksum covers all that is in it; mcap unpacks it.  A finished
+file ends with a summary of where its chunks are.  Without a summary, or if the file's checksum is
+wrong, the intact chunks are searched for.  All work is proportional to the file's size.
 """
 
 import struct
@@ -22,57 +22,53 @@ from recordings.errors import RecordingError
 from recordings.format import EVENTS, FORMAT_VERSION
 
 MAGIC = b"\x89MCAP0\r\n"
-MAX_RECORD = 1 << 22  # bytes of a chunk and its contents; a recorder's have 200 kB
-MAX_EXPANSION = 128  # times its compressed size with its head; a recorder's reach 69
-MAX_SUMMARY = 1 << 26  # bytes; four days
+MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
+MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
+MAX_SUMMARY = 1 << 26  # bytes; enough for four days
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
-_INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map behind
+_INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map after it
 _INDEX_MAP = struct.Struct("<HQ")  # channel, offset of its index
 _ZSTD = b"\x04\x00\x00\x00zstd"
 _BEFORE_ZSTD = _RECORD.size + 28  # bytes of a chunk's record
 _BLOCK = 1 << 12
 
 ShowProgress = Callable[[int, int], None]
-"""Called with how much is done and how much there is."""
+"""Called with the bytes done and those in all."""
 
 
 class Place(NamedTuple):
-    """Where a chunk is in a file, and on the clock."""
+    """The place of a chunk in a file and in time."""
 
     offset: int
     start: int  # ns, log_time of its first message
-    end: int  # ns, of its last
+    end: int  # ns, log_time of its last message
     has_events: bool
     is_after_gap: bool = False  # entries before it are lost
 
 
 @dataclass(slots=True)
 class Contents:
-    """The intact chunks of a file.
+    """The intact chunks of a file."""
 
-    `damaged`: something was changed or lost, not only not finished; `reason`: the first thing
-    wrong, a clause.
-    """
-
-    topics: dict[int, str] = field(default_factory=dict)  # of channels
+    topics: dict[int, str] = field(default_factory=dict)  # by channel
     places: list[Place] = field(default_factory=list)
-    reason: str | None = None
-    damaged: bool = False
-    entries_lost: int = 0  # as far as the numbers of the others show
+    reason: str | None = None  # the first thing that is wrong, a clause
+    damaged: bool = False  # something was changed or lost; an unfinished file is not damaged
+    entries_lost: int = 0  # as far as sequence numbers show
 
     def damage(self, reason: str) -> None:
-        """Note that something is wrong."""
         self.damaged = True
         self.reason = self.reason or reason
 
     def add(self, channel: Channel) -> None:
         """Add a channel.  Raises RecordingError if the file is of another format."""
-        found = channel.metadata.get("format")
-        if channel.topic == EVENTS and found != FORMAT_VERSION:
-            maker = "0.1" if found in ("1", "2") else "another version"
-            why = f"it was made by {maker}; this version reads format {FORMAT_VERSION}"
-            raise RecordingError(why)
+        version = channel.metadata.get("format")
+        if channel.topic == EVENTS and version != FORMAT_VERSION:
+            maker = "0.1" if version in ("1", "2") else "another version"
+            raise RecordingError(
+                f"it was made by {maker}; this version reads format {FORMAT_VERSION}"
+            )
         self.topics[channel.id] = channel.topic
 
 
@@ -81,7 +77,7 @@ def read_contents(
 ) -> Contents:
     """Find the chunks of a file by its summary, or by a search if that is missing or wrong.
 
-    With `check`, the checksum of the whole file is compared.
+    With `check`, the checksum of the whole file is verified.
     """
     size = stream.seek(0, SEEK_END)
     if not size:
@@ -100,8 +96,9 @@ def read_contents(
 
 
 def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | None:
-    """Return what the summary of a finished file lists, the size of the data before it, and their
-    checksum; None without a summary, or if it is damaged.
+    """Return the contents that the summary lists, the size of the data before it and its checksum.
+
+    Return None if there is no summary, or if it is damaged.
     """
     stream.seek(max(0, size - _FOOTER.size))
     try:
@@ -116,12 +113,12 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
         return _read_index(data[4 : -_FOOTER.size]), start - 4 - _RECORD.size, data_crc
     except RecordingError:
         raise
-    except Exception:  # mcap and struct raise eight kinds on bytes that nobody wrote
+    except Exception:  # mcap and struct raise eight kinds of exceptions on arbitrary bytes
         return None
 
 
 def _read_index(data: bytes) -> Contents:
-    """Unpack a summary; chunk indexes here and not by mcap, because a day has 108 000 of them."""
+    """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
     at = 0
     while at < len(data):
@@ -140,7 +137,7 @@ def _read_index(data: bytes) -> Contents:
 
 
 def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Message]]:
-    """Return the channels declared in a chunk, and its messages; read up to its end.
+    """Return the channels declared in a chunk, and its messages; leave the stream at its end.
 
     Raises RecordingError if there is no intact chunk.
     """
@@ -156,7 +153,7 @@ def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Messa
             and chunk.uncompressed_crc  # 0 would not be checked
             and _RECORD.size + length == _BEFORE_ZSTD + len(_ZSTD) + 8 + len(chunk.data)
             and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
-            and zstandard.frame_content_size(chunk.data) == size  # the one that is obeyed
+            and zstandard.frame_content_size(chunk.data) == size  # what zstandard allocates
         )
         if not is_possible:
             raise ValueError
@@ -174,9 +171,9 @@ def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Messa
 def _search(
     stream: BinaryIO, size: int, topics: dict[int, str], progress: ShowProgress | None
 ) -> Contents:
-    """Find the intact chunks of a file, and by their numbers what is lost between them."""
+    """Find the intact chunks of a file, and by their sequence numbers what is lost between them."""
     contents = Contents(topics)
-    sequence = 0  # the number of the next entry
+    sequence = 0  # of the next entry
     for offset, channels, messages in _intact_chunks(stream):
         for channel in channels:
             contents.add(channel)
@@ -186,7 +183,8 @@ def _search(
         if missing:
             contents.entries_lost += missing
             contents.damage(f"{missing} entries are lost")
-        has_events = any(contents.topics.get(each.channel_id) == EVENTS for each in messages)
+        channel_ids = {message.channel_id for message in messages}
+        has_events = any(contents.topics.get(number) == EVENTS for number in channel_ids)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)
         if progress:
@@ -194,8 +192,10 @@ def _search(
     stream.seek(0)
     start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:
-        is_mcap = bool(contents.places)
-        contents.damage("its first bytes are damaged" if is_mcap else "this is not an MCAP file")
+        reason = "this is not an MCAP file"
+        if contents.places:
+            reason = "its first bytes are damaged"
+        contents.damage(reason)
     contents.reason = contents.reason or "its end is missing or damaged"
     return contents
 

@@ -1,6 +1,6 @@
-"""Recorder: writes samples and events to a file, and loses at most the last second if it is killed.
+"""Recorder: samples and events to a file, of which a kill loses at most the last second.
 
-It writes to NAME.mcap.part, which becomes NAME.mcap when it is finished.
+It writes NAME.mcap.part, which becomes NAME.mcap when it is finished.
 """
 
 import json
@@ -33,14 +33,12 @@ from recordings.format import (
 )
 from recordings.library import free_path, hold, part_of
 
-FLUSH_EVERY = 0.7  # s of the recording clock; with a slow frame's delay kill -9 loses less than 1 s
-MAX_CHUNK = 1 << 17  # bytes of messages; the only limit in headless runs
-
-WallClock = Callable[[], int]  # ns since 1970
+FLUSH_EVERY = 0.7  # s of the recording clock; so kill -9 loses less than 1 s, slow frames included
+MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush in headless runs
 
 
 class _ChunkIndices:
-    """The file's index as bytes; a list of mcap's objects would grow by 4 MB an hour."""
+    """The chunk index as bytes; mcap's list of objects grows by 4 MB an hour."""
 
     def __init__(self) -> None:
         self._records = RecordBuilder()
@@ -59,31 +57,31 @@ class Recorder:
     """Writes one recording, which begins with a start.
 
     Clocks are in seconds since the recording began, pauses excluded.  A headless recording has no
-    `wall` clock, so that the same run gives the same bytes.  A failing disk raises DiskError; after
-    that, only `abandon` is of use.
+    `wall` clock, so that the same run gives the same bytes.  Raises DiskError if the disk fails;
+    after that, call only `abandon`.
     """
 
     def __init__(
         self,
         path: Path,
-        wall: WallClock | None = time.time_ns,
+        wall: Callable[[], int] | None = time.time_ns,
         overwrite: bool = False,
     ) -> None:
         self.path = path
         self.part = part_of(path)
-        self.seconds = 0.0  # length so far
-        self.bytes = 0  # size of the file so far
+        self.seconds = 0.0  # recorded so far
+        self.bytes = 0  # written so far
         self.samples = 0
         self._wall = wall
         self._overwrite = overwrite
-        self._last: Sample | None = None  # of the run
-        self._channels: dict[str, int] = {}
-        self._schemas: dict[str, int] = {}
+        self._last: Sample | None = None  # of this run; None: none, or a gap
+        self._channels: dict[str, int] = {}  # numbers by topic
+        self._schemas: dict[str, int] = {}  # numbers by title
         self._topics: tuple[str, ...] = ()  # of the run's methods
         self._entries = 0
         self._log_time = CLOCK_OFFSET
         self._paused = False
-        self._flushed_at = 0.0  # s, on the recording clock
+        self._flushed_at = 0.0  # s of the recording clock
         self._unflushed = 0  # bytes
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
@@ -102,9 +100,9 @@ class Recorder:
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def event(self, event: Event, clock: float) -> None:
-        """Write an event; a pause, and whatever is done while paused, is on disk at once.
+        """Write an event, during a pause at once to disk.
 
-        A recording that holds all the events that one may is finished, and raises DiskError.
+        Finishes the recording and raises DiskError if it has as many events as may be read.
         """
         data = encode_event(event)
         if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
@@ -115,19 +113,21 @@ class Recorder:
         if event.scene is not None:
             self._begin(event.scene)
         self._add([(EVENTS, data)], clock)
-        self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
+        if event.kind in ("pause", "resume"):
+            self._paused = event.kind == "pause"
         self._flush_if_due(urgent=self._paused)
 
     def sample(self, sample: Sample, clock: float) -> None:
         """Write a sample, unless it was the last one written.
 
-        Extremes are those since the previous sample, so a run's first has none.
+        Extremes are those since the previous sample, so the first sample of a run has none.
         """
         last = self._last
-        if last is not None and last.step == sample.step:
+        if last is None:
+            sample = without_extremes(sample)
+        elif last.step == sample.step:
             return
-        messages = encode_readings(sample if last else without_extremes(sample))
-        self._add(list(zip(self._topics, messages, strict=True)), clock)
+        self._add(list(zip(self._topics, encode_readings(sample), strict=True)), clock)
         self.samples += 1
         self._last = sample
         self._flush_if_due(urgent=self._paused or last is None)
@@ -137,7 +137,7 @@ class Recorder:
         self._last = None
 
     def flush(self) -> None:
-        """Hand everything so far to the system, where it survives the death of this process."""
+        """Hand everything to the system, where it survives this process."""
         with writing(self.path):
             self._writer.flush()  # type: ignore[no-untyped-call]
             if not self._is_ours():
@@ -147,11 +147,10 @@ class Recorder:
         self._unflushed = 0
 
     def close(self) -> None:
-        """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no
-        file.
+        """Finish the recording with a stop, the summary and its final name.
 
-        If the name was taken meanwhile, the recording gets the next free one, `path`, and
-        NameTakenError is raised.
+        Without a start, no file is left.  If the name was taken meanwhile, `path` becomes the next
+        free one, and NameTakenError is raised.
         """
         if self._file.closed:
             return
@@ -171,7 +170,7 @@ class Recorder:
             os.fsync(self._file.fileno())
             self.bytes = self._file.tell()
         try:
-            publish(self.part, self.path, self._overwrite)  # still locked, until the name is right
+            publish(self.part, self.path, self._overwrite)  # while the lock is held
         except NameTakenError as error:
             wanted = self.path
             self.path = free_path(wanted)
@@ -180,7 +179,7 @@ class Recorder:
             raise NameTakenError(why, wanted) from error
 
     def abandon(self, delete: bool = False) -> None:
-        """Leave what was flushed in NAME.mcap.part; an empty file is deleted."""
+        """Leave what was flushed in NAME.mcap.part, or delete the file if that is nothing."""
         if self._file.closed:
             return
         with suppress(OSError):
@@ -203,20 +202,19 @@ class Recorder:
 
     def _begin(self, scene: Scene) -> None:
         """Register the channels of a run."""
-        self._register(EVENTS, EVENT_SCHEMA)
+        self._register(EVENTS, EVENT_SCHEMA, format=FORMAT_VERSION)
         self._topics = topics_of(scene)
-        for name in self._topics:
-            self._register(name, sample_schema(scene.model))
+        for topic in self._topics:
+            self._register(topic, sample_schema(scene.model))
 
-    def _register(self, name: str, schema: dict[str, Any]) -> None:
+    def _register(self, topic: str, schema: dict[str, Any], **metadata: str) -> None:
         title = schema["title"]
         if title not in self._schemas:
             data = json.dumps(schema, separators=(",", ":")).encode()
             self._schemas[title] = self._writer.register_schema(title, "jsonschema", data)
-        if name not in self._channels:
-            facts = {"format": FORMAT_VERSION} if name == EVENTS else {}
-            number = self._writer.register_channel(name, "json", self._schemas[title], facts)
-            self._channels[name] = number
+        if topic not in self._channels:
+            number = self._writer.register_channel(topic, "json", self._schemas[title], metadata)
+            self._channels[topic] = number
 
     def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
         """Write the messages of one entry."""
@@ -225,25 +223,22 @@ class Recorder:
         publish_time = self._log_time if self._wall is None else self._wall()
         number = self._entries % (1 << 32)
         with writing(self.path):
-            for name, data in messages:
-                channel = self._channels[name]
+            for topic, data in messages:
+                channel = self._channels[topic]
                 self._writer.add_message(channel, self._log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
 
-    def _flush_if_due(self, urgent: bool = False) -> None:
+    def _flush_if_due(self, urgent: bool) -> None:
         is_late = self._wall is not None and self.seconds >= self._flushed_at + FLUSH_EVERY
         if urgent or is_late or self._unflushed > MAX_CHUNK:
             self.flush()
 
 
 class LiveRecorder(Recorder):
-    """Records the lab, which goes on if its disk fails: raises nothing once it is there.
+    """A recorder that ends if the disk fails, so that the lab can go on; only `__init__` raises."""
 
-    `failed` is a sentence on why the recording ended before the lab did, or None.
-    """
-
-    failed: str | None = None
+    failed: str | None = None  # why the recording ended before the lab did, a sentence
 
     def event(self, event: Event, clock: float) -> None:
         self._try(lambda: super(LiveRecorder, self).event(event, clock))
@@ -259,7 +254,7 @@ class LiveRecorder(Recorder):
             try:
                 write()
             except NameTakenError:
-                pass  # at the end: it has another name then
+                pass  # `close` has found another name
             except DiskError as error:
                 self.failed = str(error)
                 self.abandon()

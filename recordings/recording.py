@@ -1,7 +1,4 @@
-"""Recording: any moment of a file, without reading the rest.
-
-An unfinished or damaged file opens with what is intact in it.
-"""
+"""Recording: random access to a file, of which as much is read as is intact."""
 
 import sys
 from bisect import bisect_left, bisect_right
@@ -23,16 +20,16 @@ from engine.run.stepping import Stepping
 from engine.scenes import Scene, SceneError
 from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError, named
-from recordings.events import MAX_EVENTS, NOT_DONE, Entry, Event
+from recordings.events import MAX_EVENTS, NOT_INPUTS, Entry, Event
 from recordings.format import CLOCK_OFFSET, EVENTS, decode_event, decode_reading, topics_of
 from recordings.library import open_file
 from recordings.reader import Contents, ShowProgress, read_chunk, read_contents
 
-CHUNKS_KEPT = 3  # decoded; playing meets the same one thirty times, stepping about an edge two
+CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two
 
 
 class SamplePlace(NamedTuple):
-    """Where in a file a sample is.  Samples may share a clock: single steps while paused."""
+    """The place of a sample in a file.  Single steps in a pause share a clock."""
 
     chunk: int
     entry: int
@@ -48,26 +45,26 @@ class Run:
     begin: float  # s of the recording clock
     end: float  # s, at its last sample
     steps: int = 0  # at its last sample
-    t: float = 0.0  # s simulated, at its last sample
+    t: float = 0.0  # s, simulated, at its last sample
     events: list[tuple[float, Event]] = field(default_factory=list)  # each with its clock [s]
 
     @property
     def inputs(self) -> int:
-        """How many things somebody did in it."""
-        return sum(event.kind not in NOT_DONE for _, event in self.events)
+        """The number of actions of a user."""
+        return sum(event.kind not in NOT_INPUTS for _, event in self.events)
 
     @property
     def milestones(self) -> list[Milestone]:
-        """What the lab noticed, by step."""
-        found = (event.milestone for _, event in self.events if event.milestone)
-        return sorted(found, key=attrgetter("step"))
+        """The milestones, by step."""
+        milestones = (event.milestone for _, event in self.events if event.milestone)
+        return sorted(milestones, key=attrgetter("step"))
 
 
 class Recording:
     """A recording that is open for reading.
 
-    `damaged`: something was changed or lost; `reason`: what is wrong, a clause, or None.  Unless a
-    file is checked, damage may show only while it plays.  Clocks are in s.
+    `damaged`: something was changed or lost; `reason`: what is wrong, a clause, or None.  Unless
+    the file is checked, damage may be found only while it plays.  Clocks are in s.
     """
 
     def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
@@ -77,13 +74,13 @@ class Recording:
         self.reason = contents.reason
         self.entries_lost = contents.entries_lost
         self.events: list[tuple[float, Event]] = []  # as recorded, each with its clock [s]
-        self.lost_runs: set[int] = set()  # of which something was read, but not the start
+        self.lost_runs: set[int] = set()  # runs with entries, but without a start
         self._runs: dict[int, Run] = {}
         self._stream = stream
         self._places = contents.places
         self._topics = contents.topics
-        self._models: dict[str, str] = {}  # of the runs' topics
-        self._others = 0  # entries that are no samples, in the chunks with events
+        self._models: dict[str, str] = {}  # by topic
+        self._others = 0  # entries that are no samples, in chunks with events
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._find_runs()
         self.runs = list(self._runs.values())
@@ -91,9 +88,9 @@ class Recording:
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
-        """Open a recording; with `check`, check every byte of it.
+        """Open a recording; with `check`, verify the checksum of every byte.
 
-        Raises RecordingError, a sentence, if it is not one of this format or has no run in it.
+        Raises RecordingError if it has another format or no run.
         """
         with named(path):
             stream = open_file(path)
@@ -114,7 +111,7 @@ class Recording:
 
     @property
     def complete(self) -> bool:
-        """Whether it was finished, and nothing is wrong."""
+        """Whether it was finished, and nothing is damaged."""
         return self.reason is None
 
     @property
@@ -128,10 +125,10 @@ class Recording:
 
     def at(self, clock: float) -> SamplePlace | None:
         """Return the last sample at or before that time, or else the first, if any."""
-        chunk = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start")) - 1
-        entries = self._decode(chunk) if chunk >= 0 else []
-        later = bisect_right(entries, round(clock, 9), key=attrgetter("clock"))
-        return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
+        later = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start"))
+        chunk = max(0, later - 1)
+        entry = bisect_right(self._decode(chunk), round(clock, 9), key=attrgetter("clock"))
+        return self.previous(SamplePlace(chunk, entry)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
         return self._decode(place.chunk)[place.entry]
@@ -171,7 +168,7 @@ class Recording:
     def samples_between(
         self, start: float = 0.0, end: float = inf
     ) -> Iterator[tuple[float, Sample]]:
-        """Yield the samples of that time, each with its clock [s]."""
+        """Yield the samples from `start` to `end` [s], each with its clock."""
         for clock, value in self.entries(start, end):
             if isinstance(value, Sample):
                 yield clock, value
@@ -180,32 +177,36 @@ class Recording:
         return self._runs.get(number)
 
     def methods_of(self, number: int) -> tuple[str, ...]:
-        run = self.run_of(number)
-        return tuple(method.key for method in run.scene.cast) if run else ()
+        return tuple(method.key for method in self._runs[number].scene.cast)
 
     def _find_runs(self) -> None:
         """Read all events, and the last sample of each run."""
-        starts: list[int] = []  # chunks
-        for chunk in (index for index, place in enumerate(self._places) if place.has_events):
+        chunks_to_read: list[int] = []  # with a start, and the last
+        for chunk, place in enumerate(self._places):
+            if not place.has_events:
+                continue
             for clock, event in self._entries(chunk, only_events=True):
                 if isinstance(event, Event):
                     self.events.append((clock, event))
                     self._runs[event.run].events.append((clock, event))
-                    starts += [chunk] if event.scene else []
+                    if event.kind == "start":
+                        chunks_to_read.append(chunk)
             if self._others > MAX_EVENTS:
                 raise RecordingError(f"it has more than {MAX_EVENTS} events")
         if not self._runs:
             raise RecordingError(self.reason or "it has no runs")
-        for chunk in dict.fromkeys([*starts, len(self._places) - 1]):
-            before = self.previous(SamplePlace(chunk, 0))
-            last = [self.sample(before)] if before else []
-            for clock, sample in last + self._decode(chunk):
+        chunks_to_read.append(len(self._places) - 1)
+        for chunk in dict.fromkeys(chunks_to_read):
+            entries = self._decode(chunk)
+            if last_before := self.previous(SamplePlace(chunk, 0)):
+                entries = [self.sample(last_before), *entries]
+            for clock, sample in entries:
                 if isinstance(sample, Sample):
                     run = self._runs[sample.run]
                     run.end, run.steps, run.t = clock, sample.step, sample.t
 
     def _entries(self, chunk: int, only_events: bool = False) -> list[Entry]:
-        """Return a chunk's entries; a gap before those after one, or instead of unreadable ones."""
+        """Return a chunk's entries, with a gap where those before it, or all of them, are lost."""
         place = self._places[chunk]
         gap = [Entry(_clock(place.start), None)]
         try:
@@ -213,7 +214,9 @@ class Recording:
             if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
                 raise RecordingError("a chunk differs from its entry in the summary")
             entries = list(self._decoded(messages, only_events))
-            return gap + entries if place.is_after_gap else entries
+            if place.is_after_gap:
+                return gap + entries
+            return entries
         except (RecordingError, OSError) as error:
             self.damaged = True
             self.reason = self.reason or str(error)
@@ -222,7 +225,7 @@ class Recording:
     def _decoded(self, messages: list[Message], only_events: bool) -> Iterator[Entry]:
         """Yield the entries of a chunk, without those of runs whose start is lost.
 
-        Messages of unknown topics are skipped.  Raises RecordingError for anything impossible.
+        Messages of unknown topics are skipped.  Raises RecordingError for impossible ones.
         """
         for _, group in groupby(messages, attrgetter("sequence")):
             parts = list(group)
@@ -244,7 +247,7 @@ class Recording:
                 self.lost_runs.add(value.run)
 
     def _event(self, data: bytes, clock: float) -> Event:
-        """Return the event of a message; a start that comes first begins its run."""
+        """Return the event of a message; the first start of a run adds the run."""
         event = decode_event(data)
         run = self._runs.get(event.run)
         if event.scene is not None and event.arithmetic is not None and run is None:

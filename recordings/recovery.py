@@ -1,6 +1,6 @@
-"""Recover: write what is intact of a damaged or unfinished recording as a whole one.
+"""Recover: save the intact chunks of a damaged or unfinished recording as a complete one.
 
-Chunks are kept or dropped as they are; no number is repaired, guessed or changed.
+No number is repaired, guessed or changed.
 """
 
 from pathlib import Path
@@ -16,11 +16,11 @@ from recordings.recording import Recording
 def recover(
     path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False
 ) -> dict[str, Any]:
-    """Write what is intact of `path` to `out`, which appears only when it is whole.
+    """Write what is intact of `path` to `out`, which appears only when it is complete.
 
-    Returns what was kept, lost and wrong: `damaged`, if more than that it was not finished;
-    `entries_lost`, as far as the numbers of the others show; `runs_lost`, whose start was lost.
-    Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
+    Returns the fields of the report.  `damaged` is False if the recording was only unfinished;
+    `runs_lost` counts runs whose start is lost.  Raises RecordingError if nothing can be saved,
+    DiskError if `out` cannot be written.
     """
     with Recording.open(path, check=True, progress=progress) as recording:
         recorder = Recorder(out, None, overwrite)

@@ -1,5 +1,6 @@
-"""Verify: simulate a recording's runs again from their events, and compare every sample bit for
-bit; where this machine's sin differs, within TOLERANCE, beyond which chaos carries any difference.
+"""Verify: simulate a recording's runs again from their events, and compare every sample.
+
+Samples must agree in every bit, or within TOLERANCE where this machine's sin differs.
 """
 
 import math
@@ -24,9 +25,9 @@ Only = Collection[str] | None
 """Keys of the methods to compare; None: all."""
 
 TOLERANCE = 1e-6  # relative, above 1; another sin moves regular swings by 1e-8 in 1500 steps
-STEPS_AT_ONCE = 50_000  # a fifth of a second, after which an interrupt is heard
-MAX_STEPS = 1_000_000  # simulated again of a file, about three seconds, or
-MAX_STEPS_PER_SAMPLE = 100  # if that is more: the lab at h = 0.001 s has 33
+STEPS_AT_ONCE = 50_000  # a fifth of a second, the longest wait of an interrupt
+MAX_STEPS = 1_000_000  # of a file, about three seconds, or
+MAX_STEPS_PER_SAMPLE = 100  # if that is more; the lab at h = 0.001 s has 33
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +45,10 @@ class Difference:
 
 @dataclass(slots=True)
 class Verification:
-    """The result of `verify`.  Complete and identical: nothing was changed or lost."""
+    """The result of `verify`.  If complete and identical, nothing was changed or lost."""
 
     file: Path
-    complete: bool = False  # finished, and every checksum right
+    complete: bool = False  # finished, with every checksum right
     reason: str | None = None  # why not, a clause
     runs: int = 0
     samples: int = 0
@@ -63,7 +64,7 @@ def verify(
     max_steps: int | None = None,
     only: Only = None,
 ) -> Verification:
-    """Verify a recording up to its first damage; `only`: compare the methods of these keys.
+    """Verify a recording up to the first damage.
 
     Raises RecordingError if it has no samples, or more than `max_steps` steps.
     """
@@ -72,7 +73,7 @@ def verify(
         steps = sum(run.steps for run in recording.runs)
         if steps > (max_steps or max(MAX_STEPS, MAX_STEPS_PER_SAMPLE * recording.samples)):
             raise RecordingError(
-                f"it claims {steps} steps, more than may be simulated; if you trust the file, use"
+                f"it claims {steps} steps, more than the limit; if you trust the file, use"
                 f" --max-steps {steps}"
             )
         values = (value for _, value in recording.entries())
@@ -90,7 +91,7 @@ def verify(
 
 
 def _rerun(run: Run, values: Iterable[Event | Sample], result: Verification, only: Only) -> None:
-    """Simulate a run again, and compare it with what was recorded."""
+    """Simulate a run again, and compare its samples."""
     cast = run.scene.cast
     check_present(run.scene, only)
     if only is not None and not any(method.key in only for method in cast):
@@ -100,29 +101,33 @@ def _rerun(run: Run, values: Iterable[Event | Sample], result: Verification, onl
     result.other_functions = run.arithmetic.other_functions()
     lockstep = Lockstep(run.scene, run.number, TieredLoops)
     for value in values:
-        h = value.h if isinstance(value, Event) else None
-        if isinstance(value, Event) and (h is None or value.step > run.steps):
-            continue  # it changes no number that was recorded
+        if isinstance(value, Event) and (value.h is None or value.step > run.steps):
+            continue  # it changes no recorded number
         if not lockstep.step <= value.step <= run.steps:
             raise RecordingError(f"the steps of run {run.number} are not in order")
         while lockstep.step < value.step:
             lockstep.advance(min(value.step - lockstep.step, STEPS_AT_ONCE))
         if isinstance(value, Sample):
             result.samples += 1
-            found = _differences(run, value, lockstep.sample(), not result.other_functions)
-            compared = (each for each in found if only is None or each.method in ("", *only))
-            result.first_difference = result.first_difference or next(compared, None)
-        elif h is not None:
-            lockstep.set_stepping(Stepping(h, value.equal_cost, cast))
+            computed = lockstep.sample()
+            if result.first_difference is None:
+                is_exact = not result.other_functions
+                differing = _differences(run, value, computed, is_exact=is_exact, only=only)
+                result.first_difference = next(differing, None)
+        elif value.h is not None:
+            lockstep.set_stepping(Stepping(value.h, value.equal_cost, cast))
 
 
 def _differences(
-    run: Run, recorded: Sample, computed: Sample, is_exact: bool
+    run: Run, recorded: Sample, computed: Sample, *, is_exact: bool, only: Only
 ) -> Iterator[Difference]:
+    """Yield what differs in a sample."""
     place = (recorded.run, recorded.step, recorded.t)
     if recorded.t != computed.t:
         yield Difference(*place, "", "t", recorded.t, computed.t)
     for method, was, now in zip(run.scene.cast, recorded.readings, computed.readings, strict=True):
+        if only is not None and method.key not in only:
+            continue
         for field, a, b in differences(was, now):
             is_implied = field in EXTREMES and a == was.energy_error  # see without_extremes
             is_newer = a is None and field != "diverged_at"  # than the recording

@@ -82,7 +82,7 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path)
     assert pendu("export", "drift", "-o", path).code == 0
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         expected = [
-            [clock, sample.run, sample.step, sample.t, method.key, *values_of(reading)]
+            [clock, sample.run, sample.step, sample.t, method.key, *values_of(reading).values()]
             for clock, sample in samples_of(recording)
             for method, reading in zip(USUAL_CAST, sample.readings, strict=True)
         ]

@@ -15,8 +15,6 @@ from tui.cli.options import resolve
 from tui.commands.recordings import delete
 from tui.playback.marks import Mark, Marks
 
-NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
-
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
@@ -39,11 +37,12 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monk
     assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
 
 
-def test_a_new_recording_has_a_free_name_with_the_time(folder):
+def test_a_new_recording_has_a_free_name_with_the_time(folder, monkeypatch):
+    monkeypatch.setattr(time, "strftime", lambda _: "2026-11-20T12-00-00")
     folder.mkdir()
     for name, taken in (("", ".mcap.part"), ("-2", ".mcap"), ("-3", ".mcap")):
         free = folder / f"2026-11-20T12-00-00{name}.mcap"
-        assert new_path(now=NOON) == free
+        assert new_path() == free
         free.with_suffix(taken).touch()
 
 
