@@ -1,10 +1,9 @@
 """The command line, from the arguments to what is printed.
 
-`dispatch` finds the command and its parser; `options`, `scene`, `cast` and `workers` have the
-options that several commands share, and `checks` has --fail-if and --junit.  `columns` reads
-foreign tables, and `report` is whatever is printed.  `files` writes whole files, `time_limit`
-bounds a user's own methods, `install` advises on packages, and `errors`
-makes one sentence and an exit code of whatever goes wrong.
+`dispatch` finds the command and its parser.  `options`, `scene`, `cast` and `workers` hold options
+that several commands share, `checks` --fail-if and --junit.  `columns` reads other programs'
+tables, `report` prints, `files` writes whole files, `time_limit` interrupts a user's own methods,
+`install` advises on packages, and `errors` turns errors into a sentence and an exit code.
 """
 
 from tui.cli.dispatch import main

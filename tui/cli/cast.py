@@ -1,4 +1,4 @@
-"""The options --methods and --method, which choose the methods, the user's own among them."""
+"""The options --methods and --method, which choose built-in methods and the user's own."""
 
 import argparse
 import difflib
@@ -16,14 +16,14 @@ from tui.cli.options import Suggestions, add_file
 if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
 
-MAX_SECONDS = 10.0  # to load and measure a method; a fiftieth of it is typical
+MAX_SECONDS = 10.0  # to load and measure a method; 0.2 s is typical
 KEYS = [method.key for method in METHODS]
 
 
 def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
     """Add the options that choose methods, for `cast_of`.
 
-    `default` is what the help calls the cast without --methods.
+    `default` describes the cast without --methods in the help.
     """
     parser.add_argument(
         "--methods",
@@ -51,8 +51,8 @@ def cast_of(
 ) -> Cast:
     """Return the methods that the options choose, `default` without --methods.
 
-    The user's own that --methods does not name come last.  Only those for the model, if it is
-    given, are advised. Raises UserError and OwnMethodError.
+    The user's own methods come last unless --methods names them.  With a model, only methods for
+    it are suggested.  Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
     cast = list(default)
@@ -82,10 +82,10 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
 def find(
     name: str, methods: Sequence[Method], option: str = "--methods", model: str | None = None
 ) -> Method:
-    """Return the method of a name, of the start of a key, or of the start of a word in one.
+    """Return the method with a name, or whose key, or a word in it, starts like this.
 
-    Case, accents and hyphens do not count.  General methods come before the others.  Raises
-    UserError for the option, with those for the model, if it is given.
+    Case, accents and hyphens do not count.  General methods come first.  Raises UserError, which
+    suggests methods for the model if it is given.
     """
     found = matching(name, methods)
     if len(found) == 1:
@@ -111,7 +111,7 @@ def family_of(key: str) -> str:
 
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
-    """Return the method of FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
+    """Return the method in FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
     from engine.methods.examine import load
     from engine.methods.own import MAX_SOURCE
     from tui.cli.time_limit import limited

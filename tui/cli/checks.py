@@ -1,11 +1,11 @@
 """Checks: the expression of --fail-if, its exit code, and JUnit XML, which CI shows as tests.
 
-`velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows` is comparisons joined by `and`,
-`or` and parentheses.  Python's parser reads it; nothing is evaluated but the nodes named here.  It
-fails safe: a comparison holds, whatever its sign, where its method has failed or its value is not
-known (None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it
-is, None meaning that the method never failed.  `verdict` is compared by == or != with a verdict;
-too_early (or 'too early') is one, so `!= bounded` is careful.
+An expression, `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`, joins comparisons
+by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
+evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
+(None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it is;
+None means that the method never failed.  `verdict` is compared by == or != with a verdict, such as
+too_early, so `!= bounded` is strict.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
@@ -45,7 +45,7 @@ FIELDS = (
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
-Gate = Callable[[Values], str]  # the values that trip it; empty if it passes
+Gate = Callable[[Values], str]  # returns the values that trip it, "" if it passes
 
 _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Lt: operator.lt,
@@ -58,9 +58,9 @@ _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
 
 
 def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
-    """Return the gate that `text` states of a cast.  Raises UserError for anything else.
+    """Return the gate in `text` for a cast.  Raises UserError.
 
-    With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand
+    With `fields`, comparisons name one of these, or `verdict`, and no method; their values are
     under the key "".
     """
     source = " ".join(text.split())
@@ -73,7 +73,7 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
     if "#" in source:  # a comment would hide what follows
         raise grammar.no_comparison(source)
     try:
-        with warnings.catch_warnings(action="ignore"):  # of what is odd but legal, such as `1or`
+        with warnings.catch_warnings(action="ignore"):  # about odd but legal code, such as `1or`
             node = ast.parse(source, mode="eval").body
         return grammar.gate(node)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -155,7 +155,7 @@ def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:
 def _found(
     method: str, field: str, compare: Callable[[Any, Any], bool], limit: float | str, values: Values
 ) -> str:
-    """Return the value for which a comparison is true, or why it cannot be checked."""
+    """Return the value that makes a comparison true, or why it cannot be checked, else ""."""
     reading = values.get(method, {})
     ours = reading.get(field)
     diverged_at = reading.get("diverged_at")
@@ -178,7 +178,7 @@ def _found(
 
 
 def _quoted(text: str) -> str:
-    """`text` in quotes, short and without control characters."""
+    """Return a text in quotes, shortened and without control characters."""
     return repr(text if len(text) <= 60 else text[:57] + "...")
 
 
@@ -197,7 +197,7 @@ def add_check_options(parser: argparse.ArgumentParser, names: Iterable[str], mea
 
 
 def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -> Exit:
-    """Report checks that failed, write the XML where it is asked for, and return the exit code."""
+    """Report failed checks, write the XML if asked for, and return the exit code."""
     failed = [check for check in checks if check.failure is not None]
     if failed:
         where = ""
@@ -210,7 +210,7 @@ def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -
 
 
 def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:
-    """Write a file with one test a check; an earlier report is replaced."""
+    """Write a file with a test for each check; it replaces an earlier report."""
     name = printable(suite, MAX_CELL)
     failures = sum(check.failure is not None for check in checks)
     counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "skipped": "0"}

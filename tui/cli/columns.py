@@ -1,7 +1,7 @@
 """Columns of another program's tables: text of any form, JSON lines, Amber's mdout, an .npz.
 
-A table may stand between other text.  It begins below a header that has the wanted names, or where
-the time starts again; one of the tables is returned.
+A table may stand between other text.  It begins below a header with the wanted names, or where time
+starts again; one of the tables is returned.
 """
 
 import csv
@@ -22,10 +22,10 @@ from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import did_you_mean
 
-LATEST = 1e300  # a time; squares and differences of later ones overflow
+LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_LINE = 1 << 20  # bytes
-MAX_LINES_BEFORE = 100_000  # a row
-MAX_RECORDS = 20_000_000  # of the input, which may never end; half a minute, 320 MB
+MAX_LINES_BEFORE = 100_000  # the first row
+MAX_RECORDS = 20_000_000  # half a minute, 320 MB; the input may be endless
 REASONS = {
     "without_numbers": "without numbers",
     "time_not_later": "whose time is not later",
@@ -33,7 +33,7 @@ REASONS = {
     "before_start": "before --from",
     "energy_not_finite": "from the first energy on that is nan or inf",
 }
-"""Why a row is not used: in JSON, and for people."""
+"""Why a row is not used, in JSON and in words."""
 
 _BINARY = {
     b"\x1f\x8b": "a gzip file; unpack it first",
@@ -48,16 +48,16 @@ _UNIT = re.compile(r"(?:[(\[]([^()\[\]]*)[)\]]|/([^\W\d_]+))$")
 
 
 class Head(NamedTuple):
-    """The wanted columns of a table: the fields that add up to each, and its unit."""
+    """The wanted columns of a table: the fields to add up for each, and their units."""
 
     places: tuple[tuple[int, ...], ...]
     units: tuple[str, ...]
 
     @classmethod
     def of(cls, names: Sequence[str], wanted: Sequence[str]) -> "Head | None":
-        """Return the head of columns with these names, if all that are wanted are there.
+        """Return the head of columns with these names, or None if a wanted one is missing.
 
-        A column is found by its number, its name, or its name but for case and unit.
+        A column is found by its number or its name, in which case and unit do not count.
         """
         last_first = [*enumerate(names)][::-1]
         known = {_plain(name): place for place, name in last_first}
@@ -77,7 +77,7 @@ class Head(NamedTuple):
 
 
 Record = Head | list[Any] | Any
-"""A head, a row (a number for each place, None for a text or a gap), or an array of rows."""
+"""A head, a row (a number for each place, None for text or a gap), or an array of rows."""
 
 
 @dataclass
@@ -85,7 +85,7 @@ class Table:
     """One table: columns of finite numbers, of which the first increases."""
 
     head: Head
-    columns: list[Any]  # an array for each place while it is read, then one for each column
+    columns: list[Any]  # an array for each place; when finished, for each column
     number: int = 0
     count: int = 0  # tables in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
@@ -96,7 +96,7 @@ class Table:
         return self.head.units
 
     def finish(self, start: float) -> None:
-        """Add up columns, leave out what cannot be used, and count it."""
+        """Add up columns, and leave out and count the rows that cannot be used."""
         parts = map(np.asarray, self.columns)
         columns: list[Any] = [sum(islice(parts, len(group))) for group in self.head.places]
         times = np.where(np.abs(columns[0]) < LATEST, columns[0], -np.inf)
@@ -125,7 +125,7 @@ def read_table(
     number: int | None = None,
     start: float = -math.inf,
 ) -> Table:
-    """Return a table of the wanted columns, times first: the last one, or that of this number.
+    """Return the last table of the wanted columns, times first, or that of this number.
 
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
     left out.  Raises UserError if there is no such table.
@@ -149,15 +149,15 @@ def read_table(
 
 
 def _tables(records: Iterable[Record]) -> Iterator[Table]:
-    """Yield each table once it is read, if it has a usable time.
+    """Yield each table that has a usable time.
 
-    A step back to a later time than the first is a restart from a checkpoint: the same table.  So
-    is a header that comes again on each page, as NAMD's.
+    A step back in time, but not to the start, is a restart from a checkpoint, in the same table.  A
+    header repeated on each page, as in NAMD's logs, does not begin a table either.
     """
     table = Table(Head((), ()), [])
     head = table.head
-    first: float | None = None  # usable time
-    on_page = 0  # rows since the head
+    first: float | None = None  # the first usable time
+    on_page = 0  # rows since the last head
     count = 0
     for record in _blocks(records):
         count += len(record) if isinstance(record, np.ndarray) else 1
@@ -233,19 +233,19 @@ def _lines(stream: io.BufferedReader) -> Iterator[str]:
 
 
 class _Text:
-    """The table in lines of text: a header may have a # in front, a row of units may follow it."""
+    """A table in lines of text; the header may begin with #, and a row of units may follow it."""
 
     def __init__(self, wanted: Sequence[str]) -> None:
         self._wanted = wanted
         self._is_named = not all(part.isdecimal() for each in wanted for part in each.split("+"))
-        self._legend: dict[int, str] = {}  # names of columns as GROMACS writes them
-        self._headers: list[list[str]] = []  # the names of a header, in each way to split it
-        self._units: list[str] = []  # below a header
-        self._above: list[str] = []  # other words above a row: where they return, a table begins
-        self._names: list[str] = []  # to choose from
-        self._places: list[int] = []  # of the rows; none before the first
+        self._legend: dict[int, str] = {}  # GROMACS' names of columns
+        self._headers: list[list[str]] = []  # the names in a header, split in two ways
+        self._units: list[str] = []  # from the row below the header
+        self._above: list[str] = []  # words above the rows; where they return, a table begins
+        self._names: list[str] = []  # for the error message
+        self._places: list[int] = []  # of the wanted fields; empty before the first row
         self._delimiter: str | None = None
-        self._width = 0  # fields of a row
+        self._width = 0  # fields in a row
 
     def records(self, lines: Iterator[str]) -> Iterator[Record]:
         while block := list(islice(lines, 4096)):
@@ -257,7 +257,7 @@ class _Text:
             raise _missing(self._wanted, [*self._legend.values()] or self._names or self._above)
 
     def _read(self, lines: list[str]) -> Iterator[Record]:
-        """Read rows like the last at once, and what stands between them line by line."""
+        """Read blocks of rows like the last one at once, and other lines one by one."""
         rows = self._plain_rows(lines)
         if rows is not None:
             yield rows
@@ -272,7 +272,7 @@ class _Text:
             yield from self._other(lines[0])
 
     def _plain_rows(self, lines: list[str]) -> Any:
-        """Return an array of the rows, if all lines are rows like the last."""
+        """Return an array of the rows, or None if not all lines are rows like the last one."""
         widths = {len(line.split(self._delimiter)) for line in lines}
         if not self._places or widths != {self._width} or '"' in "".join(lines):
             return None
@@ -305,7 +305,7 @@ class _Text:
 
     def _read_words(self, text: str, fields: list[str], is_comment: bool) -> None:
         """Look for a header in a line without numbers."""
-        ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may hold single blanks
+        ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may contain single blanks
         headers = [names for names in ways if self._is_named and Head.of(names, self._wanted)]
         if headers:
             self._headers = headers
@@ -319,7 +319,7 @@ class _Text:
             self._above = fields
 
     def _head_at(self, numbers: Sequence[float | None]) -> Head | None:
-        """Return the head of the table that begins with this row."""
+        """Return the head of the table that begins with this row, None if none does."""
         width = len(numbers)
         if self._places and (self._headers or None in numbers or width == self._width):
             return None
@@ -349,7 +349,7 @@ def _fields(line: str, delimiter: str) -> list[str]:
 
 
 def _number(text: str) -> float | None:
-    """Return the number in a field, also with a decimal comma or with Fortran's D."""
+    """Return the number in a field, which may have a decimal comma or Fortran's D."""
     try:
         return float(text.replace(",", ".").replace("D", "e").replace("d", "e"))
     except ValueError:
@@ -359,7 +359,7 @@ def _number(text: str) -> float | None:
 def _of_objects(
     objects: Iterable[dict[str, Any]], wanted: Sequence[str], unit: str = ""
 ) -> Iterator[Record]:
-    """Yield a head and the rows of objects with names; `unit` is that of energies without one."""
+    """Yield the head and the rows of named values; `unit` is for columns without one."""
     names: list[str] = []
     rest = iter(objects)
     for first in rest:
@@ -375,7 +375,7 @@ def _of_objects(
 
 
 def _parsed(line: str) -> dict[str, Any]:
-    """Return the object of a line of JSON; an empty one for a line that is none."""
+    """Return the object in a line of JSON; an empty one if there is none."""
     with suppress(ValueError, RecursionError):
         item = json.loads(line)
         return item if isinstance(item, dict) else {}
@@ -397,7 +397,7 @@ def _of_arrays(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Rec
             found = [np.ravel(arrays[names[place]]) for place in chain(*head.places)]
             rows = min(map(len, found))
             table = np.column_stack([column[:rows].astype(float) for column in found])
-    except Exception as error:  # whatever a broken archive leads to
+    except Exception as error:  # a broken archive may raise anything
         raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
     if head is None:
         raise _missing(wanted, names)
@@ -410,7 +410,7 @@ def _plain(name: str) -> str:
 
 
 def _split(name: str) -> tuple[str, str]:
-    """Return the parts of a name with a unit, `Time (ps)`, `time [ps]` or `t/ps`."""
+    """Return name and unit of `Time (ps)`, `time [ps]` or `t/ps`."""
     name = name.strip()
     match = _UNIT.search(name, 1)
     if match is None:
@@ -419,7 +419,7 @@ def _split(name: str) -> tuple[str, str]:
 
 
 def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
-    """Return the error that names do not have a wanted column."""
+    """Return the error that a wanted column is missing."""
     lost = [each for each in wanted if not each.isdecimal() and Head.of(names, [each]) is None]
     if not lost:
         return _unreadable(_NO_ROW)

@@ -1,6 +1,6 @@
 """pendu-tui: find the command, run it, return the exit code.
 
-Imports only what the command needs.
+Only what the command needs is imported.
 """
 
 import io
@@ -38,7 +38,7 @@ COMMANDS = {
     "methods": "list the methods with claimed and measured properties",
     "doctor": "check the environment and suggest fixes",
 }
-"""Command -> what it does."""
+"""Commands and what they do."""
 
 RENAMED = {
     "keys": "live, and there the key ?",
@@ -71,18 +71,18 @@ examples:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit code.  Nothing but a bug leaves a traceback."""
+    """Run the command line and return the exit code.  Only a bug shows a traceback."""
     code = _main(arguments)
     others = set(threading.enumerate()) - {threading.main_thread()}
     if arguments is None and not all(thread.daemon for thread in others):
-        os._exit(code)  # the interpreter would wait for a thread that a user's method started
+        os._exit(code)  # the interpreter would wait for threads of a user's method
     return code
 
 
 def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
+            stream.reconfigure(errors="replace")  # a terminal without θ shows a ?
     if arguments is None:
         repeat_swallowed_interrupts()
     if why := hidden_package():
@@ -109,7 +109,7 @@ def _main(arguments: Sequence[str] | None) -> int:
 
 
 def _drop_output() -> None:
-    """Discard what stdout did not take, which the interpreter would retry at its exit."""
+    """Discard the rest of stdout, which the interpreter would try to write at its exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -132,7 +132,7 @@ def _dispatch(arguments: list[str]) -> int:
         name, arguments = split(arguments)
         parser, command = command_of(name)
         options = parser.parse_args(arguments)
-    except SystemExit:  # --help or --print-completion, printed
+    except SystemExit:  # after --help or --print-completion
         return Exit.FINE
     if not getattr(options, "method", None):
         return int(command.run(options))
@@ -145,7 +145,7 @@ def _dispatch(arguments: list[str]) -> int:
 def split(arguments: list[str]) -> tuple[str, list[str]]:
     """Return the command and its arguments.
 
-    A scene or a file as the first word stands for a command.
+    If the first word is a scene or a file, the command is live or replay.
     """
     first = next(iter(arguments), "-")
     if first in COMMANDS or first in RENAMED:
@@ -185,7 +185,7 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
 
 
 def completion_parser() -> "Parser":
-    """Return a parser of all commands, whose --print-completion prints a shell's script."""
+    """Return a parser of all commands with --print-completion."""
     import shtab
 
     from tui.cli.options import Parser

@@ -14,7 +14,7 @@ class Exit(IntEnum):
     TERMINAL_UNSUITABLE = 4
     DISK = 5
     INTERRUPTED = 130
-    PIPE_CLOSED = 141  # as of every program that writes into a closed pipe
+    PIPE_CLOSED = 141  # what shells report of programs that write into a closed pipe
 
 
 class UserError(Exception):
@@ -30,8 +30,10 @@ def explained(error: BaseException) -> UserError:
     if isinstance(error, UserError):
         return error
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
-        return UserError("interrupted.", Exit.INTERRUPTED)  # the second: a library's error about it
-    # here, because --help and --version need none of them
+        return UserError(
+            "interrupted.", Exit.INTERRUPTED
+        )  # or a library's error about the interrupt
+    # imported here: --help and --version do not need them
     from engine.methods.own import OwnMethodError
     from engine.scenes import SceneError
     from recordings.errors import RecordingError
@@ -44,7 +46,7 @@ def explained(error: BaseException) -> UserError:
         case MemoryError():
             why = "not enough memory; use less of it, or smaller input."
             return UserError(why, Exit.INPUT_UNREADABLE)
-        case OSError():  # recordings.errors.DiskError among them
+        case OSError():  # also recordings.errors.DiskError
             why = (error.strerror or str(error)) + ADVICE.get(error.errno or 0, "")
             return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)
     raise error
@@ -56,4 +58,4 @@ ADVICE = {
     errno.EACCES: "; choose a writable location",
     errno.EROFS: "; choose a writable location",
 }
-"""What to do about errors of the disk."""
+"""What to do about errors of files."""

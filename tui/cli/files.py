@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and runs that end properly at a signal."""
+"""Files that are written whole or not at all, and work that a signal ends in order."""
 
 import signal
 import sys
@@ -17,10 +17,10 @@ ENDING = [
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """Yield the path to write to; what is there at the end gets the name `path`.
+    """Yield a temporary path to write to, which is renamed to `path` at the end.
 
-    If the block raises, and also at Ctrl+C, SIGTERM and SIGHUP, nothing is left of it and an older
-    file stays as it was.  Raises DiskError before the block if the name is taken.
+    If the block raises, or at Ctrl+C, SIGTERM or SIGHUP, nothing is left of it and an older file
+    stays as it was.  Raises DiskError before the block if the name is taken.
     """
     from recordings import files
 
@@ -30,7 +30,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
-    """Yield a stream to what will be the whole file `path`, or stdout where there is no path."""
+    """Yield a stream to a whole file, or stdout if `path` is None."""
     if path is None:
         yield sys.stdout
         return
@@ -39,7 +39,7 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 
 
 def check_free(path: Path, force: bool) -> None:
-    """Raise DiskError if something has this name and must not be overwritten, or cannot."""
+    """Raise DiskError if this name is taken and must not, or cannot, be overwritten."""
     from recordings.files import check_target, is_stream
 
     if not is_stream(path):
@@ -52,7 +52,7 @@ def interruptible() -> AbstractContextManager[None]:
 
 
 def repeat_swallowed_interrupts() -> None:
-    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it."""
+    """Send Ctrl+C again if a destructor or a callback of Numba's compiler swallowed it."""
     report = sys.unraisablehook
 
     def hook(swallowed: "sys.UnraisableHookArgs") -> None:
@@ -67,7 +67,7 @@ def repeat_swallowed_interrupts() -> None:
 
 @contextmanager
 def stop_requests() -> Iterator[Callable[[], bool]]:
-    """Yield a function: has Ctrl+C, SIGTERM or SIGHUP come?  A second one interrupts."""
+    """Yield a function that tells whether Ctrl+C, SIGTERM or SIGHUP came; a second one interrupts."""
     asked = False
 
     def ask(number: int, frame: FrameType | None) -> None:
@@ -82,7 +82,7 @@ def stop_requests() -> Iterator[Callable[[], bool]]:
 
 @contextmanager
 def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Handle the signals that ask for an end; ignored ones, as under nohup, stay ignored."""
+    """Handle the signals in ENDING; ignored ones, as under nohup, stay ignored."""
     heard = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
     before = [(number, signal.signal(number, handler)) for number in heard]
     try:

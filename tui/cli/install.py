@@ -1,4 +1,4 @@
-"""What is installed beside pendu-tui, and what is in its way."""
+"""Which packages are missing, and which folders hide ours."""
 
 import sys
 from importlib.util import find_spec
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def install_advice(package: str, extra: str) -> str:
-    """Return the command that adds an extra's package, by the tool that installed pendu-tui."""
+    """Return the command that installs an extra, for the tool that installed pendu-tui."""
     environment = Path(sys.prefix)
     if (environment / "uv-receipt.toml").exists():
         return f"uv tool install --with {package} pendu-tui"
@@ -16,7 +16,7 @@ def install_advice(package: str, extra: str) -> str:
 
 
 def hidden_package() -> str:
-    """Return a sentence if a folder of the user's hides a package of pendu-tui; "" if none does."""
+    """Return a sentence if a user's folder hides a package of pendu-tui, else ""."""
     ours = Path(__file__).resolve().parents[2]
     for name in ("engine", "recordings"):
         spec = find_spec(name)

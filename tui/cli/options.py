@@ -1,4 +1,4 @@
-"""Options that several commands share, and how their values are read."""
+"""Options that several commands share, and the readers of their values."""
 
 import argparse
 import difflib
@@ -15,7 +15,7 @@ LIST = "FIRST:LAST:HOW_MANY"
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one sentence; -1e-3 is a number, not an option."""
+    """A parser whose errors are one sentence, and which takes -1e-3 for a number."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
@@ -35,8 +35,8 @@ class Parser(argparse.ArgumentParser):
     def parse_args(  # type: ignore[override]
         self, arguments: Sequence[str], namespace: Any = None
     ) -> Any:
-        """Parse the arguments; optional words, such as a SCENE, may also follow options."""
-        if {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
+        """Parse the arguments; optional words, such as SCENE, may also come after options."""
+        if {"-h", "--help"} & {*arguments}:  # intermixing would change its text
             return super().parse_args(arguments, namespace)
         for argument in takewhile("--".__ne__, arguments):
             self._check(argument)
@@ -53,19 +53,19 @@ class Parser(argparse.ArgumentParser):
             similar = did_you_mean(option[0], self._option_string_actions)
             hint = similar or f"; {self.prog} --help shows the options."
             raise UserError(f"{self.prog.rpartition(' ')[2]} has no option {option[0]}{hint}")
-        if argument[option.end() :].removeprefix("=") == "--":  # Python 3.11 makes a list of it
+        if argument[option.end() :].removeprefix("=") == "--":  # of which Python 3.11 makes a list
             self.error(f"{option[0]}: expected one argument")
 
 
 class Suggestions(list[str]):
-    """The `choices` that the tab key offers for an option; the command judges any other text."""
+    """`choices` for the tab key only: the command itself checks the text."""
 
     def __contains__(self, text: object) -> bool:
         return True
 
 
 def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -> None:
-    """Add an option whose value the tab key completes to a file."""
+    """Add an option that the tab key completes to a file."""
     parser.add_argument(*names, **settings).complete = "file"  # type: ignore[attr-defined]
 
 
@@ -76,9 +76,9 @@ def add_recording(parser: argparse.ArgumentParser, name: str = "file", **setting
 
 
 def resolve(name: str) -> Path:
-    """Return the recording of this name: a file, `latest`, one of the library, or a bundled one.
+    """Return the path of a recording: a file, `latest`, one of the library, or a bundled one.
 
-    Raises RecordingError, a sentence, if there is none.
+    Raises RecordingError if there is none.
     """
     from recordings import library
     from recordings.errors import RecordingError, printable
@@ -101,7 +101,7 @@ def resolve(name: str) -> Path:
 
 
 def _float(bare: str, text: str, what: str, example: str) -> float:
-    """Return the number in a value of an option without its unit."""
+    """Return the number in an option's value, without its unit."""
     try:
         return float(bare)
     except ValueError:
@@ -125,7 +125,7 @@ def angle(text: str) -> float:
 
 
 def start_angle(text: str) -> float:
-    """Return an angle [rad]; of more than a turn only with its unit, as degrees may be meant."""
+    """Return an angle [rad]; above a turn it needs a unit, because degrees may be meant."""
     value = angle(text)
     if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
         turns = abs(value) / math.tau
@@ -142,12 +142,12 @@ def seconds(text: str) -> float:
 
 
 def number(text: str) -> float:
-    """Return any number, `0.05` or `5%`; the caller checks its range."""
+    """Return a number, `0.05` or `5%`; the caller checks its range."""
     return _float(re.sub("%$", "e-2", text), text, "a number", "0.05 or 1e-3")
 
 
 def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
-    """Return a reader of ascending values, each read by `element`: `0.5,1,2` or `0.1:3:30`."""
+    """Return a reader of ascending values, `0.5,1,2` or `0.1:3:30`, each read by `element`."""
 
     def read(text: str) -> list[float]:
         match text.split(":"):
@@ -187,6 +187,6 @@ def count(text: str) -> int:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the end of a sentence about an unknown word."""
-    near = difflib.get_close_matches(word[:200], known, n=1)  # long ones take seconds
+    """Return the end of a sentence about an unknown word, "" without a suggestion."""
+    near = difflib.get_close_matches(word[:200], known, n=1)  # long words would take seconds
     return f": did you mean {near[0]}?" if near else ""

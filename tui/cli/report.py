@@ -1,4 +1,4 @@
-"""What commands print: reports on stdout; warnings and progress on stderr."""
+"""What commands print: reports on stdout, warnings and progress on stderr."""
 
 import argparse
 import csv
@@ -32,12 +32,12 @@ MAX_CELL = 1000  # characters
 
 
 def warn(sentence: str) -> None:
-    """Print a sentence besides the data, on stderr."""
+    """Print a sentence on stderr."""
     print(_fitted(f"pendu-tui: {sentence}", sys.stderr), file=sys.stderr)
 
 
 def _fitted(text: str, stream: TextIO) -> str:
-    """Return a text in lines that fit the terminal, if it is one; no word or path is broken."""
+    """Wrap a text to the terminal, if it is one, without breaking words or paths."""
     if not stream.isatty():
         return text
     columns = shutil.get_terminal_size().columns
@@ -61,7 +61,7 @@ def scene_line(scene: Scene, *more: str) -> str:
 
 
 def console(piped_width: int | None = None) -> "Console":
-    """Return where to draw: as wide as the terminal, or `piped_width` where there is none."""
+    """Return a console as wide as the terminal, or `piped_width` wide without one."""
     from rich.console import Console
 
     width = None if sys.stdout.isatty() else piped_width
@@ -70,9 +70,9 @@ def console(piped_width: int | None = None) -> "Console":
 
 @contextmanager
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function to call with how much is done and how much there is in all.
+    """Yield a function to call with the work done and the whole work.
 
-    A terminal shows a bar and the time left once the work takes over a second.
+    On a terminal it shows a bar and the time left, after a second.
     """
     began = monotonic()
     bar: Any = None
@@ -99,15 +99,15 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
 
 
 class Column(NamedTuple):
-    """A column of a table: its head, and how the cell of a row is written."""
+    """A column of a table: its head, and how to write a row's cell."""
 
     head: str
     cell: str | Callable[[Any], Any]  # the name of a field, or a function of the row
-    form: str | Callable[[Any], str] = ""  # how a value is written; if given, aligned right
+    form: str | Callable[[Any], str] = ""  # how to write a value; if given, aligned right
     right: bool = False
 
     def text(self, row: Any) -> str:
-        """Return the cell of a row; a dash where there is no value."""
+        """Return the cell of a row, a dash for None."""
         value = row[self.cell] if isinstance(self.cell, str) else self.cell(row)
         if value is None:
             return "-"
@@ -116,14 +116,14 @@ class Column(NamedTuple):
 
 
 def method_column(cast: Sequence[Method]) -> Column:
-    """Return the column of the labels of methods, whose keys the rows have."""
+    """Return the column of the methods' labels; rows hold their keys."""
     labels = {method.key: method.label for method in cast}
     return Column("method", lambda row: labels[row["method"]])
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows in columns, folded to the terminal's width; a text is the head of the rows below."""
+    """Rows in columns, folded to the terminal's width; a string is a heading."""
 
     columns: Sequence[Column]
     rows: Iterable[Any]
@@ -183,13 +183,13 @@ class Report:
                 print(_fitted(part, sys.stdout))
                 continue
             on = console(240)
-            with on.capture() as drawn:  # or Rich ends the process when a pipe's reader is gone
+            with on.capture() as drawn:  # Rich itself would end the process at a closed pipe
                 on.print(part, no_wrap=True, overflow="crop")
             print(drawn.get(), end="")
 
 
 def finite(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row as JSON can hold it: null for a number that is not finite."""
+    """Return a row for JSON, with None for numbers that are not finite."""
 
     def is_finite(value: Any) -> bool:
         return not isinstance(value, float) or math.isfinite(value)
@@ -198,14 +198,14 @@ def finite(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
-    """Write CSV headed by the fields of the first record."""
+    """Write CSV with the first record's fields as the header."""
     rest = iter(records)
     for first in rest:
         write_csv(out, list(first), (record.values() for record in chain([first], rest)))
 
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
-    """Write rows so that every number reads back the same; None is an empty field."""
+    """Write rows of CSV; every number reads back the same, and None is empty."""
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
@@ -227,7 +227,7 @@ def add_report_options(
 
 
 def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
-    """Return a reader of the name of a file with one of these suffixes, or of a device or pipe."""
+    """Return a reader of paths with one of these suffixes; devices and pipes may have any."""
 
     def read(text: str) -> Path:
         path = Path(text)
@@ -247,7 +247,7 @@ def form_of(options: argparse.Namespace) -> Form:
 
 
 def publish(report: Report, options: argparse.Namespace) -> None:
-    """Print the report as the options ask, or write it to their file in the form of its suffix."""
+    """Print the report, or write it to the -o file in the form of its suffix."""
     path: Path | None = getattr(options, "output", None)
     if path is None:
         report.show(form_of(options))

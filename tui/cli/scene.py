@@ -56,7 +56,7 @@ NUMBERS: dict[str, tuple[Callable[[str], float], str, str]] = {
     },
     "h": (seconds, "S", "step size: 0.05 (in s) or 50ms"),
 }
-"""The numbers of a scene: what reads each, and its option's metavar and help."""
+"""The numbers of a scene: the reader, metavar and help of each option."""
 
 _READERS = {name: read for name, (read, _, _) in NUMBERS.items()}
 _READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
@@ -90,7 +90,7 @@ sentence = "Here they part."
 
 
 def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
-    """Add the options that determine a scene, for `scene_of`; with `lists`, for `scenes_of`."""
+    """Add the options of a scene, for `scene_of`; with `lists`, for `scenes_of`."""
     more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
     group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
     names = Suggestions(SCENES)
@@ -114,10 +114,10 @@ def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> N
 
 @dataclass(frozen=True, slots=True)
 class SceneList:
-    """Every combination of the values given, the last axis changing fastest."""
+    """All combinations of the given values; the last axis changes fastest."""
 
     base: Scene
-    axes: Mapping[str, Sequence[float]]  # the numbers that are given, each with its values
+    axes: Mapping[str, Sequence[float]]  # the values of each number that is given
 
     def __len__(self) -> int:
         return math.prod(map(len, self.axes.values()))
@@ -126,7 +126,7 @@ class SceneList:
         return self._combined(self.axes)
 
     def corners(self) -> list[Scene]:
-        """Return the combinations of the extremes: what limits them, they do not exceed."""
+        """Return the combinations of the extremes; if they are valid, all are."""
         ends = {name: sorted({axis[0], axis[-1]}) for name, axis in self.axes.items()}
         return list(self._combined(ends))
 
@@ -138,10 +138,10 @@ class SceneList:
 def scenes_of(
     options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
 ) -> SceneList:
-    """Return the scenes that the options describe, with their cast; of a `lecture` the first.
+    """Return the scenes that the options describe; of a file with a `lecture`, the first.
 
     Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
-    bad numbers, if only in some of the combinations, and OwnMethodError for a bad function.
+    bad numbers in any combination, and OwnMethodError for a bad function.
     """
     if options.scene and options.scene_option:
         raise UserError(
@@ -162,13 +162,13 @@ def scenes_of(
 def scene_of(
     options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
 ) -> Scene:
-    """Return the one scene of options without lists, as `scenes_of` does."""
+    """Return the scene that options without lists describe, as `scenes_of` does."""
     (scene,) = scenes_of(options, default, lecture)
     return scene
 
 
 def scene_named(name: str, lecture: bool = False) -> Scene:
-    """Return a listed scene, or that of a file, the first of a `lecture`.  Raises UserError."""
+    """Return a listed scene or that of a file, of a `lecture` the first.  Raises UserError."""
     if name.endswith(".toml"):
         first, *others = read_scenes(Path(name)).values()
         if others and not lecture:
@@ -181,7 +181,7 @@ def scene_named(name: str, lecture: bool = False) -> Scene:
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:
-    """Return the scene of the options, if it can be mapped and charted.  Raises UserError."""
+    """Return the scene of the options.  Raises UserError if it cannot be mapped."""
     scene = scene_of(options)
     if why := scene.why_not_mapped:
         raise UserError(why)
@@ -189,14 +189,14 @@ def general_scene_of(options: argparse.Namespace) -> Scene:
 
 
 class _FieldError(Exception):
-    """What is wrong with a field of a file; the names lead to it."""
+    """An error in a field of a file; `names` are the path to it."""
 
     def __init__(self, why: object, *names: str) -> None:
         super().__init__(why)
         self.names = names
 
     def line(self, text: str, start: int) -> str:
-        """Return `, line N`: that of the last name in the text from `start` on."""
+        """Return `, line N` of the field in the text from `start` on."""
         for name in self.names:
             pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
             found = pattern.search(text, start)
@@ -207,9 +207,9 @@ class _FieldError(Exception):
 
 @cache
 def read_scenes(path: Path) -> dict[str, Scene]:
-    """Return the scenes in a file by name: the one that it is, or its [[scene]] tables.
+    """Return the scenes of a file by name: the whole file, or its [[scene]] tables.
 
-    Fields before the tables are those of all.  Raises UserError with line and field.
+    Fields before the tables belong to all.  Raises UserError with line and field.
     """
     text, given = _read(path)
     tables = given.pop("scene", [{}])
@@ -232,8 +232,8 @@ def read_scenes(path: Path) -> dict[str, Scene]:
 
 
 def _read(path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the text of a TOML file, and what it holds."""
-    import tomllib  # 6 of 450 ms to the first pendulum
+    """Return the text of a TOML file and its values."""
+    import tomllib  # takes 6 ms, of 450 to the first pendulum
 
     most = 100_000  # bytes
     try:
@@ -245,13 +245,16 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
         return text, tomllib.loads(text)
     except OSError as error:
         why = f"cannot read {path}: {error.strerror}."
-    except (ValueError, RecursionError) as error:  # no text, or an integer of 5,000 digits
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # such as binary data, or an integer of 5,000 digits
         why = f"{path} is not TOML: {printable(str(error), 200)}."
     raise UserError(why, Exit.INPUT_UNREADABLE)
 
 
 def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
-    """Return the scene of a table; its own methods lie in the folder."""
+    """Return the scene in a table; the user's own methods are in the folder."""
     found = _values(given, _EXAMPLE, folder)
     model = found.get("model", DEFAULT_MODEL)
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
@@ -277,7 +280,7 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def _values(given: Mapping[str, Any], example: str, folder: Path, *above: str) -> dict[str, Any]:
-    """Return the values of a table's fields; `above` is the name of the table, if it has one."""
+    """Return the values of a table's fields; `above` is the table's name, if any."""
     import tomllib
 
     known = tomllib.loads(example)
@@ -300,7 +303,7 @@ def _values(given: Mapping[str, Any], example: str, folder: Path, *above: str) -
 
 
 def _value(name: str, value: Any, kind: Any, folder: Path) -> Any:
-    """Return the value of a field as a Scene or a Shot takes it."""
+    """Return a field's value in the type that Scene or Shot has."""
     if name in _READERS:
         return _READERS[name](str(value))
     if not isinstance(value, kind):
@@ -321,7 +324,7 @@ def _value(name: str, value: Any, kind: Any, folder: Path) -> Any:
 
 
 def _methods(keys: Sequence[Any], folder: Path) -> Cast:
-    """Return the methods of a scene file; the user's own are FILE.py:FUNCTION, in its folder."""
+    """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
     cast: list[Method] = []
     for key in map(str, keys):
         is_own = ".py:" in key

@@ -1,6 +1,6 @@
 """Time limits for a user's own methods, where the platform can interrupt them.
 
-A call in C that does not return ends the program, by SIGPROF.
+SIGPROF ends the program if a call in C does not return.
 """
 
 import faulthandler
@@ -15,10 +15,10 @@ from types import FrameType
 from engine.methods.own import OwnMethodError, TooLongError, UserCode
 
 MAX_STEP_TIME = 3.0  # s
-MAX_CALL_TIME = 5.0  # s of the processor for a call in C that nothing interrupts
-LOOK_INTERVAL = 0.2  # s
+MAX_CALL_TIME = 5.0  # s of processor time for a call in C, which cannot be interrupted
+LOOK_INTERVAL = 0.2  # s, between checks
 PLAIN_SCREEN = "\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
-"""Ends the alternate screen and all reports."""
+"""Escape sequences that leave the alternate screen and stop mouse reports."""
 _END_STUCK = f"""exec 3>&2 2>/dev/null
 trap "" HUP INT TERM TSTP TTOU
 state=$(stty -g </dev/tty)
@@ -33,16 +33,16 @@ kill -KILL $PPID
 
 
 class _Watch:
-    """Compares what a user's code does with what it did at the last look."""
+    """Checks from time to time whether a user's code is still in the same step."""
 
     def __init__(self) -> None:
         self.deadline = math.inf  # s
-        self.excess = ""  # what to say after it
+        self.excess = ""  # the message after the deadline
         self._steps = -1
-        self._since = 0.0  # s, when the current step was seen first
+        self._since = 0.0  # s, when the current step was first seen
 
     def look(self, number: int, frame: FrameType | None) -> None:
-        """Raise TooLongError in a user's code whose time is over."""
+        """Raise TooLongError in a user's code that takes too long."""
         signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
         now = time.monotonic()
         if self._steps != UserCode.steps:
@@ -50,7 +50,7 @@ class _Watch:
             self._since = now
         if not UserCode.is_running:
             return
-        longest = MAX_STEP_TIME - LOOK_INTERVAL  # it may have begun so long before it was seen
+        longest = MAX_STEP_TIME - LOOK_INTERVAL  # it may have begun up to an interval earlier
         if self._steps and now - self._since >= longest:
             raise TooLongError(f"takes more than {MAX_STEP_TIME:g} s for a step")
         if now >= self.deadline:
@@ -62,7 +62,7 @@ _watch = _Watch()
 
 @contextmanager
 def limited_calls() -> Iterator[None]:
-    """Let a shell end the program where a call in C keeps Python from it."""
+    """Have a shell end the program if a call in C does not return."""
     if not hasattr(signal, "SIGALRM"):
         yield
         return
@@ -80,7 +80,7 @@ def limited_calls() -> Iterator[None]:
 
 @contextmanager
 def limited_steps() -> Iterator[None]:
-    """Interrupt each step of a user's method in the block that takes too long."""
+    """Interrupt any step of a user's method in the block that takes too long."""
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "SIGALRM"):
         yield
         return
@@ -89,7 +89,7 @@ def limited_steps() -> Iterator[None]:
     calls = signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
     try:
         yield
-    except TooLongError as error:  # raised just when the step was done
+    except TooLongError as error:  # raised just after the step
         raise OwnMethodError(f"A method of your own {error}.") from None
     finally:
         signal.setitimer(signal.ITIMER_PROF, *calls)
@@ -99,11 +99,13 @@ def limited_steps() -> Iterator[None]:
 
 @contextmanager
 def limited(what: str, seconds: float | None = None) -> Iterator[None]:
-    """Interrupt a user's methods also if the block takes longer, by default than one step may."""
+    """Interrupt a user's methods if the whole block takes too long, by default as for one step."""
     seconds = seconds or MAX_STEP_TIME
     with limited_steps():
         _watch.excess = f"takes more than {seconds:g} s for {what}"
-        _watch.deadline = time.monotonic() + seconds + LOOK_INTERVAL  # a single step is told first
+        _watch.deadline = (
+            time.monotonic() + seconds + LOOK_INTERVAL
+        )  # a single slow step is reported first
         try:
             yield
         finally:

@@ -1,11 +1,11 @@
-"""Where tasks run: in this process, in others, on a Dask cluster, or in any executor.
+"""Run tasks in this process, in other processes, on a Dask cluster, or in any executor.
 
     with workers_of(options) as workers:
         for result in workers.map(function, tasks):
             ...
 
 The function and the tasks are pickled.  Results come in the order of the tasks and are the same to
-the last bit whoever computes them, because a task depends on nothing but itself.
+the last bit wherever they are computed, because tasks are independent.
 """
 
 import argparse
@@ -31,7 +31,7 @@ from tui.cli.options import count
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-MAX_AHEAD = 4096  # tasks that are handed out before the first of them is done
+MAX_AHEAD = 4096  # tasks submitted before the first of them is done
 
 
 def add_worker_options(parser: argparse.ArgumentParser) -> None:
@@ -67,8 +67,8 @@ class Workers:
     def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Iterator[Result]:
         """Yield the result of each task.
 
-        An executor that breaks, because one of its processes was killed, is started anew.  Raises
-        UserError, exit code 3, where the workers are lost.
+        If a process is killed, the executor is started anew.  Raises UserError with exit code 3 if
+        the workers are lost.
         """
         if self._executor is None:
             yield from map(function, tasks)
@@ -86,7 +86,7 @@ class Workers:
             raise _explained(error) from error
 
     def _next(self, function: Callable[[Any], Result], restarts: int = 3) -> Result:
-        """Return the result of the first task that is pending."""
+        """Return the result of the first pending task."""
         try:
             result: Result = self._pending[0][1].result()
             return result
@@ -107,7 +107,7 @@ class Workers:
 
 
 def _explained(error: Exception) -> UserError:
-    """Return the sentence about what a task raised, or what happened to its worker."""
+    """Return the error of a task, or of its lost worker, for the user."""
     from engine.methods.own import OwnMethodError
 
     if isinstance(error, UserError | OwnMethodError):
@@ -145,7 +145,7 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
 
 
 def _processes(count: int) -> Executor:
-    """Return an executor of processes, which import no module from the current folder."""
+    """Return an executor of processes that import nothing from the current folder."""
     os.environ["PYTHONSAFEPATH"] = "1"
     ignore = (signal.SIGINT, signal.SIG_IGN)
     return ProcessPoolExecutor(count, get_context("spawn"), signal.signal, ignore)
@@ -168,7 +168,7 @@ def _made_by(text: str) -> Executor:
 
 
 def _client(address: str) -> Any:
-    """Return a client of a Dask scheduler, to be used in a `with` statement."""
+    """Return a client of a Dask scheduler, a context manager."""
     try:
         import distributed
 

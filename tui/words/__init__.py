@@ -1,1 +1,1 @@
-"""What the numbers mean, in English: Source -> text, without colours or a screen."""
+"""What the numbers mean, in English, without colours or a screen."""

@@ -13,7 +13,7 @@ COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "second
 
 
 def length(seconds: float) -> str:
-    """A time of computing with its unit."""
+    """Write a computing time with its unit."""
     for unit, size in (("µs", 1e-6), ("ms", 1e-3)):
         if seconds < 999.5 * size:
             return f"{seconds / size:.3g} {unit}"
@@ -21,14 +21,14 @@ def length(seconds: float) -> str:
 
 
 def few(number: float) -> str:
-    """Return a number with three digits, or with all of a whole number."""
+    """Write a number with three digits, or all digits of a whole number."""
     if number >= 100:
         return f"{number:.0f}"
     return f"{number:.3g}"
 
 
 def point_words(point: Point, kind: ErrorKind, note: str) -> str:
-    """Return a method, its h, its error and its force evaluations, and a note."""
+    """Write a point's method, h, error and force evaluations, and a note."""
     error = f"{kind} error {point.error(kind):.1e}"
     if flaw := point.flaw(kind):
         error += f" ({REASONS[flaw]})"
@@ -40,7 +40,7 @@ def point_words(point: Point, kind: ErrorKind, note: str) -> str:
 
 
 def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest] = ()) -> str:
-    """Return the cheapest method in each range of errors; `without`: without Taylor's series."""
+    """Name the cheapest method in each range of errors; `without`: without Taylor's series."""
     if not found:
         return "No power of ten lies between the errors of the coarsest and finest runs."
     words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
@@ -50,7 +50,7 @@ def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapes
 
 
 def factor_words(found: Sequence[Cheapest]) -> str:
-    """Return how much the cheapest methods save over RK4; empty if not worth stating."""
+    """Say how much the cheapest methods save over RK4; "" if it is little."""
     savings = [
         f"{one.method.label} {one.saves:.2g} at {_power(one.target)}"
         for one in found
@@ -62,7 +62,7 @@ def factor_words(found: Sequence[Cheapest]) -> str:
 
 
 def growth_words(found: Sequence[Growth]) -> str:
-    """The measured powers of t with which theta errors grow; empty where none follows one."""
+    """Write the measured powers of t with which theta errors grow; "" if there are none."""
     named = ", ".join(growth.name for growth in found if growth.power is not None)
     if not named:
         return ""
@@ -70,7 +70,7 @@ def growth_words(found: Sequence[Growth]) -> str:
 
 
 def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
-    """Return the measured powers of t; and when all is `done`, which methods follow none."""
+    """Write the measured powers of t and, when `done`, which methods follow none."""
     words = growth_words(found)
     others = ", ".join(growth.method.label for growth in found if growth.power is None)
     lines = []

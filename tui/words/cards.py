@@ -1,4 +1,4 @@
-"""Cards: the properties of a method, and of a scene, as text; and what is on the screen."""
+"""Cards: the properties of a method or a scene as text; and the glossary."""
 
 import math
 import textwrap
@@ -12,7 +12,7 @@ from engine.scenes import SCENES, UNITS, Scene
 from tui.drawing.palette import SIGNS
 from tui.words.numbers import counted, motion_text, z_text
 
-WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
+WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
@@ -43,7 +43,7 @@ HEADS = {
     "verdict": "what the energy error does in the long run; ? explains each word",
     "th.err": GLOSSARY["theta error"],
 }
-"""What the heads of the table's columns mean."""
+"""The meaning of the table's heads."""
 for model in MODELS.values():
     HEADS[model.energy_error.symbol] = model.energy_error.about
     for column in model.extra_columns:
@@ -51,12 +51,12 @@ for model in MODELS.values():
 
 
 def head_text(head: str) -> str | None:
-    """Return what the head of a column means, in a line."""
+    """Explain the head of a column in a line, None if it is unknown."""
     return HEADS.get(head.partition(" [")[0])
 
 
 def glossary() -> str:
-    """Return what the words, signs and colours on the screen mean."""
+    """Explain the words, signs and colours on the screen."""
     return _card("What is on the screen", GLOSSARY)
 
 
@@ -78,7 +78,7 @@ def method_card(method: Method) -> str:
         "costs": f"about {costs}" if method.varies else costs,
         "symplectic": symplectic if method.symplectic else "no: phase-space area changes",
         "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
-        "stable": None if limit is None else stable,  # there is no one number
+        "stable": None if limit is None else stable,  # None: no single number
         "note": method.note,
         "used in": method.used,
         "reference": method.reference,
@@ -87,7 +87,7 @@ def method_card(method: Method) -> str:
 
 
 def scene_card(scene: Scene, now: str = "") -> str:
-    """Return a scene and what to watch in it; `now` is the step if it differs."""
+    """Return a scene's card; `now` is the current step if it differs."""
     exact = scene.exact()
     reference = None
     if exact.accuracy and scene == SCENES.get(scene.name):

@@ -1,4 +1,4 @@
-"""The shell command that brings back what is on the screen."""
+"""The shell command that reproduces what is on the screen."""
 
 import math
 import shlex
@@ -11,9 +11,9 @@ from tui.playback.source import Source
 
 
 def command(source: Source) -> str:
-    """Return the start of a lab; of a replay, or after a change of h, the moment of the recording.
+    """Return the command for a lab's start or, in a replay or after a change of h, for the moment.
 
-    A lab that changed its step size on the way and does not record can only be started again.
+    Without a recording, a change of h cannot be reproduced.
     """
     scene = source.scene
     if isinstance(source, Replay):
@@ -33,18 +33,18 @@ def command(source: Source) -> str:
 
 
 def reproduces(source: Source) -> bool:
-    """Return whether the command brings back all: not a change of h that no file holds."""
+    """Return whether the command reproduces everything: an unrecorded change of h is lost."""
     status = source.recording_status
     is_recorded = status is not None and not status.failed
     return is_recorded or _start_h(source) is not None
 
 
 def _start_h(source: Source) -> float | None:
-    """Return the h [s] of a scene that steps like this from its start on; None if h has changed."""
+    """Return the h [s] of a scene that steps like this from its start; None if h changed."""
     if any(0 < change.step <= source.sample.step for change in source.changes):
         return None
     stepping = source.stepping
-    # a scene's h is positive: time does not run back from its start
+    # a scene's h is positive
     for h in (source.scene.h, stepping.smallest):
         if stepping._replace(h=1.0).with_smallest(h) == stepping:
             return h
@@ -56,13 +56,13 @@ def _moment(file: str, position: float) -> str:
 
 
 def _listed(scene: Scene) -> Scene:
-    """The listed scene of its name, or else the first of its model."""
+    """Return the listed scene of this name, else the first of this model."""
     candidates = [SCENES.get(scene.name), *SCENES.values()]
     return next((each for each in candidates if each and each.model == scene.model), DEFAULT_SCENE)
 
 
 def scene_arguments(scene: Scene) -> list[str]:
-    """The options that reproduce a scene to the last bit, a user's own methods from their files."""
+    """Return the options that reproduce a scene to the last bit, with the user's own methods."""
     base = _listed(scene)
     arguments = ["--scene", base.name]
     for name, value in scene.numbers.items():

@@ -1,4 +1,4 @@
-"""The list of events: the user's inputs and the methods' milestones, with their simulated times."""
+"""The list of events: the user's changes and the methods' milestones."""
 
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
@@ -29,7 +29,7 @@ class EventLine(NamedTuple):
     t: float  # s, simulated
     text: str
     kind: Literal["change", "mark", "milestone"]
-    method: Method | None = None  # of a milestone
+    method: Method | None = None  # None for a user's change
 
     def __str__(self) -> str:
         if abs(self.t) < 1e4:
@@ -38,9 +38,9 @@ class EventLine(NamedTuple):
 
 
 def event_lines(source: Source) -> list[EventLine]:
-    """Return starts, changes and marks of all runs, and the milestones of this one; earliest first.
+    """Return starts, changes and marks of all runs and this run's milestones, in order.
 
-    Pauses and speeds are not listed: they change no number.
+    Pauses and speeds are not listed, because they change no number.
     """
     run = source.sample.run
     conserved = source.scene.equations.energy_error.conserved
@@ -48,12 +48,12 @@ def event_lines(source: Source) -> list[EventLine]:
         EventLine(run, each.step, each.t, _milestone(each, conserved), "milestone", each.method)
         for each in source.milestones
     ]
-    # stable: inputs first
+    # sorting is stable, so changes come first
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])
 
 
 def numbered(lines: Sequence[EventLine]) -> list[str]:
-    """The lines, where there are several runs each with the number of its own."""
+    """Return the lines, with the number of the run if there are several."""
     if len({line.run for line in lines}) == 1:
         return [str(line) for line in lines]
     return [f"{line.run:2} {line}" for line in lines]

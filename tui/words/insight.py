@@ -1,6 +1,6 @@
-"""The insight of the moment: `insight` chooses a kind and its numbers, SENTENCES has the words.
+"""The insight of the moment: `insight` chooses one with its numbers, SENTENCES has the words.
 
-Each states only what was measured; a forecast extrapolates a measured slope.
+Insights state what was measured; a forecast extrapolates a measured slope.
 """
 
 import math
@@ -43,15 +43,15 @@ SENTENCES = {
     "so far": "Energy errors so far: {least:share} ({0}) to {most:share} ({1}).",
 }
 
-WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
-FRESH = 6.0  # s of the clock for which a milestone is news
-TURN = 8.0  # s of the clock until the next of the lasting sentences
-UNCHANGED = 0.05  # of an energy that is worth no factor
-MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
-MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
+WATCH = 8.0  # s of the clock for the scene's own sentence, at the beginning of a run
+FRESH = 6.0  # s of the clock during which a milestone is news
+TURN = 8.0  # s of the clock for each of the lasting insights
+UNCHANGED = 0.05  # a smaller change of the energy is not worth mentioning
+MAX_BAND = 0.2  # of the energy; larger losses change the rate of loss
+MAX_PERIOD = 2.0  # small swings; near the separatrix the rate of loss depends on the energy
 PRIORITY = ("failed", "over the top", "errors cross", "verdict")
 IRREGULAR = ("chaotic", "wanders", "caught")
-"""Kinds that matter of a method that went over the top, too."""
+"""Kinds that are also worth stating of a method that went over the top."""
 
 
 def _share(value: float) -> str:
@@ -67,11 +67,11 @@ FORMATS: dict[str, Callable[[Any], str]] = {
     "percent": lambda value: "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %",
     "tenfold": lambda value: f"tenfold every {about(value)}" if value else "exponentially",
 }
-"""What SENTENCES may name after a colon, beside Python's own formats."""
+"""Formats of SENTENCES, in addition to Python's."""
 
 
 class Insight(NamedTuple):
-    """A fact about the run: its kind, a key of SENTENCES, its methods and its numbers."""
+    """A fact about the run: its kind (a key of SENTENCES), methods and numbers."""
 
     kind: str
     methods: tuple[Method, ...] = ()
@@ -86,7 +86,7 @@ class _Words(string.Formatter):
 
 
 def sentence(found: Insight) -> str:
-    """Return an insight in words."""
+    """Write an insight in words."""
     names = [short_name(method) for method in found.methods]
     *first, last = names or [""]
     joined = f"{', '.join(first)} and {last} stay" if first else f"{last} stays"
@@ -103,14 +103,14 @@ def short_name(method: Method) -> str:
 
 
 def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
-    """Return the insight of the moment in words."""
+    """Write the insight of the moment in words."""
     return sentence(insight(source, hidden))
 
 
 def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
-    """Choose: equilibrium, the return to t = 0, news, the scene's own, or the lasting ones in turn.
+    """Choose equilibrium, the return to t = 0, news, the scene's own, or a lasting insight.
 
-    Methods whose keys are `hidden` are not mentioned.
+    Methods with `hidden` keys are not mentioned.
     """
     step = source.sample.step
     t = abs(source.sample.t)
@@ -141,7 +141,7 @@ def _is_new_step(changes: Sequence[SteppingChange], since: float) -> bool:
 
 
 def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:
-    """Return the latest milestone since a step: failures first, then the others by PRIORITY."""
+    """Return the insight on the latest milestone since a step, by PRIORITY."""
     recent = [
         each for each in source.milestones if each.step > since and each.method.key not in hidden
     ]
@@ -157,7 +157,7 @@ def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | No
 
 
 def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
-    """Return the scene's own sentence, which holds for its own step only and its methods."""
+    """Return the scene's own sentence, unless its step or its methods have changed."""
     scene = source.scene
     named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
     if not scene.watch or source.stepping.h != scene.h or named:
@@ -166,7 +166,7 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
-    """Return all insights on the methods that are shown, the most important first; at least one."""
+    """Return all insights on the methods shown, the most important first; at least one."""
     ended = {at: each for at, each in endings(source).items() if each.method.key not in hidden}
     first = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
     found = [milestone_insight(each, _is_conserved(source)) for each in first]
@@ -186,7 +186,7 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
 
 
 def endings(source: Source) -> dict[int, Milestone]:
-    """Return by index the methods that failed or went over the top."""
+    """Return the milestones of failed methods and those over the top, by index."""
     ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
     ended.sort(key=lambda each: each.kind == "failed")
     return {source.scene.cast.index(each.method): each for each in ended}
@@ -197,7 +197,7 @@ def _is_conserved(source: Source) -> bool:
 
 
 def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
-    """Return a method's energy over the right one; None where they hardly differ."""
+    """Return a method's energy over the true one; None if they hardly differ."""
     error = milestone.energy_error
     ratio = 1 + error if conserved else math.exp(min(error, 700.0))
     if abs(ratio - 1) > UNCHANGED:
@@ -248,7 +248,7 @@ def drift(source: Source, index: int) -> Insight | None:
         return found
     conserved = _is_conserved(source)
     loses = judgement.verdict == "loses"
-    if conserved and loses and -error > 0.5:  # the share that is lost says more than the rate
+    if conserved and loses and -error > 0.5:  # the share lost is more telling than the rate
         return Insight("lost", (method,), {"share": -error})
     sign, kind = {"grows": (1, "gains"), "loses": (-1, "loses")}.get(judgement.verdict, (0, ""))
     rate = sign * (judgement.slope or 0.0)
@@ -268,11 +268,11 @@ def drift(source: Source, index: int) -> Insight | None:
 
 
 def forecast(source: Source, index: int) -> tuple[float, Method] | None:
-    """Return when [s] a steady loss will exceed the smallest maximum that it is still below.
+    """Return in what time [s] a steady loss will exceed another method's largest error.
 
-    None unless the slope is certain to a tenth; after a change of h, because the maxima belong
-    to another step; where the period depends on the energy, and the rate of loss with it; and
-    if the maximum is too large or the time too long.
+    Returns None unless the slope is certain to a tenth; after a change of h, because the largest
+    errors belong to another step; near the separatrix, where the rate of loss changes; and if the
+    error is too large or the time too long.
     """
     judgement = source.judgements[index]
     error = source.sample.readings[index].energy_error
@@ -331,5 +331,5 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Ins
 
 
 def return_text(scene: Scene, sample: Sample) -> str:
-    """Return the sentence on a run whose time is back at 0."""
+    """Write the sentence for reversed time that is back at 0."""
     return sentence(_returned(scene, sample))

@@ -1,6 +1,6 @@
-"""Numbers -> text: of a fixed width for tables, short for sentences; and the exact motion.
+"""Numbers as text: with a fixed width for tables, short for sentences; and the exact motion.
 
-Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
+Tables get a hyphen for nan and inf.
 """
 
 import math
@@ -11,25 +11,25 @@ from engine.scenes import Scene
 
 
 def counted(number: int, noun: str) -> str:
-    """As "1 sample" or "3 samples"."""
+    """Write "1 sample" or "3 samples"."""
     if abs(number) != 1:
         noun += "s"
     return f"{number} {noun}"
 
 
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
-    """With a sign and as many decimals as fit, or in scientific notation: " +1.000", "+1.2e+09"."""
+    """Write a sign and as many decimals as fit, or scientific notation: " +1.000", "+1.2e+09"."""
     fixed = [f"+.{places}f" for places in range(decimals, -1, -1)]
     return _fitting(value, width, [*fixed, "+.1e", "+.0e"])
 
 
 def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
-    """As "+3.3e+00", with fewer digits if needed; `sign` "-": a sign only if negative."""
+    """Write "+3.3e+00", with fewer digits if needed; `sign` "-": a sign only if negative."""
     return _fitting(value, width, [f"{sign}.{places}e" for places in range(digits, -1, -1)])
 
 
 def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
-    """Return a number in the first format that fits, or as spreadsheets do."""
+    """Write a number in the first format that fits, or # as spreadsheets do."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)
     texts = (format(value, each) for each in formats)
@@ -37,7 +37,7 @@ def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
-    """An angle [rad]; beyond a turn as turns and, if there is room, the rest: "-5 turns +0.89"."""
+    """Write an angle [rad]; beyond a turn as turns and, if it fits, the rest: "-5 turns +0.89"."""
     in_radians = decimal(theta, width, max(decimals, 1))
     if not math.tau < abs(theta) < math.inf:
         return in_radians
@@ -51,12 +51,12 @@ def angle(theta: float, width: int, decimals: int) -> str:
 
 
 def start(theta: float, omega: float) -> str:
-    """Start values: "57.3° 0 rad/s"."""
+    """Write start values: "57.3° 0 rad/s"."""
     return f"{math.degrees(theta):.4g}° {omega:.4g} rad/s"
 
 
 def seconds(value: float) -> str:
-    """Return a time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
+    """Write a time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
     if not math.isfinite(value):
         return "-"
     if round(value, 2) < 0:
@@ -73,7 +73,7 @@ def seconds(value: float) -> str:
 
 
 def about(seconds: float) -> str:
-    """A duration with about two digits: "40 s", "32 min", "8.4 h", "12 days"."""
+    """Write a duration with about two digits: "40 s", "32 min", "8.4 h", "12 days"."""
     units = {"days": 86400, "h": 3600, "min": 60, "s": 1}
     unit = next((unit for unit, size in units.items() if seconds >= 2 * size), "s")
     value = seconds / units[unit]
@@ -83,7 +83,7 @@ def about(seconds: float) -> str:
 
 
 def two_digits(value: float) -> str:
-    """A positive number with about two digits: "0.00029", "0.66", "4.3", "440", "1.3e+06"."""
+    """Write a positive number with about two digits: "0.00029", "0.66", "440", "1.3e+06"."""
     if value < 9.95:
         return f"{value:#.2g}"
     if value < 99_999.5:
@@ -92,21 +92,21 @@ def two_digits(value: float) -> str:
 
 
 def file_size(count: int) -> str:
-    """Bytes as "640 bytes", "96.4 kB", "1.2 MB"."""
-    from rich.filesize import decimal  # --help does without rich
+    """Write bytes as "640 bytes", "96.4 kB", "1.2 MB"."""
+    from rich.filesize import decimal  # --help needs no rich
 
     return decimal(count)
 
 
 def factor(value: float) -> str:
-    """A factor in full: "4", "262144", "0.125"."""
+    """Write a factor in full: "4", "262144", "0.125"."""
     if 1e3 <= abs(value) < 1e9:
         return f"{value:.0f}"
     return f"{value:.4g}"
 
 
 def z_text(scene: Scene, digits: int = 4) -> str:
-    """Return a scene's z and what it is: "z = h·w0 = 0.1566"."""
+    """Write a scene's z: "z = h·w0 = 0.1566"."""
     return f"z = h·{scene.equations.frequency_symbol} = {scene.z:.{digits}g}"
 
 
@@ -119,7 +119,7 @@ def regime(model: Model, theta: float, omega: float) -> str:
 
 
 def energy_share(model: Model, theta: float, omega: float) -> str:
-    """Return energy over that of the separatrix; near 1, as the difference: "1 - 2.5e-13"."""
+    """Write E/Es; near 1 as the difference: "1 - 2.5e-13"."""
     level = model.level(theta, omega)
     if level != 0 and abs(level) < 1e-3:
         return f"1 {'-' if level > 0 else '+'} {abs(level):.1e}"
@@ -127,7 +127,7 @@ def energy_share(model: Model, theta: float, omega: float) -> str:
 
 
 def motion_text(scene: Scene, exact: ExactMotion) -> str:
-    """Return the motion from a scene's start: "exact period 2.139 s  E/Es 0.2298  libration"."""
+    """Describe a scene's motion: "exact period 2.139 s  E/Es 0.2298  libration"."""
     parts = []
     if exact.period is not None:
         parts.append(f"exact period {exact.period:.6g} s")

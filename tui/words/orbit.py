@@ -1,4 +1,4 @@
-"""The orbit of a start under a method's own map, in words and numbers."""
+"""The orbit of a start under a method's map, in words and numbers."""
 
 import math
 
@@ -7,11 +7,11 @@ from engine.phase_space.section import OrbitKind, least_lyapunov
 from tui.words.numbers import counted
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
-MAX_DRIFT = 1e-3  # relative change of the energy, beyond which an orbit is a spiral
+MAX_DRIFT = 1e-3  # relative change of the energy; with more an orbit is a spiral
 
 
 def name(method: Method, kind: OrbitKind) -> str:
-    """Return the kind of orbit in a few words."""
+    """Name the kind of orbit."""
     if not kind.moves:
         return "at rest"
     if kind.chaotic:
@@ -30,14 +30,14 @@ def name(method: Method, kind: OrbitKind) -> str:
 
 
 def fraction(kind: OrbitKind) -> str:
-    """Return the small fraction nearest to the rotation number: "1:6" is one turn in six steps."""
+    """Return the simple fraction nearest to the rotation number; "1:6" is a turn in six steps."""
     if kind.fraction is None:
         return "-"
     return f"{kind.fraction.numerator}:{kind.fraction.denominator}"
 
 
 def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
-    """Return what stands below HEADS; a regular orbit's Lyapunov number is 0 as far as known."""
+    """Return the cells below HEADS; a regular orbit's Lyapunov number counts as 0."""
     turns = steps = "-"
     if kind.rotation is not None:
         turns = f"{kind.rotation:.7f}"
@@ -52,7 +52,7 @@ def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
 
 
 def sentence(method: Method, kind: OrbitKind) -> str:
-    """Return the orbit in a sentence."""
+    """Describe the orbit in a sentence."""
     words = name(method, kind)
     if words == "at rest":
         return "An equilibrium: it stays where it is."

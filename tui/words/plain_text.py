@@ -17,7 +17,7 @@ READING = 5.0  # s, to read it
 
 
 def description(source: Source, only: Cast | None = None) -> list[str]:
-    """Return sentences on the run, each method, or `only` these, and the recording."""
+    """Describe the run, its methods (or `only` these), and the recording."""
     scene = source.scene
     playhead = source.playhead
     kind = "The lab" if source.kind == "LIVE" else "The replay"
@@ -48,7 +48,7 @@ def description(source: Source, only: Cast | None = None) -> list[str]:
 
 
 def step_text(source: Source) -> str:
-    """Return the current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it"."""
+    """Describe the step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it"."""
     h = source.stepping.h
     text = f"{abs(h):.4g} s, z = {abs(h) * source.scene.equations.fastest:.3g}"
     if source.stepping.equal_cost:
@@ -59,7 +59,7 @@ def step_text(source: Source) -> str:
 
 
 def method_sentence(source: Source, index: int) -> str:
-    """Return how a method failed or went over the top, else its verdict or error so far."""
+    """Say how a method failed or went over the top, else give its verdict or error."""
     method = source.scene.cast[index]
     reading = source.sample.readings[index]
     judgement = source.judgements[index]
@@ -95,9 +95,9 @@ def print_run(
     sleep: Callable[[float], object] = time.sleep,
     only: Cast | None = None,
 ) -> None:
-    """Emit a sentence a second and one for each event until `stopped` or the end of a recording.
+    """Emit a sentence a second and one an event, until `stopped` or the end of a recording.
 
-    `only`: of these methods.
+    `only` restricts them to these methods.
     """
     for sentence in description(source, only):
         emit(sentence)
@@ -140,12 +140,12 @@ def print_tour(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
 ) -> None:
-    """Emit the steps: question and, after a pause, truth, until the last or until `stopped`."""
+    """Emit the steps, each with its question and, after a pause, the answer, until `stopped`."""
     tour = Tour(live)
     live.tick(clock())
 
     def wait_until(come: Callable[[], bool]) -> bool:
-        """Return whether it has come before it was stopped."""
+        """Return False if stopped first."""
         while not stopped() and not come():
             sleep(1 / 30)
             live.tick(clock())

@@ -1,4 +1,4 @@
-"""STEPS: the tour as data: a run and a shot of it, a question, two answers, and the truth.
+"""The tour as data: each step has a run and a shot, a question, two answers, and the truth.
 
 Tests measure the truths.
 """
@@ -17,11 +17,11 @@ ASTRAY = "This is your own run now. Enter begins the step again."
 
 @dataclass(frozen=True, slots=True)
 class TourStep:
-    """A step of the tour: a run, and what to look at in it."""
+    """A step of the tour."""
 
     title: str
     scene: Scene
-    speed: float  # so that the moment comes after about ten seconds
+    speed: float  # the moment comes after about ten seconds
     watch: str  # what to look at until the moment comes
     moment: float  # s, simulated
     happened: str
@@ -30,12 +30,12 @@ class TourStep:
     right: int  # index of the right answer
     truth: str
     shot: Shot
-    returns: bool = False  # at the moment time turns round; the question comes at t = 0
+    returns: bool = False  # time reverses at the moment; the question comes at t = 0
     equal_cost: bool = False
 
     @property
     def stepping(self) -> Stepping:
-        """The stepping at the start of its run."""
+        """The stepping at the start of the run."""
         scene = self.scene
         return Stepping(scene.h, self.equal_cost, scene.cast).with_smallest(scene.h)
 
@@ -50,7 +50,7 @@ class TourStep:
         return round(self.moment / self.stepping.h)
 
 
-# The formatter would join the sentences to longer lines.
+# The formatter would join lines of a sentence.
 # fmt: off
 STEPS = (
     TourStep(
@@ -223,14 +223,14 @@ STEPS = (
 
 
 class Tour:
-    """Takes a lab through the steps: to the moment, the question, the truth, and on."""
+    """Leads a lab through the steps: to the moment, the question, the truth, and on."""
 
     def __init__(self, live: Live) -> None:
         self.live = live
         self.index = 0
         self.stage: Literal["watching", "asked", "answered"] = "watching"
-        self.choice: int | None = None  # the answer that was chosen
-        self._home: tuple[int, Stepping] | None = None  # the run of the step, and its stepping
+        self.choice: int | None = None  # the chosen answer
+        self._home: tuple[int, Stepping] | None = None  # the step's run and its stepping
 
     @property
     def step(self) -> TourStep:
@@ -274,7 +274,7 @@ class Tour:
         self.live.pause(False)
 
     def follow(self, at_once: bool = False) -> bool:
-        """Return whether the moment has come, or is to come `at_once`; the lab is paused there."""
+        """Pause at the moment, `at_once` or when it comes; return whether it has come."""
         if self.stage != "watching" or self.is_astray:
             return False
         end = self.step.turn
@@ -296,12 +296,12 @@ class Tour:
         return reached
 
     def answer(self, choice: int | None) -> None:
-        """Answer the question, or ask for the truth."""
+        """Answer the question, or show the truth."""
         self.choice = choice
         self.stage = "answered"
 
     def forward(self) -> bool:
-        """Go to the moment, to the truth, or to the next step; return False after the last."""
+        """Go to the moment, the truth, or the next step; return False after the last."""
         if self.is_astray:
             self.begin(self.index)
         elif self.stage == "watching":
@@ -316,7 +316,7 @@ class Tour:
         return True
 
     def back(self) -> None:
-        """Return from the truth to the question, or else to the step before."""
+        """Go back from the truth to the question, or to the previous step."""
         if self.stage == "answered":
             self.stage = "asked"
         else:
