@@ -1,8 +1,9 @@
-"""Damage a recording at random and look what every reader makes of it."""
+"""Damage recordings at random, and check what every reader makes of them."""
 
 import csv
 import os
 import random
+from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,7 +26,7 @@ class Damaged:
     """Damaged copies of a recording, compared with the original."""
 
     def __init__(self, whole: Path, folder: Path, cut: int = 0) -> None:
-        """`cut`: the original is this much shorter, as if its lab had been killed."""
+        """Take the original without its last `cut` bytes, as if its lab had been killed."""
         data = whole.read_bytes()
         self.data = data[: len(data) - cut]
         self.path = folder / "damaged.mcap"
@@ -36,7 +37,7 @@ class Damaged:
             self.samples = [value for _, value in samples_of(recording)]
             self.runs = [run.scene for run in recording.runs]
         with self.path.open("rb") as stream:
-            self.chunks = read_contents(stream, check=True, progress=None).places
+            self.chunks = read_contents(stream, check=True).places
 
     def cut(self, length: int) -> None:
         """Check that a file of this length reads as far as it goes."""
@@ -55,7 +56,7 @@ class Damaged:
         self.path.write_bytes(data)
 
     def is_noticed_by_verify(self) -> bool:
-        """Return whether verify refuses the file, or does not call it complete or as long as it was."""
+        """Return whether verify refuses the file, or calls it incomplete or different."""
         try:
             result = verify(self.path)
         except RecordingError:
@@ -65,9 +66,12 @@ class Damaged:
 
     def is_harmless(self) -> bool:
         """Return whether all that is read is what was recorded."""
-        with Recording.open(self.path) as recording:
-            same = list(recording.entries()) == self.entries
-            return same and [run.scene for run in recording.runs] == self.runs
+        try:
+            with Recording.open(self.path) as recording:
+                scenes = [run.scene for run in recording.runs]
+                return list(recording.entries()) == self.entries and scenes == self.runs
+        except RecordingError:
+            return False
 
     def is_noticed_by_show(self) -> bool:
         """Return whether `recordings show` names a problem."""
@@ -86,8 +90,8 @@ class Damaged:
             for reading in sample.readings
         }
         for row in csv.DictReader(answer.out.splitlines()):
-            found = int(row["step"]), float(row["theta_rad"]), float(row["energy_error"])
-            assert found in numbers
+            exported = int(row["step"]), float(row["theta_rad"]), float(row["energy_error"])
+            assert exported in numbers
         return bool(answer.err)
 
     def is_noticed_by_replay(self) -> bool:
@@ -105,7 +109,7 @@ class Damaged:
             return True
 
     def hole(self, chance: random.Random) -> int:
-        """Overwrite up to 5 000 bytes, and check that every intact chunk comes back; return those lost."""
+        """Overwrite up to 5000 bytes, check that intact chunks are read, and count lost ones."""
         begin = chance.randrange(len(self.data))
         end = begin + chance.randrange(1, 5_000)
         noise = chance.randbytes(min(end, len(self.data)) - begin)
@@ -114,14 +118,13 @@ class Damaged:
         ends = [*begins[1:], len(self.data)]
         intact = {a for a, b in zip(begins, ends, strict=True) if b <= begin or a >= end}
         with self.path.open("rb") as stream:
-            places = read_contents(stream, check=True, progress=None).places
-        found = {place.offset for place in places}
-        assert intact <= found
+            read = {place.offset for place in read_contents(stream, check=True).places}
+        assert intact <= read
         self._check_recovered()
-        return len(self.chunks) - len(found)
+        return len(self.chunks) - len(read)
 
     def _check_recovered(self) -> None:
-        """Check that what is saved is what was recorded."""
+        """Check that recover saves only what was recorded."""
         try:
             recover(self.path, self.out, overwrite=True)
         except RecordingError:
@@ -144,36 +147,36 @@ READERS = {
 
 
 def campaign(cuts: int = 1, flips: int = 100, others: int = 30, holes: int = 30) -> dict[str, int]:
-    """Damage recordings in every way; every `cuts`-th byte is cut at, 0: none.  Return what was done."""
-    done = {"cuts": 0, "flips": 0, "unnoticed": 0, "harmless": 0, "holes": 0, "chunks_lost": 0}
+    """Cut recordings at every `cuts`-th byte, flip bits and punch holes; return the counts.
+
+    `flips` of the bits are flipped for verify, `others` for each other reader.
+    """
+    done = Counter(unnoticed=0)
     chance = random.Random(1)
     memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
     with TemporaryDirectory(dir=memory) as name, pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", lambda _: None)
         folder = Path(name)
-        files = [tiny(folder / "tiny.mcap"), record(folder / "two.mcap", two_runs())]
-        for file in files:
+        small = tiny(folder / "tiny.mcap")
+        large = record(folder / "two.mcap", two_runs())
+        for file in (small, large):
             damaged = Damaged(file, folder)
-            for length in range(chance.randrange(cuts), len(damaged.data), cuts) if cuts else ():
+            for length in range(chance.randrange(cuts), len(damaged.data), cuts):
                 damaged.cut(length)
                 done["cuts"] += 1
-        whole = Damaged(files[1], folder)
-        cut = Damaged(files[1], folder, cut=1_500)
-        for reader, count in (("verify", flips), *((each, others) for each in list(READERS)[1:])):
-            for number in range(count):
-                damaged = (whole, cut)[number % 2]
+        whole = Damaged(large, folder)
+        cut = Damaged(large, folder, cut=1_500)
+        for reader, is_noticed in READERS.items():
+            for number in range(flips if reader == "verify" else others):
+                damaged = cut if number % 2 else whole
                 damaged.flip(chance)
                 done["flips"] += 1
-                noticed = READERS[reader](damaged)
-                if not noticed or damaged is cut:
-                    try:
-                        harmless = damaged.is_harmless()
-                    except RecordingError:
-                        harmless = False
+                noticed = is_noticed(damaged)
+                if damaged is cut or not noticed:
+                    harmless = damaged.is_harmless()
                     done["harmless"] += harmless
                     done["unnoticed"] += not (noticed or harmless)
-        long = Damaged(files[1], folder)
         for _ in range(holes):
-            done["chunks_lost"] += long.hole(chance)
+            done["chunks_lost"] += whole.hole(chance)
             done["holes"] += 1
-    return done
+    return dict(done)

@@ -1,4 +1,4 @@
-"""Recordings made for tests: tiny, and the same each time."""
+"""Small recordings for tests, the same each time."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -21,7 +21,7 @@ def start(run: int = 1, scene: Scene = SCENE) -> Event:
 
 
 def two_runs() -> list[Entry]:
-    """Two runs, of which the second continues from the first, and all events."""
+    """Two runs with all kinds of events, the second of which continues from the first."""
     entries = []
 
     def note(clock: float, value: Sample | Event) -> None:
@@ -62,7 +62,7 @@ def samples_of(recording: Recording) -> list[Entry]:
 
 
 def record(path: Path, entries: list[Entry], wall=None) -> Path:
-    """Write entries, a chunk a second as in the lab; headless unless there is a `wall` clock."""
+    """Write entries, with a chunk each second as in the lab; headless without a `wall` clock."""
     flushed_at = 0.0
     with Recorder(path, wall) as recorder:
         for clock, value in entries:
@@ -77,7 +77,7 @@ def record(path: Path, entries: list[Entry], wall=None) -> Path:
 
 
 def tiny(path: Path) -> Path:
-    """As small as a recording gets: one method, three samples, two chunks and one for the stop."""
+    """A very small recording: one method, three samples, two chunks and one for the stop."""
     scene = replace(SCENE, cast=(VELOCITY_VERLET,))
     lockstep = Lockstep(scene)
     entries = [Entry(0.0, start(scene=scene)), Entry(0.0, lockstep.sample())]
@@ -94,24 +94,28 @@ Changes = Sequence[tuple[int, float]]
 def with_changes(
     scene: Scene, time: float, recorder: Recorder, changes: Changes, sample_every: int = 1
 ) -> Iterator[Sample]:
-    """`headless.simulate` with changes of h; its clock is the time simulated, backwards or forwards."""
+    """`headless.simulate` with changes of h; the clock runs forwards in both directions of time."""
     lockstep = Lockstep(scene, judged=True)
-    clock, left, known = 0.0, time, 0
+    clock = 0.0
+    remaining = time
+    recorded = 0  # milestones
 
     def sampled() -> Sample:
-        nonlocal known
+        nonlocal recorded
         sample = lockstep.sample()
         recorder.sample(sample, clock)
-        for milestone in lockstep.milestones[known:]:
+        for milestone in lockstep.milestones[recorded:]:
             recorder.event(noticed(1, milestone), clock)
-        known = len(lockstep.milestones)
+        recorded = len(lockstep.milestones)
         return sample
 
     recorder.event(start(scene=scene), 0.0)
     yield sampled()
     for step, h in (*changes, (math.inf, 0.0)):
-        begin, first, size = clock, lockstep.step, abs(lockstep.stepping.h)
-        last = first + max(0, round(left / size))
+        begin = clock
+        first = lockstep.step
+        size = abs(lockstep.stepping.h)
+        last = first + max(0, round(remaining / size))
         end = int(min(step, last))
         while lockstep.step < end:
             lockstep.advance(min(sample_every, end - lockstep.step))
@@ -119,7 +123,7 @@ def with_changes(
             yield sampled()
         if end == last:
             return
-        left -= (end - first) * size
+        remaining -= (end - first) * size
         if h != lockstep.stepping.h:
             recorder.event(Event("set_h", 1, end, lockstep.t, h=h), clock)
             lockstep.set_stepping(Stepping(h, cast=scene.cast))

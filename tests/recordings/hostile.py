@@ -1,4 +1,4 @@
-"""Hostile files: every checksum right, and much in them that no recorder writes."""
+"""Hostile files, with right checksums and contents that no recorder writes."""
 
 import hashlib
 import json
@@ -36,13 +36,15 @@ def write(path: Path, entries: Iterator[list[Part]], chunk_size: int = 1 << 20) 
         )
         writer.start("pendu", "forger")
         schema = writer.register_schema("x", "jsonschema", b'{"type": "object"}')
-        names = (EVENTS, FOREIGN, *topics_of(SCENE))
-        facts = {"format": FORMAT_VERSION}
-        channels = {name: writer.register_channel(name, "json", schema, facts) for name in names}
+        topics = (EVENTS, FOREIGN, *topics_of(SCENE))
+        metadata = {"format": FORMAT_VERSION}
+        channels = {
+            topic: writer.register_channel(topic, "json", schema, metadata) for topic in topics
+        }
         for number, parts in enumerate(entries):
-            for name, clock, data in parts:
+            for topic, clock, data in parts:
                 time = CLOCK_OFFSET + round(clock * 1e9)
-                writer.add_message(channels[name], time, data, time, number % (1 << 32))
+                writer.add_message(channels[topic], time, data, time, number)
         writer.finish()
 
 
@@ -68,7 +70,7 @@ def begun() -> Iterator[list[Part]]:
 
 
 def cut_run(run: int) -> Iterator[list[Part]]:
-    """A run of whose sample a method is missing."""
+    """A run with a sample that lacks a method."""
     yield event(start(run))
     yield sample(first_sample(run))[:-1]
 
@@ -101,7 +103,7 @@ def late(count: int) -> Iterator[list[Part]]:
 
 
 def unlike(number: int) -> str:
-    """A long text that no other number has, and that cannot be compressed to nothing."""
+    """A long text of its own for each number, which cannot be compressed to nothing."""
     return hashlib.sha256(number.to_bytes(8)).hexdigest() + "字" * 130
 
 
@@ -125,7 +127,7 @@ def marks(count: int) -> Iterator[list[Part]]:
 def milestones(count: int) -> Iterator[list[Part]]:
     cast = SCENE.cast
     made = (Milestone("verdict", cast[n % 4], n, n * 0.1, 1e-9, "grows") for n in range(count))
-    return noted(noticed(1, each) for each in made)
+    return noted(noticed(1, milestone) for milestone in made)
 
 
 def foreign(count: int) -> Iterator[list[Part]]:
@@ -159,4 +161,4 @@ FILES: dict[str, Callable[[int], Iterator[list[Part]]]] = {
     "many foreign messages": lambda n: foreign(10 * n),
     "many tiny events": lambda n: (event(Event("mark", 1, 0, 0.0)) for _ in range(10 * n)),
 }
-"""What is in it -> its entries; a number says how many are many."""
+"""Entries by what is hostile in them; the argument is how many are many."""

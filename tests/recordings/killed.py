@@ -29,8 +29,8 @@ def my_heun(force, phase, h):
 """
 OWN = (load(HEUN, "my_heun", "h", "mine.py"),)
 KEYS = (
-    *4 * [lambda live: live.pause(not live.playhead.paused)],
-    *8 * [lambda live: live.step(1)],
+    *[lambda live: live.pause(not live.playhead.paused)] * 4,
+    *[lambda live: live.step(1)] * 8,
     lambda live: live.step(10),
     lambda live: live.step(-3),
     lambda live: live.set_stepping(live.stepping._replace(h=0.02)),
@@ -48,24 +48,25 @@ KEYS = (
 class Noting(LiveRecorder):
     """Remembers its last sample."""
 
-    last = 0, 0
+    last = (0, 0)  # run, step
 
     def sample(self, sample: Sample, clock: float) -> None:
         super().sample(sample, clock)
-        self.last = sample.run, sample.step
+        self.last = (sample.run, sample.step)
 
 
 def main(path: Path, log: Path) -> None:
-    """Play at 30 frames a second of the machine's clock; press a key every third of a second or so."""
-    recorder, live = Noting(path), Live(SCENE)
+    """Play at 30 frames a second, and press about three keys a second."""
+    recorder = Noting(path)
+    live = Live(SCENE)
     live.record(recorder)
-    knew = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    log_file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     while True:
         live.tick(time.monotonic())
         if random.random() < 0.1:
             random.choice(KEYS)(live)
         run, step = recorder.last
-        os.write(knew, f"{time.monotonic()} {run} {step}\n".encode())
+        os.write(log_file, f"{time.monotonic()} {run} {step}\n".encode())
         time.sleep(FRAME)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from recordings import library
 from recordings.errors import RecordingError
-from recordings.library import GOLDEN, free_path, leftovers, listing, new_path
+from recordings.library import GOLDEN, leftovers, listing, new_path
 from recordings.recorder import Recorder
 from tests.recordings.examples import start, tiny
 from tui.cli.options import resolve
@@ -44,14 +44,6 @@ def test_a_new_recording_has_a_free_name_with_the_time(folder, monkeypatch):
         free = folder / f"2026-11-20T12-00-00{name}.mcap"
         assert new_path() == free
         free.with_suffix(taken).touch()
-
-
-def test_a_name_that_ends_in_a_number_keeps_it(folder):
-    folder.mkdir()
-    for name in ("lesson-1-2.mcap", "lesson-1-3.mcap"):
-        (folder / "lesson-1.mcap").touch()
-        assert free_path(folder / "lesson-1.mcap") == folder / name
-        (folder / name).touch()
 
 
 def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
