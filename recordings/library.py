@@ -19,7 +19,6 @@ from recordings.files import is_stream
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording
-MARKS = ".marks.json"  # appended to a recording's name, for marks made in its replay
 GOLDEN = Path(__file__).parent / "golden"
 
 

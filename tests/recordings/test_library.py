@@ -13,7 +13,6 @@ from recordings.recorder import Recorder
 from tests.recordings.examples import start, tiny
 from tui.cli.options import resolve
 from tui.commands.recordings import delete
-from tui.playback.marks import Mark, Marks
 
 
 @pytest.fixture(autouse=True)
@@ -91,14 +90,6 @@ def test_a_recording_in_progress_is_not_a_leftover(folder):
     with Recorder(folder / "running.mcap") as recorder:
         recorder.event(start(), 0.0)
         assert leftovers() == [folder / "killed.mcap.part"]
-
-
-def test_marks_go_with_their_recording(folder):
-    (path,) = fill(folder, a=1)
-    Marks(path).add(Mark(0.5, 1, 3))
-    assert len(list(folder.iterdir())) == 2
-    assert [item.path for item in listing() if delete(item)] == [path]
-    assert not list(folder.iterdir())
 
 
 def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, monkeypatch):

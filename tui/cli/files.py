@@ -67,7 +67,7 @@ def repeat_swallowed_interrupts() -> None:
 
 @contextmanager
 def stop_requests() -> Iterator[Callable[[], bool]]:
-    """Yield a function that tells whether Ctrl+C, SIGTERM or SIGHUP came; a second one interrupts."""
+    """Yield a function that tells whether a signal has asked for an end; a second interrupts."""
     asked = False
 
     def ask(number: int, frame: FrameType | None) -> None:

@@ -197,11 +197,10 @@ def _prune(options: argparse.Namespace) -> Report:
 
 
 def delete(item: "Item") -> bool:
-    """Delete a recording with its marks, unless it is in use; return whether it was deleted."""
+    """Delete a recording unless it is in use; return whether it was deleted."""
     from recordings import library
 
     with suppress(OSError):
         if not library.in_use(item.path):
             item.path.unlink()
-            item.path.with_name(item.path.name + library.MARKS).unlink(missing_ok=True)
     return not item.path.exists()

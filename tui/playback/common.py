@@ -89,12 +89,7 @@ class Playback(ABC):
     @property
     @abstractmethod
     def events(self) -> Sequence[Event]:
-        """The user's changes up to the playhead, then the marks set in a replay."""
-
-    @property
-    def is_marked(self) -> bool:
-        here = ("mark", self.sample.run, self.sample.step)
-        return any((event.kind, event.run, event.step) == here for event in self.events)
+        """The user's changes and marks up to the playhead."""
 
 
 def doubled(speed: float, times: int) -> float:

@@ -249,6 +249,11 @@ class Live(Playback):
             recorder.event(event, self._recorded)
         recorder.sample(self.sample, self._recorded)
 
+    @property
+    def is_marked(self) -> bool:
+        here = ("mark", self.sample.run, self.sample.step)
+        return any((event.kind, event.run, event.step) == here for event in self.events)
+
     def mark(self, text: str | None = None) -> None:
         if not self.is_marked:
             self._note_here("mark", text=text)

@@ -15,7 +15,6 @@ from recordings.events import Event, check_present
 from tui.playback.common import Playback, Playhead, RecordingStatus
 from tui.playback.history import History, changes_of
 from tui.playback.live import Live
-from tui.playback.marks import Mark, Marks
 
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run, SamplePlace
@@ -40,7 +39,6 @@ class Replay(Playback):
     ) -> None:
         self.recording = recording
         self.length = recording.length  # s
-        self.marks = Marks(recording.path)
         self.playhead = Playhead()
         self.looping = False  # whether to play it again and again
         self._closed = False
@@ -54,14 +52,7 @@ class Replay(Playback):
     @property
     def events(self) -> Sequence[Event]:
         here = self.playhead.position
-        marks = [self._event(mark) for mark in self.marks if mark.clock <= here]
-        return [*(event for clock, event in self.recording.events if clock <= here), *marks]
-
-    def _event(self, mark: Mark) -> Event:
-        run = self.recording.run_of(mark.run) or self.run
-        before = change_before(changes_of(run), mark.step)
-        t = before.t + (mark.step - before.step) * before.stepping.h
-        return Event("mark", mark.run, mark.step, t, text=mark.text)
+        return [event for clock, event in self.recording.events if clock <= here]
 
     @property
     def milestones(self) -> Sequence[Milestone]:
@@ -99,9 +90,8 @@ class Replay(Playback):
 
     @property
     def ticks(self) -> list[float]:
-        """The times [s] of events, milestones and marks, but not of stops."""
-        done = {clock for clock, event in self.recording.events if event.kind != "stop"}
-        return sorted(done.union(mark.clock for mark in self.marks))
+        """The times [s] of all events but stops."""
+        return sorted({clock for clock, event in self.recording.events if event.kind != "stop"})
 
     # The user's actions
 
@@ -145,10 +135,8 @@ class Replay(Playback):
     def go_to(self, run: int, step: int) -> bool:
         """Pause and go to the event at a step; return False if there is none."""
         self.pause(True)
-        known = [(clock, event.run, event.step) for clock, event in self.recording.events]
-        known += [(mark.clock, mark.run, mark.step) for mark in self.marks]
-        for clock, *at in known:
-            if at == [run, step]:
+        for clock, event in self.recording.events:
+            if (event.run, event.step) == (run, step):
                 self.seek(clock)
                 return True
         return False
@@ -160,10 +148,6 @@ class Replay(Playback):
             self.seek(min(later, default=self.length))
         else:
             self.seek(max((tick for tick in self.ticks if tick < position - 0.3), default=0.0))
-
-    def mark(self, text: str | None = None) -> None:
-        if not self.is_marked:
-            self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 
     def live(self) -> Live:
         """Return a lab that continues from here with the same bits.

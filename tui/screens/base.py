@@ -48,7 +48,6 @@ class SourceScreen(SizedScreen[None]):
         Binding("full_stop", "step(1)", "one step forward", False, ".", group=_STEPS),
         Binding("left_square_bracket", "event(-1)", "previous event", False, "[", group=_EVENTS),
         Binding("right_square_bracket", "event(1)", "next event", False, "]", group=_EVENTS),
-        Binding("m", "mark", "mark this moment", show=False),
         *(
             Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
             for n in range(1, MAX_METHODS + 1)
@@ -229,18 +228,6 @@ class SourceScreen(SizedScreen[None]):
             self.show_now()
         else:
             self.notify(f"That event belongs to run {run}; replay the recording to see it.")
-
-    def action_mark(self) -> None:
-        """Leave a mark at the sample, unless it has one; that of a replay is next to its file."""
-        text = f"Mark at {self.source.sample.t:.2f} s"
-        if self.source.is_marked:
-            text = "Already marked"
-        try:
-            self.source.mark()
-        except OSError as error:
-            text = f"The mark cannot be saved: {error.strerror}."
-        self.notify(text, timeout=4)
-        self.show_now()
 
     def action_speed(self, doublings: int) -> None:
         self.keep(self.state)

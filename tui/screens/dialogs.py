@@ -164,7 +164,7 @@ class CastForm(Form[Scene]):
         yield listed
 
     def _line(self, method: Method) -> Text:
-        """Return "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit if not chosen."""
+        """Return "2 v Velocity Verlet  order 2  1 force a step"; the digit only if chosen."""
         digits = {each: at for at, each in enumerate(self.cast, 1)}
         name = f"{digits.get(method, ' ')} {method.letter} {method.label:<22}"
         forces = f"{counted(method.force_evaluations, 'force')} a step"

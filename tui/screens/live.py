@@ -37,6 +37,7 @@ class LiveScreen(SourceScreen):
         Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
         Binding("b", "reverse", "Back", tooltip="run back in time"),
         Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
+        Binding("m", "mark", "mark this moment", show=False),
         Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
         Binding("enter", "tour_forward"),  # the tour's panel shows these two
         Binding("backspace", "tour_back"),
@@ -91,6 +92,14 @@ class LiveScreen(SourceScreen):
             self.live.pause(True)
             self.live.mark(return_text(self.live.scene, returned))
             self.show_now()
+
+    def action_mark(self) -> None:
+        text = f"Mark at {self.source.sample.t:.2f} s"
+        if self.live.is_marked:
+            text = "Already marked"
+        self.live.mark()
+        self.notify(text, timeout=4)
+        self.show_now()
 
     # Changes of the run
 

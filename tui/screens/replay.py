@@ -112,7 +112,7 @@ class ReplayScreen(SourceScreen):
         Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
         Binding("b", "reverse", "Back", tooltip="play back in time"),
         Binding("f", "live", "Live", tooltip="continue live from here"),
-        Binding("plus,equals_sign,minus,p,P,shift+p,i,M,shift+m,r,n,T,shift+t", "change"),
+        Binding("plus,equals_sign,minus,p,P,shift+p,i,m,M,shift+m,r,n,T,shift+t", "change"),
     ]
 
     def __init__(

@@ -67,7 +67,7 @@ class SignalThread(Thread):
         close: Callable[[], object],
         job: Job | None,
     ) -> None:
-        """`leave` ends the program from the loop; `close` finishes the recording from any thread."""
+        """`leave` ends the program from the loop; `close` ends the recording from any thread."""
         super().__init__(name="signals", daemon=True)
         self._loop = loop
         self._leave = leave

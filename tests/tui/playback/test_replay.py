@@ -10,14 +10,11 @@ import pytest
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from recordings.events import Entry
-from recordings.library import GOLDEN
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
-from tui.cli.options import resolve
-from tui.playback.marks import Mark, Marks
 from tui.playback.replay import Replay, pieces
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
@@ -245,39 +242,6 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
     assert table.verdicts[table.replay.scene.cast.index(said.method)] == "wanders"
-
-
-def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):
-    path = recorded(tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), 1.0)
-    before = path.read_bytes()
-    replay = Table(path).replay
-    replay.seek(2.0)
-    replay.mark()  # a moment has one mark
-    assert list(replay.marks) == []
-    replay.seek(1.5)
-    replay.mark("look")
-    replay.mark("look")
-    assert path.read_bytes() == before
-    again = Table(path).replay
-    assert [(mark.clock, mark.text) for mark in again.marks] == [(1.5, "look")]
-    assert 1.5 in again.ticks
-
-
-def test_marks_of_a_bundled_recording_are_kept_in_the_library(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    mark = Mark(1.0, 1, 20, "here")
-    Marks(resolve("drift")).add(mark)
-    assert list(Marks(resolve("drift"))) == [mark]
-    assert not list(Marks(tmp_path / "drift.mcap"))
-    assert not list(GOLDEN.glob("*.json"))
-
-
-@pytest.mark.parametrize(
-    "content", ["", '{"schema": "pendu.marks/1", "marks": [{"clock": "x"}]}', "[" * 9999]
-)
-def test_a_file_of_marks_that_is_not_ours_is_no_marks(tmp_path, content):
-    (tmp_path / "a.mcap.marks.json").write_text(content)
-    assert list(Marks(tmp_path / "a.mcap")) == []
 
 
 def test_a_closed_replay_stands_still(table):

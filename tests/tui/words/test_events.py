@@ -4,9 +4,7 @@ import pytest
 
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from recordings.recording import Recording
-from tests.tui.harness import after, recorded
-from tui.playback.replay import Replay
+from tests.tui.harness import after
 from tui.playback.source import Source
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
@@ -50,22 +48,6 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
         " 2    0.00 start 114.6° 0 rad/s, h 0.05 s",
         " 2    0.00 h 0.2 s, equal cost",
     ]
-
-
-def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
-    larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
-    path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
-    with Recording.open(path) as recording:
-        replay = Replay(recording, clock=lambda: 0.0)
-        times = []
-        for position in (1.0, 3.0, 4.5):
-            replay.seek(position)
-            replay.mark()
-            times.append(replay.sample.t)
-        marks = [line for line in event_lines(replay) if line.kind == "mark"]
-        assert [line.t for line in marks] == pytest.approx(times)
-        replay.seek(3.5)
-        assert "mark 3" not in texts(replay)
 
 
 def test_a_step_back_removes_what_comes_later():

@@ -29,7 +29,7 @@ Cell = tuple[str, Ink]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """Return a score per swing: -1 unknown, 0 to 1 lost (later is more), 1 to 2 held (better is more).
+    """Return a score per swing: -1 unknown, 0 to 1 lost, later; 1 to 2 held, better.
 
     Both parts are logarithmic, in steps survived and in the largest energy error, down to 1e-12.
     """
