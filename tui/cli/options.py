@@ -71,7 +71,7 @@ def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -
 
 def add_recording(parser: argparse.ArgumentParser, name: str = "file", **settings: Any) -> None:
     """Add an argument for `resolve`."""
-    usual = {"metavar": "FILE", "help": "a file, latest, or a name such as drift"}
+    usual = {"metavar": "FILE|latest|NAME", "help": "a file, latest, or a name such as drift"}
     add_file(parser, name, **(usual | settings))
 
 

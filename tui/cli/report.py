@@ -102,13 +102,13 @@ class Column(NamedTuple):
     """A column of a table: its head, and how to write a row's cell."""
 
     head: str
-    cell: str | Callable[[Any], Any]  # the name of a field, or a function of the row
+    cell: str | int | Callable[[Any], Any]  # a field's name or index, or a function of the row
     form: str | Callable[[Any], str] = ""  # how to write a value; if given, aligned right
     right: bool = False
 
     def text(self, row: Any) -> str:
         """Return the cell of a row, a dash for None."""
-        value = row[self.cell] if isinstance(self.cell, str) else self.cell(row)
+        value = self.cell(row) if callable(self.cell) else row[self.cell]
         if value is None:
             return "-"
         text = format(value, self.form) if isinstance(self.form, str) else self.form(value)

@@ -1,4 +1,4 @@
-"""Check the environment (terminal, encoding, colours, recordings, versions) and suggest fixes."""
+"""Check the terminal, its colours, the recordings folder and versions, and suggest fixes."""
 
 import argparse
 import os
@@ -30,7 +30,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    rows = [dict(zip(("what", "found", "advice"), found, strict=True)) for found in _findings()]
+    names = ("what", "found", "advice")
+    rows = [dict(zip(names, finding, strict=True)) for finding in _findings()]
     advice = Column("advice", lambda row: row["advice"] or "fine")
     columns = (Column("", "what"), Column("found", "found"), advice)
     publish(Report(name="doctor", columns=columns, rows=rows, fields={"findings": rows}), options)
@@ -38,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _findings() -> Iterator[tuple[str, str, str]]:
-    """Yield what was looked at, what was found, and advice unless that is fine."""
+    """Yield what was checked, what was found, and advice, which is empty if that is fine."""
     from recordings import library
 
     yield "lab", *_lab()
@@ -97,11 +98,13 @@ def colour(environment: Mapping[str, str]) -> tuple[str, str]:
 
 
 def folder(path: Path) -> tuple[str, str]:
-    """Try to make a file in the folder or its nearest parent: permissions alone do not tell."""
+    """Check the folder, or its nearest parent, by creating a file: permissions may mislead."""
+    nearest = path
     try:
-        there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
-        with TemporaryFile(dir=there):
-            return f"{path}, {file_size(shutil.disk_usage(there).free)} free", ""
+        while not (nearest.exists() or nearest.is_symlink()):
+            nearest = nearest.parent
+        with TemporaryFile(dir=nearest):
+            return f"{path}, {file_size(shutil.disk_usage(nearest).free)} free", ""
     except OSError as error:
         why = f"cannot be written ({error.strerror})"
         return str(path), f"{why}: set PENDU_RECORDINGS to a writable folder"

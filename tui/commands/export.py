@@ -30,7 +30,7 @@ Rows = Iterator[tuple[object, ...]]
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
     add = parser.add_argument
-    form = "output format (%(default)s)"
+    form = "the default is %(default)s"
     add("--format", choices=("csv", "parquet"), default="csv", help=form)
     where = "write to OUT instead of stdout"
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help=where)
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
             _write_parquet(options, columns, rows)
         else:
             with text_file(options.output, options.force) as out:
-                # readers take an empty column for text
+                # NaN, because readers take an empty column for text
                 write_csv(out, columns, (["NaN" if x is None else x for x in row] for row in rows))
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
@@ -84,7 +84,7 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
 
 def _write_parquet(options: argparse.Namespace, columns: tuple[str, ...], rows: Rows) -> None:
     if options.output is None:
-        raise UserError("Parquet is no text: name a file with -o.")
+        raise UserError("Parquet is not text: name a file with -o.")
     try:
         import pyarrow
         from pyarrow.parquet import ParquetWriter
@@ -98,6 +98,6 @@ def _write_parquet(options: argparse.Namespace, columns: tuple[str, ...], rows: 
         whole_file(options.output, options.force) as part,
         ParquetWriter(part, schema) as writer,
     ):
-        while some := list(islice(rows, 100_000)):
-            values = dict(zip(columns, zip(*some, strict=True), strict=True))
+        while batch := list(islice(rows, 100_000)):
+            values = dict(zip(columns, zip(*batch, strict=True), strict=True))
             writer.write_table(pyarrow.table(values, schema))

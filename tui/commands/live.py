@@ -28,22 +28,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     speed = "multiple of real time (default: the scene's)"
     parser.add_argument("--speed", metavar="X", type=positive, help=speed)
-    equal = "all methods need as many force evaluations: the cheaper take smaller steps"
+    equal = "give all methods equally many force evaluations: cheaper ones take smaller steps"
     parser.add_argument("--equal-cost", action="store_true", help=equal)
     recording = parser.add_mutually_exclusive_group()
     record = "record to FILE instead of the data folder"
     add_file(recording, "--record", metavar="FILE", type=Path, help=record)
     recording.add_argument("--no-record", action="store_true", help="do not record")
-    ghost = "lay a recording under the lab, dimmed; without --scene the lab starts as it did"
-    add_recording(parser, "--ghost", help=ghost, metavar="FILE|latest|NAME")
+    ghost = "show a recording dimmed behind the lab; without --scene, start as it did"
+    add_recording(parser, "--ghost", help=ghost)
     add_terminal_options(parser)
 
 
 def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
-    """Return the lab of the options' scene.
-
-    Raises SceneError for a step too large at equal cost.
-    """
+    """Return a lab of the scene.  Raises SceneError for a step too large at equal cost."""
     from tui.playback.live import Live
 
     live = Live(scene, options.speed or scene.speed)
@@ -55,21 +52,23 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 def run(options: argparse.Namespace) -> int:
     from tui.screens import launch
 
-    ghost = laid_under = None
+    ghost = default = None
     if options.ghost:
         ghost = launch.open_ghost(resolve(options.ghost))
-        laid_under = ghost.scene
-    scene = scene_of(options, laid_under, lecture=True)
+        default = ghost.scene
+    scene = scene_of(options, default, lecture=True)
     if ghost and ghost.scene.model != scene.model:
         raise UserError(
-            f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
-            f"{scene.model}; leave out --scene, or choose one of that model."
+            f"--ghost: the recording has the model {ghost.scene.model}, the scene {scene.model}; "
+            "leave out --scene, or choose one of that model."
         )
     launch.check(options)
     live = lab_of(scene, options)
     live.laid_under = ghost
     name = options.scene or options.scene_option or ""
     lecture = None
-    if name.endswith(".toml") and len(scenes := read_scenes(Path(name))) > 1:
-        lecture = scenes
+    if name.endswith(".toml"):
+        scenes = read_scenes(Path(name))
+        if len(scenes) > 1:
+            lecture = scenes
     return launch.open_lab(live, options, lecture=lecture)

@@ -1,6 +1,6 @@
 """List the methods with their claimed and measured properties.
 
-Of your own method, only measured ones are known.
+A method of your own has measured properties only.
 """
 
 import argparse
@@ -32,17 +32,16 @@ MEASURED = (
     "measured_force_evaluations",
 )
 NOTE = """
-found: the order of the theta error over one swing of scene drift.
-evals: force evaluations per step, in the average where they vary.
-z limit: of the linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."""
+found: the measured order of the theta error, over one swing of the scene drift.
+evals: force evaluations per step, on average if they vary.
+z limit: for the linear oscillator, z = h·w0; pendu-tui stability has those of the pendulum."""
 
 Row = dict[str, Any]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     keys = Suggestions(KEYS)
-    names = "the methods, as --methods"
-    parser.add_argument("keys", metavar="KEY", nargs="*", choices=keys, help=names)
+    parser.add_argument("keys", metavar="KEY", nargs="*", choices=keys, help="as --methods")
     add_cast_options(parser, "all")
     add_report_options(parser)
 
@@ -66,8 +65,12 @@ def run(options: argparse.Namespace) -> int:
         Column("reversible", lambda row: _yes(_known(row, "reversible"))),
         Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
     )
-    other = (each for each in cast if simplified(each.label) != simplified(each.key))
-    notes = [NOTE, f"in the lab: {', '.join(f'{each.label} ({each.key})' for each in other)}"]
+    labels = [
+        f"{method.label} ({method.key})"
+        for method in cast
+        if simplified(method.label) != simplified(method.key)
+    ]
+    notes = [NOTE, f"in the lab: {', '.join(labels)}"]
     if options.keys:
         notes = [NOTE, *map(_about, rows)]
     report = Report(
@@ -82,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _row(method: Method, order: float | None) -> Row:
-    """Return what is claimed, nothing of a user's own method, and what is measured."""
+    """Return the claims, which a user's own method does not make, and the measured properties."""
     from engine.methods import measure
     from engine.methods.own import OwnMethod
 
@@ -90,7 +93,7 @@ def _row(method: Method, order: float | None) -> Row:
     if isinstance(method, OwnMethod):
         claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
     measured = dict.fromkeys(MEASURED)
-    if method.general:  # others are for a scene of their own, and measured there by the tests
+    if method.general:  # tests measure the others, each in its own scene
         values = (
             order,
             measure.linear_limit(method.phases),
@@ -126,5 +129,5 @@ def _limit(z: float) -> str:
 
 def _about(row: Row) -> str:
     names = ", ".join((row["label"], *row["other_names"]))
-    more = filter(None, (row["formula"], row["reference"]))
-    return "\n".join(["", f"{names} ({row['letter']})", *more])
+    lines = ("", f"{names} ({row['letter']})", row["formula"] or "", row["reference"] or "")
+    return "\n".join(lines).rstrip()

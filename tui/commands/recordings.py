@@ -1,4 +1,4 @@
-"""List the recordings, show what is in one, recover a damaged one, or delete old ones."""
+"""List the recordings, show the contents of one, recover a damaged one, or delete old ones."""
 
 import argparse
 import time
@@ -32,7 +32,7 @@ OPTIONS = {
     "keep": ("prune",),
     "yes": ("prune",),
 }
-"""Option -> the verbs that it belongs to."""
+"""Option -> the verbs that take it."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -40,14 +40,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     names = "|".join(verbs)
     what = "what to do (%(default)s)"
     parser.add_argument("verb", metavar=names, nargs="?", choices=verbs, default="list", help=what)
-    add_recording(parser, nargs="?", help="of show and recover: a file, latest, or a name")
+    add_recording(parser, nargs="?", help="for show and recover: a file, latest, or a name")
     add_report_options(parser)
     group = parser.add_argument_group("recover")
     add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
     group.add_argument("--force", action="store_true", help="overwrite OUT")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument("--yes", action="store_true", help="delete the others, which are listed")
+    group.add_argument("--yes", action="store_true", help="delete the others, not only list them")
 
 
 def run(options: argparse.Namespace) -> int:

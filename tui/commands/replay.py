@@ -18,16 +18,16 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, metavar="FILE|latest|NAME", help="a file, latest, or a bundled recording")
+    add_recording(parser)
     add = parser.add_argument
     start = "start S seconds into the recording (%(default)g)"
     add("--start-at", metavar="S", type=number, default=0.0, help=start)
     add_cast_options(parser, "all of the recording's")
     speed = "playback speed (%(default)g)"
     add("--speed", metavar="X", type=positive, default=1.0, help=speed)
-    add("--loop", action="store_true", help="loop")
+    add("--loop", action="store_true", help="start again at the end")
     add("--paused", action="store_true", help="start paused")
-    add("--no-record", action="store_true", help="do not record when continuing live")
+    add("--no-record", action="store_true", help="do not record what continues live")
     add_terminal_options(parser)
 
 

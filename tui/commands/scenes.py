@@ -1,10 +1,9 @@
-"""List the scenes with what to watch, or one of them with its numbers."""
+"""List the scenes and what to watch in them, or show one scene and its numbers."""
 
 import argparse
-from operator import itemgetter
 from typing import Any
 
-from engine.scenes import GROUPS, SCENES
+from engine.scenes import GROUPS, SCENES, Scene
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
 from tui.cli.report import Column, Report, add_report_options, publish
@@ -25,24 +24,29 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    scenes = list(SCENES.values())
-    heads: tuple[str, ...] = ("scene", "z", "what to watch")
+    rows: list[Any] = []
     if options.key:
         scenes = [scene_named(options.key)]
-        heads = ("", "")
-    fields = [scene.fields() | {"speed": scene.speed} for scene in scenes]
-    rows: list[tuple[Any, ...]] = []
-    notes = []
-    if options.key is None:
-        for group, members in GROUPS.items():
-            rows += [("", "", ""), (group.upper(), "", "")]
-            rows += [(scene.name, f"{scene.z:.3g}", scene.watch) for scene in members]
-    else:
-        shown = fields[0] | {"methods": ", ".join(fields[0]["methods"])}
-        rows = [(name, str(value)) for name, value in shown.items() if value is not None]
+        fields = _fields(scenes[0])
+        shown = fields | {"methods": ", ".join(fields["methods"])}
+        rows += [(name, str(value)) for name, value in shown.items() if value is not None]
+        columns = [Column("", 0), Column("", 1)]
         notes = [f"See it: pendu-tui {options.key}"]
-    columns = [Column(head, itemgetter(at), right=head == "z") for at, head in enumerate(heads)]
-    fields_of_all = {"scenes": fields}
-    report = Report(name="scenes", columns=columns, rows=rows, notes=notes, fields=fields_of_all)
+    else:
+        scenes = list(SCENES.values())
+        for group, members in GROUPS.items():
+            rows += ["", group.upper(), *members]
+        columns = [
+            Column("scene", lambda scene: scene.name),
+            Column("z", lambda scene: scene.z, ".3g"),
+            Column("what to watch", lambda scene: scene.watch),
+        ]
+        notes = []
+    values = {"scenes": [_fields(scene) for scene in scenes]}
+    report = Report(name="scenes", columns=columns, rows=rows, notes=notes, fields=values)
     publish(report, options)
     return Exit.FINE
+
+
+def _fields(scene: Scene) -> dict[str, Any]:
+    return scene.fields() | {"speed": scene.speed}

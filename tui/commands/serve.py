@@ -1,4 +1,4 @@
-"""The lab in a browser, for a class without terminals: each tab gets a lab of its own."""
+"""Show the lab in a browser, for a class without terminals; each tab gets its own lab."""
 
 import argparse
 import os
@@ -25,12 +25,12 @@ THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    port = "where to listen (%(default)s; 0: any)"
+    port = "port to listen on (%(default)s; 0: any free one)"
     add("--port", metavar="N", type=int, default=8000, help=port)
-    host = "this computer's address (%(default)s)"
+    host = "address to listen on (%(default)s)"
     add("--host", metavar="ADDRESS", default="127.0.0.1", help=host)
-    add("--at-most", metavar="N", type=count, default=20, help="labs at once (%(default)s)")
-    add_file(parser, "--record", metavar="FOLDER", type=Path, help="record every lab into FOLDER")
+    add("--at-most", metavar="N", type=count, default=20, help="limit of open labs (%(default)s)")
+    add_file(parser, "--record", metavar="FOLDER", type=Path, help="record each lab in FOLDER")
     add_scene_options(parser)
     add_picture_options(parser, "dark", "braille")
 
@@ -51,13 +51,12 @@ def run(options: argparse.Namespace) -> int:
             raise UserError(why, Exit.DISK)
 
     def listening(address: str) -> None:
-        at_most = options.at_most
         if options.host not in THIS_COMPUTER:
             warn(
-                f"everybody who can reach {options.host} can use this computer's processor in up to"
-                f" {at_most} labs, without a password or encryption."
+                f"anyone who can reach {options.host} can open labs on this computer, without a "
+                "password or encryption."
             )
-        print(f"{address} shows the lab, {at_most} at once at most; Ctrl+C ends it.", flush=True)
+        print(f"{address} serves up to {options.at_most} labs; Ctrl+C ends it.", flush=True)
 
     settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
     try:
@@ -65,7 +64,6 @@ def run(options: argparse.Namespace) -> int:
     except (OSError, OverflowError, UnicodeError) as error:
         why = getattr(error, "strerror", None) or str(error)
         where = f"{options.host} port {options.port}"
-        raise UserError(
-            f"cannot listen on {where}: {why}; choose another --port or --host."
-        ) from None
+        advice = "choose another --port or --host"
+        raise UserError(f"cannot listen on {where}: {why}; {advice}.") from None
     return Exit.FINE

@@ -1,4 +1,4 @@
-"""Save the lab as an SVG image, byte-identical every time."""
+"""Save the lab as an SVG image, with the same bytes each time."""
 
 import argparse
 import os
@@ -49,6 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def moment(text: str) -> float:
-    if not 0 <= (value := number(text)) <= 3600:
+    value = number(text)
+    if not 0 <= value <= 3600:
         raise argparse.ArgumentTypeError(f"{text!r} is not a valid time; use 0 to 3600 s")
     return value

@@ -9,7 +9,7 @@ examples:
   pendu-tui tour
   pendu-tui tour --plain --no-record
 
-enter goes on, 1 or 2 answers, backspace goes back, esc leaves for the lab, where T returns.
+Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """
 
 

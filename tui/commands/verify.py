@@ -1,4 +1,4 @@
-"""Re-simulate recordings from their recorded inputs, and compare every number bit for bit."""
+"""Simulate recordings again from their inputs, and compare every number bit for bit."""
 
 import argparse
 from dataclasses import asdict
@@ -10,7 +10,7 @@ from recordings.errors import RecordingError, printable
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count, resolve
-from tui.cli.report import Report, add_report_options, form_of, progress, warn
+from tui.cli.report import Report, add_report_options, progress, publish, warn
 from tui.words.numbers import counted
 
 EXAMPLES = """\
@@ -20,15 +20,15 @@ examples:
   pendu-tui verify golden
   pendu-tui verify crossover.mcap --methods rk4
 
-A folder means all recordings below it; golden means the bundled ones.
-Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be);
-3: one cannot be read.
+A folder stands for all recordings below it, golden for the bundled ones.
+Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
+3 one cannot be read.
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    about = "a file, a folder, latest, or a name such as drift"
-    add_recording(parser, "files", nargs="+", help=about)
+    about = "a file, a folder, latest, golden, or a name such as drift"
+    add_recording(parser, "files", metavar="FILE", nargs="+", help=about)
     add_cast_options(parser, "all of a recording's")
     limit = "simulate at most N steps of each recording"
     parser.add_argument("--max-steps", metavar="N", type=count, help=limit)
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
                 print(_sentence(row))
     passed = sum(row["passes"] for row in rows)
     if options.json:
-        Report(name="verify", fields={"files": rows}).show(form_of(options))
+        publish(Report(name="verify", fields={"files": rows}), options)
     elif len(rows) > 1:
         print(f"{len(rows)} recordings, {passed} identical")
     if any(row["error"] for row in rows):
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _files(name: str) -> list[Path]:
-    """Return the recordings that a name on the command line stands for, or the name."""
+    """Return the recordings that an argument stands for, or its path."""
     path = Path(name)
     if name == "golden" and not path.exists():
         path = library.GOLDEN
@@ -99,18 +99,18 @@ def _sentence(row: dict[str, Any]) -> str:
         text += f"; {row['reason']}"
     if row["other_functions"]:
         others = " and ".join(f"{name}()" for name in row["other_functions"])
-        text += f"; within tolerance only: this machine has another {others}"
+        text += f"; within tolerance only, because {others} differs on this machine"
     if row["numerics"] != NUMERICS:
         text += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
     verdict = "damaged"
-    if first := row["first_difference"]:
+    first = row["first_difference"]
+    if first:
         verdict = "different"
         place = f"run {first['run']}, step {first['step']}, t = {first['t']:g} s"
         text += f"\n  first in {first['field']} at {place}, {first['method'] or 'all methods'}:"
         for name in ("recorded", "computed"):
-            number = "nothing"
-            if (value := first[name]) is not None:
-                number = f"{value!r} ({value.hex()})"
+            value = first[name]
+            number = "nothing" if value is None else f"{value!r} ({value.hex()})"
             text += f"\n    {name} {number}"
     elif row["passes"]:
         verdict = "identical"
