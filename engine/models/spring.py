@@ -130,7 +130,9 @@ class Spring(Model):
 
     def _swing(self, phase: Phase) -> State:
         z, w = phase
-        return State(cmath.phase(1j * z), (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
+        turned = 1j * z  # its phase is theta; cmath.phase raises where that underflows
+        theta = math.atan2(turned.imag, turned.real)
+        return State(theta, (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
 
     def force(self, sin: Sine = math.sin) -> Force:
         fast, slow, _ = self.parts(sin)

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from engine.methods import METHODS
@@ -100,6 +100,7 @@ def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene
     stiffness=st.floats(1, 1e18),
     h=st.floats(1e-8, 300),
 )
+@example(model="spring", theta=0.0, omega=2e-313, friction=0.0, stiffness=9.3e11, h=7.0)
 def test_any_scene_within_the_limits_gives_finite_numbers(
     model, theta, omega, friction, stiffness, h
 ):

@@ -9,7 +9,7 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
-from engine.run.bands import Bands, line
+from engine.run.bands import Bands, fit_line
 from engine.run.judge import Judge
 from engine.run.judgement import LookPoint
 from engine.run.lockstep import Lockstep
@@ -131,7 +131,7 @@ def test_the_uncertainty_is_honest(memory: float, least: int) -> None:
                 slow = memory * slow + noise.gauss(0, 0.1 if memory else 0.0)
             error = 1e-3 * step + slow + noise.gauss(0, 0.1 * (1 - memory))
             bands.add(step, error, error, error)
-        trend = line(bands.bins)
+        trend = fit_line(bands.bins)
         hits += abs(trend.slope - 1e-3) < 2 * trend.uncertainty
     assert least <= hits <= 199
 
