@@ -1,11 +1,10 @@
 """The laboratory without a screen.  Pure: no clock, no file, no thread, no randomness.
 
-A scene (`scenes`) starts the model (`models`); the methods (`methods`, the one list) carry it side
-by side (`run`).  Three studies look closer: `accuracy` at what speed costs, `stability` at where
-methods fail, and `phase_space` at what a step does to neighbouring starts.  Standard library only,
-and NumPy for ensembles.
+A scene (`scenes`) gives a model (`models`) its start, and `run` moves the methods (`methods`) side
+by side.  Three studies look closer: `accuracy` at what speed costs, `stability` at where methods
+fail, and `phase_space` at what a step does to neighbouring starts.
 
-The names below are the library, which `library` documents; they are loaded when they are used.
+The names below are those of `library`, loaded when they are used.
 """
 
 from importlib import import_module

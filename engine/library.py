@@ -1,6 +1,6 @@
-"""The library for people with code of their own: what `from engine import ...` gives.
+"""The library: what `from engine import ...` gives.  NumPy is loaded by the first call.
 
-Arguments that cannot be used raise ValueError with a sentence.  NumPy is loaded by the first call.
+Arguments that cannot be used raise ValueError with a sentence.
 """
 
 import math
@@ -31,21 +31,21 @@ T = TypeVar("T")
 
 
 class ByMethod(dict[str, T], Generic[T]):
-    """One value for each method, by its key, the start of the key or another name."""
+    """One value for each method, by any name or the start of its key."""
 
     def __init__(self, methods: Cast, values: Iterable[T]) -> None:
         super().__init__(zip((method.key for method in methods), values, strict=True))
         self.methods = methods
 
     def __missing__(self, name: str) -> T:
-        found = matching(str(name), self.methods)
-        if len(found) != 1:
+        matches = matching(str(name), self.methods)
+        if len(matches) != 1:
             raise KeyError(f"{name!r} does not name one method; use one of {', '.join(self)}.")
-        return self[found[0].key]
+        return self[matches[0].key]
 
 
 def _public(method: Method) -> Method:
-    """Return a method whose `phases` refuse what they cannot use with a sentence."""
+    """Return the method with `phases` that check their arguments."""
 
     @wraps(method.phases)
     def phases(force: Any, phase: Any, h: float) -> Iterator[Any]:
@@ -77,10 +77,7 @@ Methods = str | Iterable[str | Method]
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """One method's run; the arrays have one value for each time of the run.
-
-    A method whose numbers overflow stays where it last was finite.
-    """
+    """One method's run, with a value for each time; after an overflow, the last finite ones."""
 
     theta: "Floats" = field(repr=False)  # rad, not reduced to a turn
     omega: "Floats" = field(repr=False)  # rad/s
@@ -91,7 +88,7 @@ class Track:
 
 
 class Run(ByMethod[Track]):
-    """The methods' tracks, by key or by the start of a key; `t` are their times [s]."""
+    """The methods' tracks, by any name or the start of a key, at the times `t` [s]."""
 
     def __init__(self, scene: Scene, t: "Floats", tracks: Iterable[Track]) -> None:
         super().__init__(scene.cast, tracks)
@@ -110,8 +107,7 @@ def simulate(
     """Run methods side by side for `time` [s], by default those of the scene.
 
     `numbers` replace the scene's: theta [rad], omega [rad/s], length [m], gravity [m/s²], h [s],
-    and the parameters of its model.  The arrays have the start, every `every`-th step, and the last
-    one.
+    and the parameters of its model.  The arrays hold the start, each `every`-th step, and the last.
     """
     import numpy as np
 
@@ -166,8 +162,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """Judge the energies of any program at increasing times.
 
     Errors and trend are relative to `scale`: "std", the standard deviation of the energies,
-    "first", the first energy, or a number.  Energies of which one is nan or inf have
-    `failed` there, and what comes after is not judged.
+    "first", the first energy, or a number.  If an energy is nan or inf, the verdict is `failed`.
     """
     import numpy as np
 
@@ -189,32 +184,32 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         raise ValueError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    found = Judge.read(t, e, failed=failed, absolute=scale != "std")
-    e = e[found.first :]
+    judgement = Judge.read(t, e, failed=failed, absolute=scale != "std")
+    e = e[judgement.first :]
     size = _size(e, scale)
-    trend = found.slope
-    uncertainty = found.uncertainty
+    trend = judgement.slope
+    uncertainty = judgement.uncertainty
     if trend is not None and uncertainty is not None:
         trend = trend / size
         uncertainty = uncertainty / size
     return Judged(
-        verdict=found.verdict,
+        verdict=judgement.verdict,
         trend=trend,
         uncertainty=uncertainty,
         max_error=float(np.abs(e - e[0]).max()) / size,
         scale=size,
-        progress=str(found.progress or ""),
+        progress=str(judgement.progress or ""),
     )
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Where a method loses a swing; z = h·sqrt(g/L), the step in the system's own unit of time."""
+    """Where a method loses a swing; z = h·sqrt(g/L)."""
 
     linear: float | None  # z: the limit of small swings; 0: none is stable, None: no one number
     z: float | None  # the smallest at which the swing is lost; None: held up to z = 3.2
     h: float | None  # s, the same for this scene
-    reason: str  # over the top, grows, loses or chaotic; "" where it is held
+    reason: str  # over the top, grows, loses or chaotic; "" if it is held
 
 
 def limits(
@@ -224,11 +219,11 @@ def limits(
     steps: int = 1000,
     **numbers: float,
 ) -> ByMethod[Limit]:
-    """Return where each method loses the swing of a scene, by default all that can.
+    """Return where each method, by default every general one, loses the swing of a scene.
 
     Steps h are tried on a ladder with a rung every 1 %, with so many `steps` each: `pendu-tui
-    stability --steps 1000` finds the same limits, and more steps find lower ones.  A swing is lost
-    if engine.stability.LOST says so.  `numbers` are those of `simulate`.
+    stability --steps 1000` finds the same limits; more steps find lower ones.  Its help, which is
+    engine.stability.LOST, says when a swing is lost.  `numbers` are those of `simulate`.
     """
     from engine.stability.study import amplitude, ladder_of, table
 
@@ -239,14 +234,14 @@ def limits(
     if not isinstance(steps, int) or steps < 1:
         raise ValueError(f"steps = {steps!r} is not a whole number above zero.")
     grid = ladder_of(chosen, [theta], None, steps)
-    found = []
+    rows = []
     for row in table(chosen, grid, grid.cells()):
         limit = Limit(linear=row.method.linear_limit, z=None, h=None, reason="")
         if failure := row.failure:
             h = failure.z / chosen.w0
             limit = replace(limit, z=failure.z, h=h, reason=failure.reason)
-        found.append(limit)
-    return ByMethod(chosen.cast, found)
+        rows.append(limit)
+    return ByMethod(chosen.cast, rows)
 
 
 def recommend(
@@ -259,14 +254,12 @@ def recommend(
     safety: float = 1.0,
     **numbers: float,
 ) -> "list[Attempt]":
-    """Return the cheapest run of each method whose error stays up to `target`, the cheapest first.
+    """Return the cheapest run of each method with an error up to `target`, the cheapest first.
 
-    By default of all methods that have one, over ten small swings.  Of the best, `method.key`,
-    `point.h` [s], `point.z`, `point.steps_per_swing` and `point.force_evaluations` are the answer;
-    `times` is how many times the cheapest another costs.  `error` is "theta" [rad], "energy" or
-    "final" (theta at the end); a `safety` of 2 halves the target.
-
-    Raises ValueError if no method reaches the target.
+    By default all general methods are tried, over ten small swings.  Look at `method.key`,
+    `point.h` [s], `point.z`, `point.steps_per_swing`, `point.force_evaluations` and `times`, the
+    cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
+    end); a `safety` of 2 halves the target.  Raises ValueError if no method reaches the target.
     """
     from engine.accuracy.recommend import least_cost
     from engine.accuracy.study import Study, usual
@@ -284,13 +277,13 @@ def recommend(
     if not 0 < wanted <= target or seconds <= 0:
         raise ValueError("target and time must be above zero, and safety 1 or more.")
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
-    found = [attempt for attempt in attempts if attempt.succeeded]
-    if not found:
+    successes = [attempt for attempt in attempts if attempt.succeeded]
+    if not successes:
         raise ValueError(
             f"no method keeps its {error} error within {wanted:g} over {seconds:g} s; "
             f"{attempts[0].method.label}: {attempts[0].why_not}."
         )
-    return found
+    return successes
 
 
 def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
@@ -314,10 +307,8 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
 
 
 def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
-    """Return a scene for a study, with all general methods where none are given."""
-    if methods is None:
-        methods = listed.GENERAL
-    chosen = _scene(scene, methods, numbers)
+    """Return a scene for a study, by default with all general methods."""
+    chosen = _scene(scene, listed.GENERAL if methods is None else methods, numbers)
     if chosen.why_not_mapped:
         raise ValueError(chosen.why_not_mapped)
     return chosen
@@ -338,14 +329,14 @@ def _cast(given: Methods) -> Cast:
 
 
 def _method(name: str | Method) -> Method:
-    """Return the method of a key or the start of one; a method of the list, or one's own."""
+    """Return the method of a name or of the start of a key; methods of one's own as they are."""
     if isinstance(name, Method) and name.key not in set(METHODS):
         return name
-    found = matching(getattr(name, "key", str(name)))
-    if len(found) == 1:
-        return found[0]
-    if found:
-        keys = " or ".join(method.key for method in found)
+    matches = matching(getattr(name, "key", str(name)))
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        keys = " or ".join(method.key for method in matches)
         raise ValueError(f"{name!r} may be {keys}; write more of it.")
     raise ValueError(f"there is no method {name!r}; choose from {', '.join(METHODS)}.")
 

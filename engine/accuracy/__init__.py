@@ -1,1 +1,1 @@
-"""Speed against accuracy: errors, costs, the front of the cheapest methods, recommendations."""
+"""Speed against accuracy: errors, costs, the cheapest methods, recommendations."""

@@ -13,32 +13,29 @@ from engine.methods import Method
 from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
-PERIODS = 100  # followed at most; fewer if the error becomes too large
-LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
+PERIODS = 100  # followed at most
+LARGEST = 0.4  # rad; larger errors begin to wrap
 
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """The error in theta of one method along a run."""
+    """How the error in theta of one method grows."""
 
     method: Method
     times: list[float]  # s, the middle of each period
-    errors: list[float]  # rad, the largest |error| in each, as long as it is below LARGEST
+    errors: list[float]  # rad, the largest |error| in each, while it is below LARGEST
     power: float | None  # slope of ln error over ln t; None: no single power of t
 
     @property
     def name(self) -> str:
-        """The method and its power of t, if there is one, for people."""
+        """The method's label, with its power of t if there is one."""
         if self.power is None:
             return self.method.label
         return f"{self.method.label} t^{self.power:.2f}"
 
 
 def duration(scene: Scene) -> float | None:
-    """Return how long to follow the error [s].
-
-    None: the motion is not periodic, or takes too many steps.
-    """
+    """Return how long to follow the error [s]; None: no period, or too many or too few steps."""
     period = scene.exact().period
     if period is None or PERIODS * period / scene.h > 100_000 or period < 4 * scene.h:
         return None
@@ -46,7 +43,7 @@ def duration(scene: Scene) -> float | None:
 
 
 def growth(scene: Scene, method: Method) -> Growth:
-    """Return the largest theta error of each of at most PERIODS periods, and a power of t."""
+    """Return how a method's error grows over at most PERIODS periods."""
     exact = scene.exact()
     time = duration(scene)
     if time is None or exact.period is None:
@@ -69,14 +66,14 @@ def growth(scene: Scene, method: Method) -> Growth:
 
 
 def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
-    """Yield how each method's error grows at its own h [s]; for another process."""
+    """Yield the growth of each method's error at its own h [s]; for another process."""
     return (
         growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True)
     )
 
 
 def _power(times: Sequence[float], errors: Sequence[float]) -> float | None:
-    """Return the slope of ln error over ln t where it is straight, and near an integer."""
+    """Return the slope of ln error over ln t if it is straight and near an integer."""
     first = len(errors) * 3 // 10
     if len(errors) < 10 or min(errors) <= 0:
         return None

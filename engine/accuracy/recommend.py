@@ -1,6 +1,6 @@
-"""Which method and h: the cheapest for a target, or the most accurate within a budget.
+"""Recommend a method and h: the cheapest for a target, or the most accurate within a budget.
 
-What is recommended was run, and compared at more times than the search compares.
+Each recommended run was made, and compared with the exact motion more often than in the search.
 """
 
 import math
@@ -12,11 +12,11 @@ from engine.methods import Method
 from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Z_LIMITS, SceneError
 
-MAX_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
-MAX_TIMES = 300  # the force evaluations of the cheapest method, beyond which none is searched
-TOLERANCE = 0.02  # to which the fewest steps are found
+MAX_EVALUATIONS = 20_000_000  # of a run: some seconds in plain Python
+MAX_TIMES = 300  # force evaluations over the cheapest method's, above which a search ends
+TOLERANCE = 0.02  # of the fewest steps
 CONFIRMING_COMPARISONS = 10_000
-REFINED = 1.1  # times the steps must reach the target, too: an error may happen to cross zero
+REFINED = 1.1  # times the steps must reach the target, too: an error may cross zero by chance
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Attempt:
     method: Method
     point: Point | None  # None: there was no usable h
     why_not: str | None = None
-    times: float | None = None  # its cost, in that of the cheapest method
+    times: float | None = None  # its cost over the cheapest method's
 
     @property
     def succeeded(self) -> bool:
@@ -35,7 +35,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """The recommendation for one simulated time, and what was tried for it, the best first."""
+    """The attempts for one simulated time, the best first."""
 
     time: float  # s
     attempts: list[Attempt]
@@ -44,9 +44,7 @@ class Advice:
     def point(self) -> Point | None:
         """The recommended run; None: nothing reaches the target."""
         best = self.attempts[0]
-        if best.succeeded:
-            return best.point
-        return None
+        return best.point if best.succeeded else None
 
 
 def least_cost(
@@ -60,8 +58,8 @@ def least_cost(
 ) -> Advice:
     """Return each method's cheapest run for a target, by force evaluations or a clock.
 
-    `show` is given the share of methods tried.  Raises SceneError for a target as large as the
-    swing itself.
+    `show` is called with the share of methods tried.  Raises SceneError for a target as large as
+    the swing itself.
     """
     size = study.sizes[kind]
     if target >= size:
@@ -83,7 +81,7 @@ def least_cost(
 
 
 def _cost(attempt: Attempt) -> float:
-    """Seconds if measured, else force evaluations; infinite if the target is not reached."""
+    """Return seconds if measured, else force evaluations; inf if the target is not reached."""
     if attempt.point is None or not attempt.succeeded:
         return math.inf
     return attempt.point.seconds or attempt.point.force_evaluations
@@ -109,10 +107,9 @@ def least_error(
 def reach(
     study: Study, kind: ErrorKind, target: float, most: int = MAX_EVALUATIONS
 ) -> Iterator[Attempt]:
-    """For each method, from the highest order down, its cheapest run with an error up to `target`.
+    """Yield each method's cheapest run with an error up to `target`, the highest order first.
 
-    A method is given up where it costs more than `most` evaluations, or than MAX_TIMES those of one
-    before it.
+    The search for a method ends at `most` evaluations, or at MAX_TIMES those of a previous one.
     """
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
@@ -139,7 +136,7 @@ def _spend(study: Study, method: Method, kind: ErrorKind, budget: int) -> Attemp
 
 
 def _affordable(study: Study, method: Method, budget: int) -> int:
-    """The most steps for this many evaluations; 0 where that leaves no usable h."""
+    """Return the most steps for so many evaluations; 0 if that leaves no usable h."""
     smallest = REFINED * Z_LIMITS[0] / study.scene.w0
     largest = Z_LIMITS[1] / study.scene.w0
     steps = min(
@@ -151,7 +148,7 @@ def _affordable(study: Study, method: Method, budget: int) -> int:
 
 
 def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most: int) -> Attempt:
-    """Multiply the steps until the target is reached, then halve the gap, then confirm."""
+    """Multiply the steps until the target is reached, then bisect, then confirm."""
     most_steps = _affordable(study, method, most)
     fastest = max(study.scene.w0, abs(study.scene.omega))  # rad/s
     too_few = 0
@@ -159,7 +156,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     if not steps:
         return Attempt(method, None, _no_h(most))
     best = None
-    in_vain = 0  # steps were doubled, and rounding kept the error from falling
+    in_vain = 0  # times that rounding kept the error from falling
     while (point := study.run(method, steps)).error(kind) > target:
         if best is None or point.error(kind) < best.error(kind):
             best = point
@@ -174,7 +171,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         factor = 4.0
         if flaw == "rounding":
             factor = 2.0
-        elif flaw is None:  # then the order of the method predicts the steps
+        elif flaw is None:  # the order of the method predicts the steps
             needed = (point.error(kind) / target) ** (1 / method.order)
             if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
                 about = method.evaluations(round(needed * steps))
@@ -194,7 +191,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
 def _confirmed(
     study: Study, method: Method, kind: ErrorKind, target: float, steps: int, most_steps: int
 ) -> Attempt:
-    """Compare more often, and with slightly more steps, and take more steps where that fails."""
+    """Confirm a run with more comparisons, and with slightly more steps; else take more steps."""
     for _ in range(20):
         point = study.run(method, steps, CONFIRMING_COMPARISONS)
         refined = study.run(method, math.ceil(steps * REFINED), CONFIRMING_COMPARISONS)

@@ -27,7 +27,7 @@ TAYLOR_20 = Method(
 
 
 class References(NamedTuple):
-    """The reference lines; `absent` is why there is no series."""
+    """The reference lines; `absent` says why there is no series."""
 
     closed_form: float  # s, of COMPARISONS + 1 states
     taylor: tuple[Point, ...]
@@ -35,7 +35,7 @@ class References(NamedTuple):
 
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:
-    """Time the reference lines over `time` [s]; `fast`: compiled, as the methods are."""
+    """Time the reference lines over `time` [s]; `fast`: compiled."""
     motion: Any = scene.exact().at
     states: Any = _states
     series: tuple[Point, ...] = ()

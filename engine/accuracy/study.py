@@ -1,8 +1,7 @@
 """Speed against accuracy: each method's errors and costs over a ladder of h.
 
-Every h is a whole fraction of the time, and errors in theta are taken at whole steps, the same for
-all methods, so that nothing is interpolated.  Cost is counted in force evaluations, which are the
-same on every machine, or in seconds by a clock that is passed in.
+Every h is a whole fraction of the time, and errors in theta are taken at whole steps, so nothing is
+interpolated.  Cost is counted in force evaluations, or in seconds by a clock that is passed in.
 """
 
 import math
@@ -22,9 +21,9 @@ from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
 Clock = Callable[[], float]  # s
-COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
+COMPARISONS = 400  # with the exact swing in a run: at least so many (below 800), or every step
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
-Z_LADDER = (0.6, 0.0015, 12)  # about ten steps a small swing, to four thousand
+Z_LADDER = (0.6, 0.0015, 12)  # from about ten to four thousand steps a small swing
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
@@ -39,7 +38,7 @@ REASONS: dict[Flaw, str] = {
 
 
 class Flaws(NamedTuple):
-    """Why an error does not show how the method depends on h; None where it does."""
+    """Why an error says nothing about the method and h; None if it does."""
 
     theta: Flaw | None
     energy: Flaw | None
@@ -58,8 +57,8 @@ class Point:
     energy_error: float  # relative, the largest of all steps
     final_error: float  # rad, in theta at the end
     flaws: Flaws
-    seconds: float | None = None  # the shortest of five runs without errors taken
-    spread: float | None = None  # by how much the longest took longer, relative
+    seconds: float | None = None  # the shortest of five runs without comparisons
+    spread: float | None = None  # relative excess of the longest
     tolerance: float | None = None  # rad/s, of a series: it has no h and no force evaluations
     counted: int | None = None  # force evaluations, where they vary
 
@@ -94,14 +93,14 @@ class Point:
 
 
 class Order(NamedTuple):
-    """A method's order: what theta errors scale with."""
+    """A method's order, measured by its theta errors."""
 
     method: Method
     measured: float | None  # None: fewer than three errors to fit
 
 
 class Study:
-    """Runs of one scene over one time.  They share the exact swing and the rounding floor."""
+    """Runs of one scene over one time, compared with the same exact swing."""
 
     def __init__(self, scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> None:
         self.scene = scene
@@ -114,16 +113,13 @@ class Study:
         self.thetas = [self.exact.at(t).theta for t in times]  # rad
         width = min(math.pi, max(map(abs, self.thetas)))
         self.sizes = {"theta": width, "energy": 1.0, "final": width}
-        """Of the swing itself: an error as large says nothing."""
+        """The sizes of the swing itself: an error as large says nothing."""
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
-        """Take this many steps; compare `comparisons` or more, and the last, with the truth.
+        """Take so many steps; compare `comparisons` or more, and the last, with the exact swing.
 
-        An error counts as rounding if it lies below the rounding floor, and if runs with a half and
-        a quarter of the steps do not have errors larger by half of what the method's order
-        promises.
-
-        Raises SceneError where time/steps is no usable h.
+        An error counts as rounding if it lies below the rounding floor and does not fall with h.
+        Raises SceneError if time/steps is no usable h.
         """
         errors, diverged = self._errors(method, steps, comparisons)
         flaws = Flaws("diverged", "diverged", "diverged")
@@ -138,13 +134,15 @@ class Study:
     def _refines(
         self, method: Method, steps: int, comparisons: int, errors: Sequence[float]
     ) -> list[bool]:
-        """Return which errors still fall with the step, by half of what the order promises."""
-        half, quarter = (
-            self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4)
-        )
-        least = 2 ** (method.order - 1)
-        ladder = zip(errors, half, quarter, strict=True)
-        return [a * least <= b and b * least <= c for a, b, c in ladder]
+        """Return which errors fall with h, from a quarter of the steps on.
+
+        Doubling the steps must reduce an error by at least half of what the order promises.
+        """
+        half, _ = self._errors(method, max(1, steps // 2), comparisons)
+        quarter, _ = self._errors(method, max(1, steps // 4), comparisons)
+        factor = 2 ** (method.order - 1)
+        ladder = zip(quarter, half, errors, strict=True)
+        return [fine * factor <= mid and mid * factor <= coarse for coarse, mid, fine in ladder]
 
     def flaws(
         self,
@@ -154,8 +152,8 @@ class Study:
     ) -> Flaws:
         """Return what is wrong with the errors in theta, energy and final theta of a run.
 
-        An error below the floor of so many roundings is rounding, unless a smaller step still
-        `refines` it, which is asked only there.
+        An error below the floor of so many roundings is rounding unless it falls with h.  Only then
+        `refines` is called, for that is slow.
         """
         floors = [
             floor * math.sqrt(roundings)
@@ -173,16 +171,16 @@ class Study:
         return Flaws(*found)
 
     def _evaluations(self, method: Method, steps: int) -> int:
-        """Force evaluations of so many steps: counted, of many as an average of the first."""
+        """Return the force evaluations of so many steps, extrapolated from the first 2000."""
         start = self.scene.equations.start(self.scene.theta, self.scene.omega)
-        most = min(steps, 2000)
-        found = count_evaluations(method, self.scene.equations, start, self.time / steps, most)
-        return round(found * steps / most)
+        first = min(steps, 2000)
+        count = count_evaluations(method, self.scene.equations, start, self.time / steps, first)
+        return round(count * steps / first)
 
     def _errors(
         self, method: Method, steps: int, comparisons: int
     ) -> tuple[tuple[float, float, float], bool]:
-        """Largest errors in theta [rad] and energy, last error in theta, whether it overflowed."""
+        """Return the largest errors in theta and energy, the last in theta, and if it diverged."""
         lockstep = Lockstep(
             self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops
         )
@@ -200,14 +198,14 @@ class Study:
         return point.theta_error <= self._theta_floor * math.sqrt(point.steps)
 
     def points(self, ladder: Sequence[int]) -> Iterator[Point]:
-        """A point for every number of steps and every method."""
+        """Yield a point for every number of steps and every method."""
         for steps in ladder:
             for method in self.scene.cast:
                 yield self.run(method, steps)
 
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
-    """The same point with its seconds: the same steps again, without comparisons and energies."""
+    """Return the point with the seconds of the same steps without comparisons and energies."""
     propagate = loops(point.method, scene.equations).propagate
     start = (scene.theta, scene.omega)
     propagate(start, point.h, 1)  # may have to be compiled
@@ -229,16 +227,13 @@ def shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float
 
 
 def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
-    """At most `count` numbers of steps, for h from about h_max down to h_min in equal ratios."""
+    """Return up to `count` numbers of steps, for h from h_max to h_min in equal ratios."""
     ratio = (h_min / h_max) ** (1 / max(1, count - 1))
     return sorted({max(1, round(time / (h_max * ratio**rung))) for rung in range(count)})
 
 
 def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
-    """Return a time [s] and a ladder of steps for the usual cast, or for `all` methods.
-
-    The time is that of ten small swings: 20 s for 1 m.
-    """
+    """Return ten small swings' time [s], and a ladder of steps for the usual cast or `all`."""
     time = float(f"{10 * math.tau / scene.w0:.2g}")
     largest, smallest, rungs = Z_LADDER
     if all:
@@ -247,31 +242,25 @@ def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
 
 
 def with_all_methods(scene: Scene) -> Scene:
-    """Return the scene with every other method that takes any force after its cast."""
+    """Return the scene with its cast and then every other general method."""
     others = (method for method in GENERAL if method not in scene.cast)
     return scene.altered(cast=(*scene.cast, *others))
 
 
 def compilable(cast: Cast) -> bool:
-    """Return whether to time these methods compiled by Numba.
-
-    If one of them is a user's own, which cannot be compiled, none is: the timing is fair.
-    """
+    """Return whether to time these methods compiled by Numba: all of them, or for fairness none."""
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 
 def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
-    """A point for every number of steps and every method.
-
-    For another process, which has only the arguments.
-    """
+    """Yield a point for every number of steps and every method; for another process."""
     return Study(scene, time, TieredLoops).points(rungs)
 
 
 def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, int]) -> Point:
-    """Return the point of one task, the number of a method in the cast and that of its steps.
+    """Return the point of a task: the index of a method in the cast, and a number of steps.
 
-    For other processes, which get one task after the other and keep the study between them.
+    For other processes, which keep the study between tasks.
     """
     index, steps = task
     return _cached_study(scene, time, loops).run(scene.cast[index], steps)
@@ -285,11 +274,10 @@ def _cached_study(scene: Scene, time: float, loops: LoopsOf) -> Study:
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
     """Return each method's order: the slope of log theta error over log h, up to a period.
 
-    Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also
-    loses energy at a rate of b·h⁵, so the frequency drifts and the phase with it by b·h⁵·t²/2,
-    which wins in the long run: it reads 5, and more where h is so large that terms of h⁶ count.
-    Next to the separatrix, where phase hangs steeply on energy, it reads 5 within the first period.
-    Symplectic Euler reads 2 from theta = 0, where its angles are velocity Verlet's.
+    Over longer times RK4 reads 5 and more: its phase error a·h⁴·t is overtaken by b·h⁵·t²/2, since
+    it loses energy at a rate of h⁵ and the frequency depends on energy.  Near the separatrix, where
+    it does so steeply, RK4 reads 5 within a period.  Symplectic Euler reads 2 from theta = 0, where
+    its angles are velocity Verlet's.
     """
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
@@ -304,7 +292,7 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
 
 
 def _slope(points: Sequence[Point]) -> float | None:
-    """The slope of log theta error over log h, by least squares, of the four smallest h."""
+    """Return the least-squares slope of log theta error over log h, of the four smallest h."""
     fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-4:]
     if len(fitted) < 3:
         return None

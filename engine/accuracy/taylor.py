@@ -20,7 +20,7 @@ compiled: Any = njit(nogil=True, fastmath={"contract"}, error_model="numpy")
 def expand(w0_squared: float, theta: float, omega: float, w: Any, u: Any) -> None:
     """Fill w and u with the coefficients of the series of omega and of u.
 
-    The sums of products run from the middle outwards, because the newest coefficients come last.
+    The sums of products run outwards from the middle, so that the newest coefficients come last.
     """
     w[0] = omega
     w[1] = -w0_squared * math.sin(theta)
@@ -34,7 +34,7 @@ def expand(w0_squared: float, theta: float, omega: float, w: Any, u: Any) -> Non
             for j in range(middle):
                 square += w[j] * w[k - j]
             u[k] = square
-        left = 0.0  # two sums: each addition waits for the one before it
+        left = 0.0  # two sums run in parallel, as each addition waits for the previous one
         right = 0.0
         if k % 2 == 0:
             left = w[middle] * u[middle]
@@ -66,7 +66,7 @@ def solve(
     index = 0
     steps = 0
     t = 0.0
-    lost = 0.0  # by rounding, of t: uncompensated, it would be an error of each step
+    lost = 0.0  # from t by rounding; without compensation each step would err by so much
     while index < times.size:
         expand(w0_squared, theta, omega, w, u)
         h = min(

@@ -1,4 +1,4 @@
-"""The models: what is simulated, one a file, and what it is compared with."""
+"""The models, one a file, and the exact motion that methods are compared with."""
 
 from engine.models.damped import DampedPendulum
 from engine.models.linear import LinearOscillator as LinearOscillator
@@ -13,11 +13,11 @@ MODELS: dict[str, type[Model]] = {
 }
 
 FIRST_ORDER = tuple(key for key, model in MODELS.items() if not model.second_order)
-"""The keys of the models that methods integrate by their rates."""
+"""The keys of the models that are integrated by their rates."""
 
 DEFAULT_MODEL = Pendulum.key
 
 PARAMETERS: dict[str, Parameter] = {
     each.name: each for model in MODELS.values() for each in model.parameters
 }
-"""The parameters that models have besides length and gravity, by name."""
+"""The parameters besides length and gravity, by name."""

@@ -27,7 +27,7 @@ STEP = 0.05  # of the reference, times the larger of w0 and gamma
 
 
 class DampedParts(NamedTuple):
-    """What methods made for friction take."""
+    """The parts of the model for methods made for friction."""
 
     force: Force  # gravity's
     friction: float  # gamma [s⁻¹]
@@ -71,7 +71,7 @@ class DampedPendulum(Pendulum):
         return DampedParts(self.force(sin), self.friction)
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """By the reference; it swings down to rest, and turns before if its energy is enough."""
+        """Return the reference's motion, a rotation as long as the energy is enough."""
 
         def at(t: float) -> State:
             return State(*_reference(self, theta, omega).at(t))
@@ -85,7 +85,7 @@ class DampedPendulum(Pendulum):
         return ExactMotion(at, regime, accuracy=ACCURACY)
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
-        """The reference's energy; errors are ln(E/E_true)."""
+        """Return the reference's energy; errors are ln(E/E_true)."""
         energy = self.energy()
 
         def true(t: float) -> float:

@@ -1,12 +1,10 @@
-"""The exact motion in closed form, from any start; the reference of every error in theta.
+"""The exact motion in closed form from any start, with which all angles are compared.
 
-Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration,
-D < 0 rotation, D = 0 the separatrix.  Near the separatrix everything depends on D, whose two terms
-cancel there, so it is computed once in 100 digits.  F by Carlson's R_F, K by the
-arithmetic-geometric mean from k', sn and cn by Bulirsch from k', the argument reduced modulo 2K:
-library routines that take m = k² instead lose every digit where 1 - m < 1e-10.
-
-Carlson, Numer. Algorithms 10 (1995) 13.  Bulirsch, Numer. Math. 7 (1965) 78.
+k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration, D < 0 rotation, D = 0 the
+separatrix.  Near the separatrix everything depends on D, whose two terms cancel, so it is computed
+in 100 digits.  F is Carlson's R_F (Numer. Algorithms 10 (1995) 13).  K by the arithmetic-geometric
+mean, sn and cn by Bulirsch (Numer. Math. 7 (1965) 78) start from k', with the argument reduced
+modulo 2K; library routines that take m = k² lose every digit where 1 - m < 1e-10.
 """
 
 import math
@@ -45,10 +43,10 @@ def exact_pendulum(
 
 
 def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
-    """k² = (1 - cos theta)/2 + omega²/(4 w0²) in the precision of the decimal context.
+    """Return k² = (1 - cos theta)/2 + omega²/(4 w0²) in the precision of the decimal context.
 
-    1 - cos is taken at theta/2⁶⁴, where five terms of its series are right to 100 digits, and
-    doubled 64 times by 1 - cos 2x = 2 (1 - cos x)(1 + cos x): no pi, and no reduction modulo 2 pi.
+    1 - cos is taken at theta/2⁶⁴, where five terms of its series are right to 100 digits, and the
+    angle doubled 64 times by 1 - cos 2x = 2 (1 - cos x)(1 + cos x), so no digits of pi are needed.
     """
     small = Decimal(theta) / 2**64
     square = small * small
@@ -59,7 +57,7 @@ def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
 
 
 def _half_angle(start: _Start) -> tuple[float, float, float]:
-    """Return sin and cos of half the start angle in (-pi, pi), and the turns taken off [rad]."""
+    """Return sin and cos of half the start angle in (-pi, pi), and the whole turns [rad]."""
     s = math.sin(start.theta / 2)
     c = math.cos(start.theta / 2)
     if c < 0:
@@ -94,7 +92,7 @@ def _libration(start: _Start, k: float, k_prime: float, compile: Compile) -> Exa
 
 
 def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> ExactMotion:
-    """Rotation: theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k).
+    """theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k).
 
     u = k w0 t + F(±theta0/2); a turn takes 2 K(1/k)/(k w0).
     """
@@ -118,10 +116,7 @@ def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> Exac
 
 
 def _separatrix(start: _Start) -> Callable[[float], State]:
-    """Separatrix: theta = 2 gd(u), omega = ±2 w0/cosh u, with u = ±w0 t + u0.
-
-    The pendulum is upright only after an infinite time.
-    """
+    """theta = 2 gd(u), omega = ±2 w0/cosh u, u = ±w0 t + u0: never upright."""
     s, c, turns = _half_angle(start)
     rate = math.copysign(start.w0, start.omega)
     offset = math.asinh(s / c)
@@ -137,10 +132,7 @@ def _separatrix(start: _Start) -> Callable[[float], State]:
 
 
 def _carlson_rf(x: float, y: float, z: float) -> float:
-    """Return Carlson's symmetric integral of the first kind, R_F(x, y, z), by duplication.
-
-    At most one argument may be 0.
-    """
+    """Return Carlson's integral R_F(x, y, z), by duplication; at most one argument may be 0."""
     while True:
         mean = (x + y + z) / 3
         dx = 1 - x / mean
@@ -162,10 +154,7 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
 
 
 def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float]]]:
-    """Return K(k), and u -> (sn u, cn u) for |u| <= K, from k'.
-
-    By the arithmetic-geometric mean: Bulirsch's sncndn.
-    """
+    """Return K(k), and u -> (sn u, cn u) for |u| <= K, from k': Bulirsch's sncndn."""
     means: list[tuple[float, float]] = []
     a = 1.0
     b = k_prime

@@ -52,5 +52,5 @@ class LinearOscillator(Model):
         return ExactMotion(at, "libration", math.tau / w0)
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
-        """Return minus a quarter of the squared amplitude: its curves are ellipses."""
+        """Return minus a quarter of the squared amplitude."""
         return -(theta * theta + omega * omega / self.w0**2) / 4

@@ -103,7 +103,7 @@ class MeanField(Model):
         return Observation(theta, omega, extra)
 
     def invariant(self) -> Callable[[Phase], float]:
-        """Return |s|, the probability, as a function of the phase."""
+        """Return |s|, the probability, as a function."""
         return _length
 
     def rates(self, sin: Sine = math.sin) -> Rates:
@@ -123,10 +123,10 @@ class MeanField(Model):
         return mean_field_rates
 
     def kick(self, phase: Phase, h: float) -> Phase:
-        """Return the phase after h [s] in which theta stands still; exact.
+        """Return the exact phase after h [s] in which theta stands still.
 
-        The vectors b, b' and b × b' are orthonormal: s keeps its part along b, and turns by nu h in
-        the plane of the other two, along which u and v are its parts.
+        b, b' and b × b' are orthonormal: s keeps its part along b, and its parts u and v along the
+        other two turn by nu h.
         """
         theta, omega, sx, sy, sz = phase
         sine = math.sin(theta)
@@ -157,7 +157,7 @@ class MeanField(Model):
         return mean_field_energy
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """Return the motion by a splitting of order 8 at a small step: there is no closed form."""
+        """Return the motion by a splitting of order 8, as there is no closed form."""
 
         def at(t: float) -> State:
             return State(*_reference(self, theta, omega).at(t)[:2])

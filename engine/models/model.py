@@ -1,18 +1,16 @@
-"""Model: the physics that methods integrate, and what the rest of the lab needs to know of it."""
+"""Model: the physics that methods integrate."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
-# float, complex, NumPy array or mpmath number: one definition of a method serves them all
-Number = Any
+Number = Any  # float, complex, NumPy array or mpmath number
 
 Phase = tuple[Number, ...]
-"""(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds.
+"""(theta, omega) as methods take and yield it: a plain tuple, because it is fast.
 
-Some models have other numbers, or more of them; `Model.observe` reads angle and angular velocity
-from any phase.
+Some models have other numbers, or more; `Model.observe` reads any phase.
 """
 
 Force = Callable[[Number], Number]
@@ -35,21 +33,20 @@ class State(NamedTuple):
 
 
 class Variable(NamedTuple):
-    """A number that a model's readings have besides angle, angular velocity and energy."""
+    """A number in a model's readings besides angle, angular velocity and energy."""
 
     name: str  # in recordings, JSON and --fail-if
     unit: str = ""
     about: str = ""
     label: str = ""  # the title of its chart, if it is not a part of the state
-    is_state: bool = True
-    """Whether it is a component of the phase, or else a function of it that charts can show."""
-    relative: bool = False  # readings have it over its value at the start of the run
+    is_state: bool = True  # a component of the phase, else a function of it that charts can show
+    relative: bool = False  # to its value at the start of the run
 
 
 class Parameter(NamedTuple):
     """A number in a model's equations, besides length and gravity."""
 
-    name: str  # of the model's field, in scenes, recordings and on the command line
+    name: str  # of the field, in scenes, recordings and on the command line
     unit: str
     about: str
     min: float  # inclusive
@@ -59,7 +56,7 @@ class Parameter(NamedTuple):
 
 
 class ExtraColumn(NamedTuple):
-    """A column that tables of a model's readings have besides the common ones."""
+    """A column of a model's readings in tables, besides the common ones."""
 
     head: str
     wide_head: str  # where there is room
@@ -75,8 +72,7 @@ class Observation(NamedTuple):
 
     theta: float  # rad from the downward vertical, unwrapped
     omega: float  # rad/s
-    extra: Mapping[str, float] = NO_EXTRA
-    """The values of the model's own variables, in the order of `Model.variables`."""
+    extra: Mapping[str, float] = NO_EXTRA  # the model's own variables, `Model.variables`
 
 
 class EnergyReference(NamedTuple):
@@ -84,19 +80,17 @@ class EnergyReference(NamedTuple):
 
     start: float  # s⁻², the energy at the start
     scale: float  # s⁻², the same, or 2 w0² where that is zero
-    true: Callable[[float], float] | None = None
-    """The true motion's energy [s⁻²] at a time [s], where it is not conserved."""
-    least: float = 1e-300
-    """An energy [s⁻²] below which rounding decides, so that logarithms stop there."""
+    true: Callable[[float], float] | None = None  # energy [s⁻²] at a time [s], if not conserved
+    least: float = 1e-300  # s⁻²; energies below are mostly rounding, and are replaced by it
 
     def error(self, energy: float, t: float = 0.0) -> float:
-        """(E - E0)/E0, or where energy is not conserved ln(E/E_true) at this time [s]."""
+        """Return (E - E0)/E0, or where energy is not conserved ln(E/E_true) at a time [s]."""
         if self.true is None:
             return (energy - self.start) / self.scale
         return self._log(energy) - self._log(self.true(t))
 
     def _log(self, energy: float) -> float:
-        """ln of an energy [s⁻²], finite even if the energy is 0 or overflows a double."""
+        """Return ln of an energy [s⁻²], finite even if the energy is 0 or inf."""
         return math.log(min(max(energy, self.least), 1e300))
 
 
@@ -106,18 +100,16 @@ Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 class ExactMotion(NamedTuple):
     """The exact motion from one start."""
 
-    at: Callable[[float], State]
-    """The state at a time [s], which may be negative; theta is unwrapped."""
+    at: Callable[[float], State]  # at any time [s]
     regime: Regime
-    period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
-    # rad; largest error of theta in the first minute; 0 where the motion has a closed form
-    accuracy: float = 0.0
+    period: float | None = None  # s, of a swing or turn; None: not periodic
+    accuracy: float = 0.0  # rad, largest error of theta in the first minute; 0: closed form
 
 
 class EnergyError(NamedTuple):
-    """What energy errors of a model are, and their names on screen."""
+    """What a model's energy errors are, and their names on screen."""
 
-    conserved: bool = True  # the true motion keeps its energy, and errors are shares of the start's
+    conserved: bool = True  # by the true motion; errors are relative to the start's energy
     symbol: str = "dE/E0"
     name: str = "energy error"
     about: str = (
@@ -127,42 +119,33 @@ class EnergyError(NamedTuple):
 
 
 class Model(ABC):
-    """Equations of motion: a frozen dataclass of their parameters, and what differs by model.
+    """Equations of motion: a frozen dataclass of their parameters.
 
-    Most models are theta'' = force(theta).  Where that is not all of the right side, `second_order`
-    is False, and methods integrate `rates`; methods made for one model take its `parts`, such as
-    exact parts of the flow.
+    Most models are theta'' = force(theta).  For others `second_order` is False, and methods
+    integrate `rates`; methods made for one model take its `parts`.
     """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
-    parameters: ClassVar[
-        tuple[Parameter, ...]
-    ] = ()  # the dataclass' fields after w0_squared, in order
-    turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
-    second_order: ClassVar[bool] = True  # theta'' = force(theta), in whatever numbers
-    # of `parts`, those that cost a force evaluation
-    counted_parts: ClassVar[tuple[str, ...]] = ("force",)
-    rigid: ClassVar[bool] = True  # whether the bob stays at one distance from the pivot
-    variables: ClassVar[
-        tuple[Variable, ...]
-    ] = ()  # what its readings have besides theta, omega and energy
+    parameters: ClassVar[tuple[Parameter, ...]] = ()  # the fields after w0_squared, in order
+    turns: ClassVar[bool]  # theta + 2 pi is the same place, and it can go over the top
+    second_order: ClassVar[bool] = True  # theta'' = force(theta)
+    counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, as force evaluations
+    rigid: ClassVar[bool] = True  # the bob stays at one distance from the pivot
+    variables: ClassVar[tuple[Variable, ...]] = ()
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
     energy_error: ClassVar[EnergyError] = EnergyError()
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
-    # of its phase portrait, if the motion does not follow curves of equal energy
-    caption: ClassVar[str] = ""
-    without_force: ClassVar[str] = ""
-    """Why studies and maps, made for one angle and a conservative force, do not apply; or ""."""
-    without_ring: ClassVar[str] = ""
-    """Why a ring of neighbouring starts does not apply; "": it does."""
+    caption: ClassVar[str] = ""  # of a phase portrait that does not follow curves of equal energy
+    without_force: ClassVar[str] = ""  # why studies and maps do not apply; "": they do
+    without_ring: ClassVar[str] = ""  # why a ring of neighbouring starts does not apply
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
 
     @classmethod
     def quantities(cls) -> tuple[Variable, ...]:
-        """Return the variables that are not a part of the state, which charts can show."""
+        """Return the variables that charts can show."""
         return tuple(each for each in cls.variables if not each.is_state)
 
     @property
@@ -172,15 +155,15 @@ class Model(ABC):
 
     @property
     def fastest(self) -> float:
-        """The highest frequency in it [rad/s], the one that limits h."""
+        """The highest frequency [rad/s], which limits h."""
         return self.w0
 
     def start(self, theta: float, omega: float) -> Phase:
-        """Return the phase that a run from theta [rad] and omega [rad/s] starts with."""
+        """Return the first phase of a run from theta [rad] and omega [rad/s]."""
         return theta, omega
 
     def rest_phase(self, theta: float) -> Phase:
-        """Return the phase of least energy at an angle [rad]: at rest."""
+        """Return the phase of least energy at an angle [rad]."""
         return theta, 0.0
 
     def observe(self, phase: Phase) -> Observation:
@@ -197,7 +180,7 @@ class Model(ABC):
         return 1.0
 
     def force(self, sin: Sine = math.sin) -> Force:
-        """Return the force.  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""
+        """Return the force for numbers with this `sin`: NumPy's, cmath's, mpmath's."""
         raise NotImplementedError(f"the model {self.key} is not described by a force")
 
     def slope(self, theta: float) -> float:
@@ -215,7 +198,7 @@ class Model(ABC):
         return second_order_rates
 
     def parts(self, sin: Sine = math.sin) -> Any:
-        """Return the parts of the equations for this model's methods; by default, the model."""
+        """Return the parts of the equations for this model's methods."""
         return self
 
     @abstractmethod
@@ -227,12 +210,9 @@ class Model(ABC):
         """Return the exact motion from theta [rad] and omega [rad/s]."""
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
-        """Return the scale of the energy errors of a run from theta [rad] and omega [rad/s]."""
+        """Return what energy errors from theta [rad] and omega [rad/s] are relative to."""
         start: float = self.energy()(self.start(theta, omega))
-        scale = start
-        if not start > 0:
-            scale = 2 * self.w0_squared
-        return EnergyReference(start, scale)
+        return EnergyReference(start, scale=start if start > 0 else 2 * self.w0_squared)
 
     def invariant(self) -> Callable[[Phase], float] | None:
         """Return a positive invariant besides the energy, or None."""
@@ -247,8 +227,5 @@ class Model(ABC):
         return 1.0
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
-        """Return a function of the energy: 1 - E/E_separatrix if there is a separatrix.
-
-        Pass the `cos` of your numbers.  A model without curves has one level.
-        """
+        """Return a function of the energy alone, 1 - E/E_separatrix if there is a separatrix."""
         return 0 * (theta + omega)

@@ -1,8 +1,7 @@
 """Modified (shadow) energies: what the symplectic methods conserve instead of the energy.
 
-A symplectic method with a constant step follows, but for terms of higher order, the exact flow of
-a nearby energy.  The energy itself then wobbles and comes back; the modified energy looks flat.
-Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), IX.3 and IX.8.
+A symplectic method with a constant step follows the exact flow of a nearby energy, but for terms of
+higher order.  Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), IX.3 and IX.8.
 """
 
 from collections.abc import Callable
@@ -35,9 +34,6 @@ implicit_midpoint_modified_energy = _modified(1, -1)  # for small swings a multi
 
 
 def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """Return Verlet's modified energy half a kick later.
-
-    Symplectic Euler is velocity Verlet seen between its kicks.
-    """
+    """Return velocity Verlet's modified energy half a kick later, where the two methods agree."""
     theta, omega = phase
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)

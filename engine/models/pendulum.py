@@ -1,7 +1,4 @@
-"""The model: a frictionless pendulum, and no more than that.
-
-theta'' = -w0² sin theta.  Mass cancels; energies are per unit m·L², in s⁻².
-"""
+"""The frictionless pendulum.  Mass cancels; energies are per unit m·L², in s⁻²."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +12,7 @@ from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine
 class Pendulum(Model):
     """theta'' = -w0² sin theta."""
 
-    w0_squared: float  # g/L [s⁻²], the only parameter of the motion
+    w0_squared: float  # g/L [s⁻²]
 
     key: ClassVar[str] = "pendulum"
     equation: ClassVar[str] = "theta'' = -w0² sin theta"
@@ -54,8 +51,7 @@ class Pendulum(Model):
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
         """Return 1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.
 
-        The product of two numbers of which one is exact near the separatrix, where
-        1 - E/E_separatrix itself would cancel.
+        It is computed as a product, because the difference cancels near the separatrix.
         """
         c = cos(theta / 2)
         v = omega / (2 * self.w0)

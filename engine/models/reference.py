@@ -1,7 +1,7 @@
-"""A reference where there is no closed form: Kahan and Li's order 8 in its own steps.
+"""The reference motion where there is no closed form, by a composition of order 8.
 
-Kahan & Li, Math. Comput. 66 (1997) 1089: a symmetric step of order 2 with 17 fractions of h in
-turn.
+It takes a symmetric step of order 2 with 17 fractions of h in turn: Kahan & Li, Math. Comput. 66
+(1997) 1089.
 """
 
 import math
@@ -24,35 +24,30 @@ _HALF = (
 )
 WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
 ACCURACY = 1e-10  # rad, of theta, with the steps that the models give it
-EVERY = 64  # steps from one that is kept to the next
+EVERY = 64  # steps from one kept phase to the next
 
 
 class Reference:
-    """The motion from a start, computed on demand.
-
-    Its bits do not depend on the order in which times are requested.
-    """
+    """The motion from a start, computed on demand; its bits do not depend on earlier calls."""
 
     def __init__(self, step: Step, start: Phase, h: float) -> None:
-        """In steps of h [s]."""
         self._step = step
-        self._h = h
-        self._kept = {0: start}  # by number of steps, negative ones included
-        self._last = 0, start  # the last whole step that was asked for
+        self._h = h  # s
+        self._kept = {0: start}  # by number of steps, which may be negative
+        self._last = 0, start  # the last whole step of the previous call
 
     def at(self, t: float) -> Phase:
-        """The phase at a time [s]; whole steps to just before it, and one of what is left."""
+        """Return the phase at a time [s], after whole steps and a shorter one."""
         steps = int(t / self._h)
         way = int(math.copysign(1, steps))
-        at = steps // (way * EVERY) * way * EVERY
-        begin = at
+        begin = steps // (way * EVERY) * way * EVERY
         while begin not in self._kept:
             begin -= way * EVERY
         phase = self._kept[begin]
-        last, there = self._last
+        last, last_phase = self._last
         if begin * way <= last * way <= steps * way:
             begin = last
-            phase = there
+            phase = last_phase
         try:
             for n in range(begin + way, steps + way, way):
                 phase = self._step(phase, way * self._h)
@@ -64,11 +59,11 @@ class Reference:
                 return self._step(phase, rest)
             return phase
         except (ValueError, ArithmeticError):
-            return phase  # far back, where friction has made it faster than doubles hold
+            return phase  # long before the start friction makes it faster than doubles hold
 
 
 def compose(step: Step) -> Step:
-    """Return a step of order 8 that takes WEIGHTS of h by a symmetric step of order 2 in turn."""
+    """Return a step of order 8, composed of a symmetric step of order 2."""
 
     def composed(phase: Phase, h: float) -> Phase:
         for weight in WEIGHTS:
@@ -79,10 +74,9 @@ def compose(step: Step) -> Step:
 
 
 def compose_verlet(force: Force, friction: float = 0.0) -> Step:
-    """Return the composition of velocity Verlet; adjacent parts share a force.
+    """Return the composition of velocity Verlet, or with friction [s⁻¹] of conformal Verlet.
 
-    With friction [s⁻¹] each part is a conformal step, which damps before and after; parts that go
-    backwards undo it exactly.
+    Adjacent parts share a force.
     """
 
     def composed(phase: Phase, h: float) -> Phase:

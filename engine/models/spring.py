@@ -1,8 +1,7 @@
-"""A bob on a stiff spring in the plane: a swing, and a vibration that is some ten times as fast.
+"""A bob on a stiff spring in the plane: a swing, and a vibration some ten times as fast.
 
-A position is a complex number x + iy in units of the spring's length at rest, y upwards and the
-pivot at 0: z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the phase runs
-on it unchanged.
+A position is a complex number z = x + iy in units of the spring's length at rest, y upwards and the
+pivot at 0, so methods run on it unchanged: z'' = -k (1 - 1/|z|) z - i w0².
 """
 
 import cmath
@@ -32,9 +31,9 @@ STEP = 0.1  # of the reference, times the spring's frequency
 
 
 class SpringParts(NamedTuple):
-    """What methods for two time scales take; methods for a force take the sum of fast and slow."""
+    """The parts of the model for methods for two time scales."""
 
-    fast: Callable[[Any], Any]  # the spring's force on a place
+    fast: Callable[[Any], Any]  # position -> the spring's force
     slow: Callable[[Any], Any]  # gravity's
     solve: Callable[[Any, float], Any]  # (b, c) -> the solution of z = b + c fast(z)
 
@@ -52,7 +51,7 @@ class Spring(Model):
 
     key: ClassVar[str] = "spring"
     equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
-    turns: ClassVar[bool] = False  # its angle is known from its place only, so it is within ±pi
+    turns: ClassVar[bool] = False  # the angle follows from the position, so it is within ±pi
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),
     )
@@ -96,17 +95,17 @@ class Spring(Model):
         return max(self.w0, math.sqrt(self.stiffness))
 
     def start(self, theta: float, omega: float) -> Phase:
-        """Stretched by 4 % beyond equilibrium, and with no speed along the rod."""
+        """Return a start stretched by 4 % beyond equilibrium, with no speed along the rod."""
         length = 1 + 0.04 + (self.w0_squared * math.cos(theta) + omega * omega) / self.stiffness
         down = -1j * cmath.exp(1j * theta)
         return length * down, 1j * length * omega * down
 
     def rest_phase(self, theta: float) -> Phase:
-        """At rest, as long as without a weight."""
+        """Return the phase at rest, as long as without a weight."""
         return -1j * cmath.exp(1j * theta), 0j
 
     def observe(self, phase: Phase) -> Observation:
-        """Return the angle within ±pi, its velocity, place, velocity, and the spring's energy."""
+        """Return angle, angular velocity, position, velocity, and the spring's energy."""
         z, w = phase
         extra = {
             "x": z.real,
@@ -118,7 +117,7 @@ class Spring(Model):
         return Observation(*self._swing(phase), extra)
 
     def theta_error(self, theta: float, exact: float) -> float:
-        """Return theta - exact theta within ±pi [rad]: theta is known up to whole turns."""
+        """Return theta - exact theta [rad] within ±pi, because whole turns are not known."""
         return math.remainder(theta - exact, math.tau)
 
     def length(self, extra: Mapping[str, float]) -> float:
@@ -160,7 +159,7 @@ class Spring(Model):
         return SpringParts(fast, slow, solve)
 
     def slope(self, theta: float) -> float:
-        """Of the swing, as if the rod were rigid."""
+        """Return the slope of the swing with a rigid rod."""
         return -self.w0_squared * math.cos(theta)
 
     def energy(self, sin: Sine = math.sin) -> Energy:
@@ -180,9 +179,9 @@ class Spring(Model):
         return total_energy
 
     def spring_energy(self, phase: Phase) -> float:
-        """vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length at which the forces balance.
+        """Return vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length in balance of forces.
 
-        The true motion keeps it within 2.5 % at k = 2500 s⁻²: an adiabatic invariant.
+        It is an adiabatic invariant: the true motion keeps it within 2.5 % at k = 2500 s⁻².
         """
         z, w = phase
         length = abs(z) or 1.0
@@ -195,7 +194,7 @@ class Spring(Model):
         return energy
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """The reference's angle and angular velocity; nan if the spring is too fast for it."""
+        """Return the reference's motion; nan if the spring is too fast for it."""
 
         def at(t: float) -> State:
             return self._swing(self.place(theta, omega, t))
@@ -203,10 +202,7 @@ class Spring(Model):
         return ExactMotion(at, "libration", accuracy=ACCURACY)
 
     def place(self, theta: float, omega: float, t: float) -> Phase:
-        """The reference's position and velocity at a time [s]; nan if the spring is too fast.
-
-        It would take the reference more time than it saves.
-        """
+        """Return the reference's phase at a time [s]; nan if the spring is too fast to follow."""
         if self.fastest > 320 * self.w0:
             return complex(math.nan, math.nan), complex(math.nan, math.nan)
         return _reference(self, theta, omega).at(t)

@@ -1,1 +1,1 @@
-"""What a step does to neighbouring starts, and what many steps do to all of them."""
+"""What one step does to neighbouring starts, and what many steps do to many starts."""

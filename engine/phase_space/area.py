@@ -1,4 +1,4 @@
-"""Area in phase space: how each method changes the area of a ring of neighbouring starts."""
+"""How each method changes the area of a ring of neighbouring starts in phase space."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ Ring = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 @dataclass(slots=True)
 class _Carried:
-    """What one method carries along: its own point, the ring around it, the area so far."""
+    """One method's phase, the ring around it, and the area so far."""
 
     method: Method
     phase: Phase
@@ -32,9 +32,9 @@ class _Carried:
 class Neighbourhood:
     """A ring of neighbouring starts, carried along by each method.
 
-    The area ratio comes from the product of the steps' Jacobians at the centre (the logarithms of
-    the determinants, summed), not from the ring's own shoelace area, which rounding and folding
-    spoil.  A method whose numbers stop being finite keeps its last ring.
+    The area ratio is the product of the steps' Jacobian determinants at the centre, because the
+    area of the ring itself suffers from rounding and folding.  A method whose numbers stop being
+    finite keeps its last ring.
     """
 
     def __init__(self, scene: Scene, radius: float, points: int = 64) -> None:
@@ -55,7 +55,7 @@ class Neighbourhood:
 
     @property
     def area_ratios(self) -> tuple[float, ...]:
-        """Area now over area at the start, for an infinitesimal ring; inf if it overflows."""
+        """The area over that at the start, of an infinitesimal ring; inf if it overflows."""
         return tuple(math.exp(c.log_area) if c.log_area < 709 else math.inf for c in self._carried)
 
     def advance(self, n: int, stepping: Stepping) -> None:
@@ -88,10 +88,9 @@ class Neighbourhood:
 
 
 class Neighbours:
-    """The neighbours of a run's start, carried along to the step on screen.
+    """The neighbours of a run's start, carried to the run's present step.
 
-    They begin at the run's start and take the run's own steps, changes of the stepping included, so
-    the ring does not depend on when it was switched on.  Going back starts over.
+    They take the run's own steps, changes of the stepping included.  Going back starts over.
     """
 
     def __init__(self, radius: float) -> None:
@@ -102,10 +101,8 @@ class Neighbours:
         self._ring: Neighbourhood | None = None
 
     def ring_of(self, scene: Scene, run: int) -> Neighbourhood | None:
-        """The ring as far as it has been carried; None if it is not yet of this run."""
-        if self._begun == (scene, run):
-            return self._ring
-        return None
+        """Return the ring as far as it has been carried; None if it is not of this run."""
+        return self._ring if self._begun == (scene, run) else None
 
     def follow(
         self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
@@ -114,13 +111,9 @@ class Neighbours:
 
         `changes` are all of the run's, in order.
         """
-        known = [change for change in changes if change.step < self.step]
-        if (
-            self._ring is None
-            or self._begun != (scene, run)
-            or step < self.step
-            or known != self._taken
-        ):
+        past = [change for change in changes if change.step < self.step]
+        continues = self._begun == (scene, run) and step >= self.step and past == self._taken
+        if self._ring is None or not continues:
             self._ring = Neighbourhood(scene, self.radius)
             self._begun = (scene, run)
             self.step = 0

@@ -1,11 +1,12 @@
 """The phase portrait of a method's own map: many starts iterated, and the kind of a single orbit.
 
-A step of fixed h is a map of the phase plane, and its orbits are a Poincaré section as they are: a
-smooth curve, a chain of islands, a chaotic layer or, if the method is not symplectic, a spiral.
+A step of fixed h is a map of the phase plane.  An orbit is a smooth curve, a chain of islands, a
+chaotic layer or, if the method is not symplectic, a spiral.
 """
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
@@ -22,14 +23,11 @@ Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
 
 LARGEST = 12  # denominator of a fraction that counts as small
-_CHUNK = 8  # steps between two looks at a displacement
+_CHUNK = 8  # steps between two rescalings of a displacement
 
 
 def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -> Points:
-    """Spread `count` starts evenly over a rectangle, so that the first n are spread evenly, too.
-
-    Roberts' sequence R2 (2018).
-    """
+    """Spread `count` starts evenly over a rectangle by Roberts' sequence R2 (2018)."""
     n = np.arange(1.0, count + 1)
     # 1/p and 1/p², where p³ = p + 1
     across = n * 0.7548776662466927 % 1
@@ -39,7 +37,7 @@ def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -
 
 @np.errstate(all="ignore")  # a method that diverges ends beyond the doubles
 def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) -> Points:
-    """The starts (n) and the phases after each step of h [s]: two arrays (steps + 1, n)."""
+    """Return n starts and their phases after each step of h [s]: two arrays (steps + 1, n)."""
     theta, omega = (np.empty((steps + 1, len(part))) for part in starts)
     theta[0], omega[0] = starts
     for step, phase in enumerate(islice(method.phases(model.force(np.sin), starts, h), steps), 1):
@@ -61,15 +59,13 @@ def pieces(method: Method, model: Model, h: float, starts: Points, steps: int) -
 
 def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> Points:
     """Return the phases of one start: two arrays of at most steps + 1 finite numbers."""
-    found = [start]
-    try:
+    phases = [start]
+    with suppress(*OVERFLOW):
         for phase in islice(method.phases(model.force(), start, h), steps):
             if not (math.isfinite(phase[0]) and math.isfinite(phase[1])):
                 break
-            found.append(phase)
-    except OVERFLOW:
-        pass
-    theta, omega = np.array(found, np.float64).T
+            phases.append(phase)
+    theta, omega = np.array(phases, np.float64).T
     return theta, omega
 
 
@@ -77,23 +73,19 @@ def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> P
 class OrbitKind:
     """The properties of an orbit of finite length."""
 
-    steps: int  # followed
+    steps: int
     moves: bool  # not an equilibrium
     spins: bool  # goes over the top, at least once
-    rotation: float | None
-    """Turns per step: around the bottom, or over the top with its sign; None if there are none."""
-    fraction: Fraction | None  # the nearest small one, of |rotation|
-    # every so many steps, by the fraction's denominator, the orbit is back in the same island
-    island: bool
-    # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
-    lyapunov: float
-    # of a symplectic method: neighbouring starts part faster than regular ones do in so many steps
-    chaotic: bool
+    rotation: float | None  # turns a step, around the bottom, or signed over the top; None: none
+    fraction: Fraction | None  # the small one nearest to |rotation|
+    island: bool  # every q steps, q being the fraction's denominator, it is in the same island
+    lyapunov: float  # mean growth of ln |a small displacement| a step; 0 where it is regular
+    chaotic: bool  # by a symplectic method, and neighbours separate faster than on regular orbits
     energy_error: float  # (E - E0)/E0 at the end, as in a run
 
 
 def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
-    """The kind of an orbit; `points` are those of `orbit`."""
+    """Return the kind of an orbit; `points` are those of `orbit`."""
     theta, omega = points
     steps = len(theta) - 1
     start = (float(theta[0]), float(omega[0]))
@@ -103,7 +95,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     neighbours = Stretching(method, model, h)
     for at in range(0, steps - _CHUNK + 1, _CHUNK):
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
-    # Regular orbits separate in proportion to the steps, fast near the upright position.
+    # neighbours on regular orbits separate in proportion to the steps, and fast near upright
     slack = 0.0
     if model.turns:
         slack = max(-math.log(max(abs(model.level(*start)), 1e-16)), 0.0)
@@ -132,9 +124,9 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
 
 
 def least_lyapunov(steps: int) -> float:
-    """The largest Lyapunov number [1/step] of a regular orbit after so many steps.
+    """Return the largest Lyapunov number [1/step] of a regular orbit after so many steps.
 
-    Starts near the upright position are excepted.
+    It does not hold for starts near the upright position.
     """
     return (15 + math.log(max(steps, 1))) / max(steps, 1)
 
@@ -167,7 +159,7 @@ def _average(values: Floats) -> float:
 
 
 def nearest_fraction(rotation: float) -> Fraction:
-    """The fraction nearest to a rotation number [turns a step] with a denominator up to LARGEST.
+    """Return the fraction nearest to a rotation number, with a denominator up to LARGEST.
 
     Below 1/LARGEST it is one over the nearest number of whole steps a turn.
     """
@@ -177,20 +169,19 @@ def nearest_fraction(rotation: float) -> Fraction:
 
 
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
-    """Whether the points of every q-th step wind around a point of their own."""
+    """Return whether the points of every q-th step wind around a point of their own."""
     q = fraction.denominator
     steps = len(points[0]) - 1
-    # a tenth of a turn in all
-    if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps:
+    tolerance = 0.1 / steps  # a tenth of a turn in all
+    if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > tolerance:
         return False
     theta = points[0][::q]
     omega = points[1][::q] / w0
     if spins:
-        theta = theta - math.copysign(math.tau * fraction.numerator, rotation) * np.arange(
-            len(theta)
-        )
+        turn = math.copysign(math.tau * fraction.numerator, rotation)
+        theta = theta - turn * np.arange(len(theta))
     x = theta - theta.mean()
     y = omega - omega.mean()
     angle = np.unwrap(np.arctan2(y, x))
-    # not rounding that winds
-    return bool(np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau)
+    larger_than_rounding = np.hypot(x, y).max() > 1e-9
+    return bool(larger_than_rounding and abs(angle[-1] - angle[0]) >= math.tau)

@@ -4,13 +4,12 @@
                         |
                         +--look points--> judges --> judgements, milestones
 
-- Running: `stepping` holds h, equal cost and each method's own step; `lockstep` moves all methods
-  by it, in `loops`, which `compiled` gives to Numba, with the same bits; `rewindable` is a lockstep
-  that can also go back; `ensemble` runs many swings together, as arrays.
+- Running: `stepping` holds h and each method's own step; `lockstep` advances all methods, in
+  `loops`, which `compiled` compiles by Numba to the same bits; `rewindable` is a lockstep that can
+  also go back; `ensemble` runs many swings at once, as arrays.
 - Judging: the lockstep stops at look points and shows each method to its `judge`, which uses the
-  `bands` of its energy error and, by `tangent`, how fast neighbouring starts separate; the lockstep
-  has `Judges` of all methods, with the milestones of the run; `judgement` defines the verdicts.
-- `energies` judges the record of any program, by least squares in correlated noise.
+  `bands` of its energy error and the separation of neighbouring starts (`tangent`); `judgement`
+  defines verdicts and thresholds.  `energies` judges the record of any program.
 """
 
 NUMERICS = 2

@@ -1,8 +1,8 @@
 """The loops of engine.run.loops compiled by Numba: the same bits, about ten times as fast.
 
-Numba is the optional extra `fast`.  It is imported at the first use and not before: it takes half a
-second, and compiling another fifth of a second for each method and model.  Nothing is kept on disk:
-Numba's cache does not notice when a function in another file changes, and ours are in three.
+Numba is the optional extra `fast`, imported at the first use: that takes half a second, and
+compiling a fifth of a second for each method and model.  Nothing is cached on disk, because Numba's
+cache does not notice changes of functions in other files.
 """
 
 import math
@@ -18,13 +18,12 @@ from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, PlainLoops
 
-# steps of a method: in plain Python they take as long as importing and compiling
-COMPILED_FROM = 1_000_000
+COMPILED_FROM = 1_000_000  # steps of a method: they take as long as importing and compiling
 
 
 @cache
 def available() -> bool:
-    """Whether Numba is installed.  Does not import it."""
+    """Return whether Numba is installed, without importing it."""
     return find_spec("numba") is not None
 
 
@@ -38,24 +37,22 @@ class CompiledLoops(NamedTuple):
 def compiled(method: Method, model: Model) -> Loops:
     """Return the method's loops on this model, compiled; its parameters become constants.
 
-    They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
-    depends on the platform's libraries, bits would differ: there the plain loops are returned, and
-    for a user's own method, which may hold anything, for one that is not general, and on a model
-    that is not plain.  Raises ImportError without Numba.
+    They release the interpreter's lock while they run.  The plain loops are returned where Numba's
+    sine is not Python's, for a user's own method or one that is not general, and for models without
+    a force.  Raises ImportError without Numba.
     """
     return _compiled(method, model) or PlainLoops(method, model)
 
 
 @cache
 def _compiled(method: Method, model: Model) -> CompiledLoops | None:
-    # slow, and most runs do not need it
-    from engine.methods.own import OwnMethod
+    from engine.methods.own import OwnMethod  # slow to import
 
     numba: Any = import_module("numba")
     general = method.general and not model.without_force and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):
         return None
-    # never called by Python: compiles twice as fast
+    # functions that Python never calls compile twice as fast without wrappers
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = inner(compilable(method.phases))
     force = inner(model.force())
@@ -63,13 +60,15 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     propagate = inner(_propagate)
     advance = inner(loops.advance)
 
-    def travelling(phase: Phase, h: float, n: int) -> Any:
+    outer = numba.njit(nogil=True)
+
+    def propagate_phase(phase: Phase, h: float, n: int) -> Any:
         return propagate(phases(force, phase, h), phase, n)
 
-    def advancing(phase: Phase, h: float, n: int, limit: float) -> Any:
+    def advance_phase(phase: Phase, h: float, n: int, limit: float) -> Any:
         return advance(phases(force, phase, h), energy, phase, n, limit)
 
-    return CompiledLoops(*(numba.njit(nogil=True)(loop) for loop in (travelling, advancing)))
+    return CompiledLoops(outer(propagate_phase), outer(advance_phase))
 
 
 def _propagate(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
@@ -82,10 +81,7 @@ def _propagate(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
 
 
 class TieredLoops:
-    """Plain loops that are compiled after enough steps, if Numba is installed.
-
-    Both give the same bits.  The steps of one run count, so each run has loops of its own.
-    """
+    """Plain loops that are compiled after enough steps of a run, if Numba is installed."""
 
     def __init__(
         self,
@@ -94,7 +90,7 @@ class TieredLoops:
         fast: Callable[[Method, Model], Loops | None] = compiled,
         expected_steps: int = 0,
     ) -> None:
-        """`fast` returns the compiled loops as soon as there are any."""
+        """`fast` returns the compiled loops, or None while there are none."""
         self._method = method
         self._model = model
         self._fast = fast
@@ -119,6 +115,6 @@ class TieredLoops:
 
 @cache
 def _same_sine(numba: Any) -> bool:
-    """Return whether compiled code uses Python's sine; other libraries differ now and then."""
+    """Return whether compiled code has the bits of Python's sine, which depends on libraries."""
     sine = numba.njit(lambda x: math.sin(x))
     return all(sine(x) == math.sin(x) for x in (0.001 * n for n in range(20_000)))

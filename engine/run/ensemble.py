@@ -1,7 +1,7 @@
 """Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba.
 
-The last bits of Numba's sine need not be NumPy's: a picture made with Numba is the same however it
-is cut and whoever computes it, but perhaps not as without Numba.
+The last bits of Numba's sine may differ from NumPy's, and with them the results; apart from that
+they do not depend on how an ensemble is cut.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,11 +24,11 @@ Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
 
 
 class Watched(NamedTuple):
-    """What is watched of an ensemble while it swings; energies in s⁻², angles in rad."""
+    """The limits and extremes of each swing of an ensemble; energies in s⁻², angles in rad."""
 
     start: Floats  # energies at the start
-    band: Floats  # how far energies may be from there; inf: not looked at any more
-    top: Floats  # how large |theta| may be; likewise
+    band: Floats  # largest allowed energy difference from the start; inf: no limit
+    top: Floats  # largest allowed |theta|; inf: no limit
     off: Floats  # energies, less the start's, after the last step
     worst: Floats  # largest |off| so far
     width: Floats  # largest |theta| so far
@@ -37,9 +37,9 @@ class Watched(NamedTuple):
 Watch = Callable[[Arrays, Floats, Watched, int], Iterator[tuple[int, Arrays]]]
 """(phase, h, watched, n): take n steps.
 
-Yields steps done and phase there after the last one, and whenever an energy is out of its band or a
-swing over its top.  Changes off, worst and width; band and top may be changed.  All arrays are
-one-dimensional and of one length.
+Yields the steps done and the phase there after the last step, and whenever an energy is out of its
+band or a swing over its top.  Updates off, worst and width; the caller may change band and top.
+All arrays are one-dimensional and of one length.
 """
 
 
@@ -67,20 +67,22 @@ def plain(method: Method, model: Pendulum) -> Watch:
 
 @cache
 def compiled(method: Method, model: Pendulum) -> Watch:
-    """Return the loop, compiled unless it is a user's.  Raises ImportError without Numba."""
+    """Return the compiled loop, or NumPy's for a user's own method.
+
+    Raises ImportError without Numba.
+    """
     if isinstance(method, OwnMethod):
         return plain(method, model)
     numba: Any = import_module("numba")
-    # What Python never calls compiles twice as fast without wrappers.
+    # functions that Python never calls compile twice as fast without wrappers
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = numba.njit(compilable(method.phases))
     force = inner(model.force(np.sin))
-    energy = model.energy
-    look = numba.njit(_looking(inner(energy(np.sin))))
+    look = numba.njit(_looking(inner(model.energy(np.sin))))
 
-    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator
-    # yields.  What the generator itself holds when it is given up, a few arrays, is never freed
-    # (numba/numba#1278), so make few of them.
+    # The loop over phases is Python's, because in compiled code Numba 0.68 never frees what a
+    # generator yields.  It does not free the few arrays that an abandoned generator holds, either
+    # (numba/numba#1278), so make few generators.
     def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
         for done, (theta, omega) in enumerate(islice(phases(force, phase, h), n), 1):
             if look(theta, omega, *watched) > 0 or done == n:

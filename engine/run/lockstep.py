@@ -17,24 +17,20 @@ from engine.scenes import Scene, check_h
 class Reading(NamedTuple):
     """One method at one step; a diverged one stays at its last finite numbers.
 
-    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where
-    E0 = 0, or with friction ln(E/E_true).
+    Energy errors are (E - E0)/E0, or (E - E0)/(2 w0²) where E0 = 0, or with friction ln(E/E_true).
     """
 
     theta: float  # rad, unwrapped
     omega: float  # rad/s
-    energy: float
+    energy: float  # s⁻², per unit m·L²
     energy_error: float
     max_energy_error: float  # largest |energy error| over every step of the run so far
-    energy_error_low: (
-        float  # smallest and largest energy error over the steps since the previous sample,
-    )
-    energy_error_high: float  # so that a chart of samples loses no extreme
+    # smallest and largest energy error since the previous sample, so that charts miss no extreme
+    energy_error_low: float
+    energy_error_high: float
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
-    # relative, of `Model.invariant` over every step of the run so far
-    max_invariant_error: float | None = None
-    # the values of the model's own variables, `Model.variables`
-    extra: Mapping[str, float] = NO_EXTRA
+    max_invariant_error: float | None = None  # relative, of `Model.invariant`, over the run so far
+    extra: Mapping[str, float] = NO_EXTRA  # the model's own variables, `Model.variables`
 
 
 TAU_REST = 2.4492935982947064e-16  # 2 pi - math.tau
@@ -50,26 +46,26 @@ class Sample(NamedTuple):
 
 
 class _Track:
-    """One method's way through a run."""
+    """The state of one method in a run."""
 
     def __init__(self, advance: Advance, scene: Scene, start_energy: float) -> None:
         self.advance = advance
         self.phase = scene.equations.start(scene.theta, scene.omega)
         self.energy = start_energy
-        self.error = 0.0  # of the energy
+        self.error = 0.0  # of the energy; as are the extremes
         self.low = self.high = 0.0  # since the last sample
         self.look_low = self.look_high = 0.0  # since the last look point
         self.run_low = self.run_high = 0.0
         self.diverged_at: float | None = None
-        self.parts = 1  # how many steps of its own it takes in one of the lockstep
-        self.turns = 0  # taken off theta
+        self.parts = 1  # own steps in one step of the lockstep
+        self.turns = 0  # subtracted from theta
         self.invariant_error = 0.0  # the largest so far
 
     def reduce(self) -> None:
-        """Take whole turns off theta if it is beyond one, because its rounding grows with it.
+        """Subtract whole turns from theta beyond one turn, because its rounding grows with it.
 
-        2 pi is taken off in two numbers: the nearest double, and what that lacks.  Sums keep what
-        compensated numbers carry.
+        2 pi is the sum of math.tau and TAU_REST.  `theta + -before` keeps the compensation of
+        compensated numbers.
         """
         theta, *others = self.phase
         if abs(theta) >= math.tau:
@@ -83,11 +79,11 @@ class _Track:
 class Lockstep:
     """A scene's cast in lockstep; its bits depend on scene and stepping alone.
 
-    `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`,
+    `scene.h` is the step size at the start, `stepping` the present one.  Time is `t_base + n·h`,
     never a running sum.  A method whose numbers stop being finite is frozen; the others go on.
 
-    The lockstep stops by itself at look points, every `stride` steps since the last change of the
-    stepping: there theta is reduced, and each method is shown to its judge, if there are judges.
+    Every `stride` steps since the last change of the stepping there is a look point: theta is
+    reduced, and judges, if there are any, look at their methods.
     """
 
     def __init__(
@@ -114,7 +110,7 @@ class Lockstep:
         self._scales = {
             each.name: start[each.name] or 1.0 for each in model.variables if each.relative
         }
-        # so that relative errors are finite, too
+        # of energies: relative errors must be finite, too
         self._limit = min(1.0, self._reference.scale) * 1e300
         self._tracks = [
             _Track(loops(method, model).advance, scene, self._reference.start)
@@ -125,7 +121,7 @@ class Lockstep:
         self._judges: Judges | None = None
         if judged:
             self._judges = Judges(scene.cast, model, self._period)
-        self._bottom: float | None = None
+        self._bottom: float | None = None  # rad, where the exact motion swings
         if judged and model.turns and exact.regime == "libration":
             self._bottom = math.tau * round(scene.theta / math.tau)
         self._restart()
@@ -144,7 +140,7 @@ class Lockstep:
 
     @property
     def judgements(self) -> list[Judgement]:
-        """Verdicts since the last change of the stepping, by method; none without judges."""
+        """Judgements since the last change of the stepping, by method; none without judges."""
         return self._judges.judgements if self._judges else []
 
     @property
@@ -192,22 +188,23 @@ class Lockstep:
             steps = n * track.parts
             begin = (self._t_base, (self.step - self._base_step) * track.parts)
             watch = partial(self._watch, track) if self._invariant else None
-            went = advance_with_errors(
+            moved = advance_with_errors(
                 track.advance, self._reference, track.phase, h, steps, self._limit, begin, watch
             )
-            if went.done:
-                track.phase = went.phase
-                track.energy = went.energy
-                track.error = went.error
-                track.low = min(track.low, went.low)
-                track.high = max(track.high, went.high)
-                track.look_low = min(track.look_low, went.low)
-                track.look_high = max(track.look_high, went.high)
-            if went.done < steps:
-                track.diverged_at = begin[0] + (begin[1] + went.done + 1) * h
+            if moved.done:
+                track.phase = moved.phase
+                track.energy = moved.energy
+                track.error = moved.error
+                track.low = min(track.low, moved.low)
+                track.high = max(track.high, moved.high)
+                track.look_low = min(track.look_low, moved.low)
+                track.look_high = max(track.look_high, moved.high)
+            if moved.done < steps:
+                own_steps = begin[1] + moved.done
+                track.diverged_at = self._t_base + (own_steps + 1) * h
                 if self._judges:
-                    self._judges.fail(index, begin[1] + went.done)
-                    step = self.step + math.ceil((went.done + 1) / track.parts)
+                    self._judges.fail(index, own_steps)
+                    step = self.step + math.ceil((moved.done + 1) / track.parts)
                     self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
 
@@ -218,7 +215,7 @@ class Lockstep:
         track.invariant_error = max(track.invariant_error, error)
 
     def _stop(self) -> None:
-        """Look where it is time to, and choose the next stop."""
+        """Do what is due at a stop, and choose the next stop."""
         is_look_point = (self.step - self._base_step) % self._stride == 0
         if is_look_point and self._model.turns:
             for track in self._tracks:
@@ -256,7 +253,7 @@ class Lockstep:
         return stop
 
     def _note_tops(self) -> None:
-        """Note the methods that are where the exact motion never comes: beyond the top."""
+        """Note the methods that have gone over the top, where the exact motion never comes."""
         for index, track in enumerate(self._tracks):
             if self._judges and self._may_go_over(index, track) and self._below_top(track) < 0:
                 self._judges.note("over the top", index, self.step, self.t, track.error)
@@ -267,22 +264,23 @@ class Lockstep:
         return not self._judges.has("over the top", index)
 
     def _below_top(self, track: _Track) -> float:
-        """Return how far from the top a method is [rad]."""
+        """Return how far below the top a method is [rad]."""
         assert self._bottom is not None
         theta = self._model.observe(track.phase).theta + track.turns * math.tau
         return math.pi - abs(theta - self._bottom)
 
     def _steps_below_top(self, track: _Track, most: int) -> int:
         """Return a number of steps, at least 1, in which a method does not go over the top."""
-        left = self._below_top(track)
+        distance = self._below_top(track)
         omega = abs(self._model.observe(track.phase).omega)
         h = abs(self.stepping.h)
-        while most > 1 and 2 * (omega + self._model.w0_squared * most * h) * most * h > left:
-            most //= 2  # twice the way under full gravity: methods overshoot
+        # twice the way under full gravity, because methods overshoot
+        while most > 1 and 2 * (omega + self._model.w0_squared * most * h) * most * h > distance:
+            most //= 2
         return most
 
     def sample(self, resets: bool = True) -> Sample:
-        """Return the present readings; if it `resets`, extremes count from here on."""
+        """Return the present readings; with `resets`, extremes count from here on."""
         readings = tuple(self._read(track) for track in self._tracks)
         if resets:
             for track in self._tracks:

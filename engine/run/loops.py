@@ -1,4 +1,4 @@
-"""Loops that advance one method: the phases of its generator, and their energies."""
+"""Loops that advance one method and find the extremes of its energy."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -20,7 +20,7 @@ class Loops(Protocol):
     """One method's loops on one model, for one run."""
 
     def propagate(self, phase: Phase, h: float, n: int) -> Phase:
-        """Return the phase after n >= 1 steps, and nothing else."""
+        """Return the phase after n >= 1 steps, without energies."""
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
         """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
@@ -32,10 +32,7 @@ LoopsOf = Callable[[Method, Model], Loops]
 def advance(
     phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit: float
 ) -> Advanced:
-    """Take n phases, or up to the last one whose energy is below `limit`.
-
-    `phase` is the one before.
-    """
+    """Take n phases after `phase`, or up to the last one whose energy is below `limit`."""
     done = 0
     value = math.nan
     low = math.inf
@@ -57,10 +54,7 @@ def advance(
 
 
 def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) -> Advanced:
-    """Do as `advance`, a tenth faster if all n steps succeed.
-
-    Raises OverflowError if one does not.
-    """
+    """Do the same a tenth faster.  Raises OverflowError unless all n steps succeed."""
     low = math.inf
     high = -math.inf
     for phase in islice(phases, n):
@@ -124,10 +118,10 @@ def advance_with_errors(
     begin: tuple[float, int],
     watch: Callable[[Phase], object] | None = None,
 ) -> Errors:
-    """Advance by n >= 1 steps after `begin`, a time [s] and the steps since then.
+    """Advance by n >= 1 steps from `begin`, a time [s] and the steps since then.
 
-    Where energy is not conserved, it is compared with the true one at each step; `watch` sees each
-    phase.
+    Energies that are not conserved are compared with the true one at each step; `watch` is called
+    with each phase.
     """
     if reference.true is None and watch is None:
         done, phase, energy, low, high = advance(phase, h, n, limit)
@@ -190,7 +184,7 @@ def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: i
 
 
 OVERFLOW = (ValueError, ArithmeticError)
-"""What Python raises where numbers end: the sine of something infinite is a ValueError."""
+"""What Python raises where numbers overflow: the sine of infinity is a ValueError."""
 
 
 def _to_overflow(phases: Iterator[Phase], energy: Energy) -> Iterator[Phase]:

@@ -1,4 +1,4 @@
-"""The derivative of a step, by complex step: it gives stability, chaos, area and symplecticity.
+"""The derivative J of a step, by complex step: it gives stability, chaos and change of area.
 
 step(x + i·tiny·v) = step(x) + i·tiny·J v + O(tiny²).  Squire & Trapp, SIAM Review 40 (1998) 110.
 """
@@ -13,15 +13,15 @@ from engine.methods.method import BoundPhases
 from engine.models import LinearOscillator
 from engine.models.model import Model, Phase
 
-_TINY = 1e-100  # a complex step has no subtraction, so it may be as small as one likes
+_TINY = 1e-100  # no subtraction, so no cancellation: it may be as small as one likes
 
 
 def tangent_map(
     phases: BoundPhases, phase: Phase, along: Phase, h: Any, steps: int = 1
 ) -> tuple[Phase, Phase]:
-    """Return the phase after some steps, and what a small displacement `along` has become.
+    """Return the phase after some steps, and the derivative's product with `along`.
 
-    `phases` takes complex numbers.
+    `phases` must take complex numbers.
     """
     displaced = phase[0] + 1j * (_TINY * along[0]), phase[1] + 1j * (_TINY * along[1])
     theta, omega = next(islice(phases(displaced, h), steps - 1, None))
@@ -29,7 +29,7 @@ def tangent_map(
 
 
 class Jacobian(NamedTuple):
-    """Derivative of one step: d(theta', omega') / d(theta, omega), row by row."""
+    """The derivative of one step: d(theta', omega') / d(theta, omega), row by row."""
 
     theta_theta: float
     theta_omega: float  # s
@@ -43,7 +43,7 @@ class Jacobian(NamedTuple):
 
 
 def jacobian(method: Method, model: Model, theta: float, omega: float, h: float) -> Jacobian:
-    """The step's Jacobian at (theta, omega), exact to rounding."""
+    """Return the step's Jacobian at (theta, omega), exact to rounding."""
     phases = method.on(model, cmath.sin)
     _, by_theta = tangent_map(phases, (theta, omega), (1.0, 0.0), h)
     _, by_omega = tangent_map(phases, (theta, omega), (0.0, 1.0), h)
@@ -51,12 +51,12 @@ def jacobian(method: Method, model: Model, theta: float, omega: float, h: float)
 
 
 def at_bottom(method: Method, z: float) -> Jacobian:
-    """The step's Jacobian for small swings with h·w0 = z, in units where w0 = 1."""
+    """Return the step's Jacobian for small swings with h·w0 = z, in units where w0 = 1."""
     return jacobian(method, LinearOscillator(1.0), 0.0, 0.0, z)
 
 
 class Stretching:
-    """The logarithm of how much longer a displacement has become since the start of a run."""
+    """The separation of a neighbouring start: `log` is ln of its growth over `steps` steps."""
 
     def __init__(self, method: Method, model: Model, h: float) -> None:
         self._phases = method.on(model, cmath.sin)
@@ -67,7 +67,7 @@ class Stretching:
         self.steps = 0
 
     def carry(self, phase: Phase, steps: int) -> None:
-        """Advance from this phase, by few enough steps that the length stays a double."""
+        """Advance the displacement from this phase, by few enough steps not to overflow."""
         _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
         length = math.hypot(theta, omega / self._w0)
         if 0 < length < math.inf:

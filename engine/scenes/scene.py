@@ -10,7 +10,7 @@ from engine.methods import USUAL_CAST, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.models.model import ExactMotion, Model
 
-LIMITS = {  # inclusive; a value beyond them is a typing error
+LIMITS = {  # inclusive; a value beyond is a typing error
     "theta": (-1e9, 1e9),
     "omega": (-1e9, 1e9),
     "length": (1e-6, 1e6),
@@ -34,7 +34,7 @@ class SceneError(ValueError):
 
 
 def check_h(h: float, w0: float, forwards: bool = False) -> None:
-    """Raise SceneError unless |h|, or h itself, is a step that this pendulum can be given."""
+    """Raise SceneError unless |h|, or `forwards` h itself, is a usable step for this w0."""
     low, high = Z_LIMITS
     if not low <= (h if forwards else abs(h)) * w0 <= high:  # also refuses nan
         raise SceneError(
@@ -52,7 +52,7 @@ def _check_range(name: str, value: float, low: float, high: float) -> None:
 
 
 class Line(NamedTuple):
-    """A reference line: in the chart of its quantity, or on both sides of zero in phase space."""
+    """A reference line in the chart of its quantity, or on both sides of zero in phase space."""
 
     quantity: str  # of a chart, or "omega"
     value: float
@@ -61,18 +61,18 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """What of a run to look at first; it changes no number."""
+    """What to show of a run at first; it changes no number."""
 
     view: str = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
     quantity: str = "energy_error"  # of the chart
     log: bool = True
-    seconds: float | None = None  # of the chart; None: from the first step to now
+    seconds: float | None = None  # of the chart; None: all
     line: Line | None = None
     front: tuple[str, ...] = ()  # keys of the methods that are shown; (): all
     ring: bool = False  # of neighbouring starts in phase space
-    moment: float | None = None  # s, simulated; there it pauses,
-    sentence: str = ""  # and says this
+    moment: float | None = None  # s, simulated, of a pause
+    sentence: str = ""  # shown there
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +90,9 @@ class Scene:
     cast: Cast = USUAL_CAST  # the methods, in order
     # the model's own, such as friction
     parameters: Mapping[str, float] = field(default_factory=dict, hash=False)
-    # what is often said about such scenes, and what is true of it
+    # a common belief about such scenes, and what is true of it
     often_said: str = field(default="", compare=False)
-    # times real time, at which a lab starts: it changes no number
-    speed: float = field(default=1.0, compare=False)
+    speed: float = field(default=1.0, compare=False)  # of the lab, in real time
     shot: Shot = field(default=Shot(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -116,7 +115,7 @@ class Scene:
                 raise SceneError(f"{why}; it is for {' and '.join(method.models)}.")
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
-        """Return the parameters in the model's order, with defaults; as given if it is unknown."""
+        """Return the parameters in the model's order, with defaults; unchanged without a model."""
         if self.model not in MODELS:
             return dict(given)
         own = {each.name: each.default for each in MODELS[self.model].parameters}
@@ -132,7 +131,7 @@ class Scene:
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The numbers that determine the run, the model's parameters last."""
+        """The numbers that determine the run."""
         common = {
             "theta": self.theta,
             "omega": self.omega,
@@ -148,7 +147,7 @@ class Scene:
 
     @property
     def w0_squared(self) -> float:
-        """g/L [s⁻²], the only parameter of the motion."""
+        """g/L [s⁻²]."""
         return self.gravity / self.length
 
     @property
@@ -158,7 +157,7 @@ class Scene:
 
     @property
     def z(self) -> float:
-        """The step times the highest frequency, as a rule h·w0: it decides linear stability."""
+        """The step times the highest frequency, as a rule h·w0."""
         return self.h * self.equations.fastest
 
     @property
@@ -183,7 +182,7 @@ class Scene:
         return named | {"methods": [method.key for method in self.cast]}
 
     def altered(self, **changes: Any) -> "Scene":
-        """Return the scene with other numbers; it keeps its name only if nothing changes."""
+        """Return the scene with other fields or parameters; its name stays if nothing changes."""
         fields = {name: value for name, value in changes.items() if name in self.__slots__}
         others = {name: value for name, value in changes.items() if name not in fields}
         if "model" in fields:
@@ -199,10 +198,9 @@ class Scene:
         return replace(other, name="custom", watch="", often_said="", shot=Shot())
 
     def with_cast(self, cast: Cast) -> "Scene":
-        """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""
-        if set(self.cast) <= set(cast):
-            return replace(self, cast=cast)
-        return replace(self, cast=cast, watch="")
+        """Return the scene with other methods; `watch` stays if all its methods stay."""
+        watch = self.watch if set(self.cast) <= set(cast) else ""
+        return replace(self, cast=cast, watch=watch)
 
 
 @cache

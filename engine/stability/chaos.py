@@ -1,8 +1,8 @@
 """Chaos in a method's map: at large steps, a pendulum's numerical motion is chaotic.
 
 Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the
-same map, seen half a kick later.  Up to Greene's threshold invariant curves fence the chaotic
-orbits in; above it they wander off without bound.  Greene, J. Math. Phys. 20 (1979) 1183.
+same map half a kick later.  Up to Greene's threshold invariant curves fence chaotic orbits in;
+above it they wander without bound.  Greene, J. Math. Phys. 20 (1979) 1183.
 """
 
 import math
@@ -20,10 +20,10 @@ GREENE_Z = math.sqrt(0.971635)  # Greene's K
 def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """Return ln of the growth of neighbours' distance after so many steps, with w0 = 1.
 
-    The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15
-    (1980) 9.  On regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
-    Divided by the steps the logarithm tends to the largest Lyapunov exponent; for K >= 10 that is
-    ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
+    The displacement is rescaled to length 1 after each step: Benettin et al., Meccanica 15 (1980)
+    9.  It grows in proportion to the steps on regular orbits, exponentially on chaotic ones.  The
+    logarithm per step tends to the largest Lyapunov exponent, for K >= 10 ln(K/2): Chirikov, Phys.
+    Rep. 52 (1979) 263.
     """
     phases = method.on(Pendulum(1.0), np.sin)
     along = 1.0 + 0.0 * theta
@@ -41,9 +41,9 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
     """Return whether swings from rest at theta [rad] are chaotic within `steps` steps.
 
-    Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some
-    thousand.  From beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which
-    counts as none.
+    Over a million steps neighbours on regular orbits separate by at most e^14, on chaotic ones by
+    e^28 within some thousand.  The exact swing from theta separates them by 1/cos²(theta/2), which
+    does not count.
     """
     return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(
         np.cos(theta / 2)

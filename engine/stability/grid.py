@@ -1,7 +1,8 @@
-"""The map of stability: every method at every step z and amplitude, in strips for any executor."""
+"""The map of stability: every method at every step z and amplitude."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -9,16 +10,13 @@ from engine.methods import USUAL_CAST, Cast
 from engine.run.compiled import available
 from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
-STRIP = 4096
-"""Swings of a method in a strip: NumPy's calls cost little, and the arrays stay in the cache."""
-
-COMPILED_FROM = 100_000_000
-"""Steps of a method: in NumPy they take as long as importing and compiling."""
+STRIP = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
+COMPILED_FROM = 100_000_000  # steps of a method: they take as long as importing and compiling
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """The amplitudes, steps and methods of a map.  A strip of a grid is a grid, too."""
+    """The amplitudes, steps and methods of a map, or of a strip of one."""
 
     theta: Floats  # rad, amplitudes between 0 and pi
     z: Floats  # h·w0, above 0
@@ -28,34 +26,33 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """(z, methods, theta), the axes of its cells."""
+        """The shape of its cells: (z, methods, theta)."""
         return len(self.z), len(self.methods), len(self.theta)
 
     def cells(self) -> Cells:
         """Return the outcome of every swing."""
         z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
-        each = [
-            outcomes(m, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
-            for m in self.methods
+        by_method = [
+            outcomes(method, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
+            for method in self.methods
         ]
-        return np.stack(each, axis=1)
+        return np.stack(by_method, axis=1)
 
     @property
     def compiled(self) -> bool:
-        """Whether it is computed by loops that Numba has compiled."""
+        """Whether Numba compiles the loops."""
         if self.fast is None:
             return len(self.theta) * len(self.z) * self.steps >= COMPILED_FROM and available()
         return self.fast
 
     def unknown(self) -> Cells:
-        """Return cells that are not computed yet."""
+        """Return cells of unknown outcome."""
         return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
 
     def strips(self) -> list["Grid"]:
-        """Return the grid cut along z.  However it is cut, the cells are the same to the last bit.
+        """Return the grid cut along z; the cells are the same to the bit.
 
-        They depend on `sin`, so on processor and libm, and on whether Numba is installed: only
-        workers of one kind give the cells that are computed here.
+        They depend on `sin`, that is on processor, libm and Numba, so all workers must be alike.
         """
         fast = self.compiled
         width = max(1, STRIP // len(self.theta))
@@ -67,45 +64,32 @@ class Grid:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a map that is shown while it is computed."""
+    """A part of a map."""
 
     z: slice
-    method: int  # index into the grid's
+    method: int  # index
     cells: Cells  # (z, theta)
     steps: int
-    done: float  # the part of the map with these steps that is done
+    done: float  # share of the map that is done with these steps
 
 
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
-    """Yield the map in pieces of `width` z and one method: with few steps a swing, then with more.
+    """Yield the map in pieces of `width` z and one method, with the steps of each pass.
 
-    In NumPy, unless the grid says otherwise: compiling would delay the first piece.
+    By default in NumPy, because compiling would delay the first piece.
     """
-    places = [
-        (slice(z, z + width), m)
-        for z in range(0, len(grid.z), width)
-        for m in range(len(grid.methods))
-    ]
+    zs = [slice(first, first + width) for first in range(0, len(grid.z), width)]
+    places = list(product(zs, enumerate(grid.methods)))
+    grid = replace(grid, fast=bool(grid.fast))
     for steps in passes:
-        for done, (z, m) in enumerate(places, 1):
-            part = replace(
-                grid,
-                z=grid.z[z],
-                methods=grid.methods[m : m + 1],
-                steps=steps,
-                fast=bool(grid.fast),
-            )
-            yield Piece(z, m, part.cells()[:, 0], steps, done / len(places))
+        for done, (z, (index, method)) in enumerate(places, 1):
+            part = replace(grid, z=grid.z[z], methods=(method,), steps=steps)
+            yield Piece(z, index, part.cells()[:, 0], steps, done / len(places))
 
 
 def default_grid(cast: Cast = USUAL_CAST) -> Grid:
-    """Return the centres of 200 steps z, beyond every limit, and of 100 amplitudes up to pi.
-
-    z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
-    """
-    top = 3.0
-    if any((method.linear_limit or 0) >= 3 for method in cast):
-        top = 3.5
-    return Grid(
-        (np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * top / 200, 10_000, cast
-    )
+    """Return 200 steps z up to 3, or 3.5 if a method is stable at 3, and 100 amplitudes to pi."""
+    stable_at_3 = any((method.linear_limit or 0) >= 3 for method in cast)
+    top = 3.5 if stable_at_3 else 3.0
+    thetas = (np.arange(100) + 0.5) * np.pi / 100
+    return Grid(thetas, (np.arange(200) + 0.5) * top / 200, 10_000, cast)

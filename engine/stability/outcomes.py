@@ -1,7 +1,7 @@
-"""The pendulum's own stability: which swings a method holds, for how long, and how it loses them.
+"""Which swings of the pendulum a method holds, for how long, and how it loses them.
 
-A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is
-computed with w0 = 1 and h = z.  engine.stability.LOST says when a swing is lost.
+A swing starts at rest at an amplitude theta and depends on z = h·w0 only; here w0 = 1 and h = z.
+engine.stability.LOST says when a swing is lost.
 """
 
 import math
@@ -19,18 +19,18 @@ from engine.stability import BAND
 from engine.stability.chaos import is_chaotic
 from engine.stability.linear import wobble
 
-PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
+PARKED = 1 / 8  # share of an ensemble's swings: when so many are lost, it goes on without them
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
-band upwards or downwards; it stays, with a larger wobble; it stays beyond a symplectic method's
-linear limit, as around the two places between which velocity Verlet then jumps; neighbouring swings
-part exponentially.
+band upwards or downwards; it stays, but swings wider; it stays beyond a symplectic method's linear
+limit, as around the two places between which velocity Verlet then jumps; neighbouring swings
+separate exponentially.
 """
 
 HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
 HELD = (HOLDS, WOBBLES, CAUGHT)
-UNKNOWN = 255  # the fate of a cell that was not computed
+UNKNOWN = 255  # not computed
 
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
 """Steps survived, largest relative energy error before the swing was lost, index into FATES."""
@@ -39,7 +39,7 @@ Cells = NDArray[Any]  # of CELL
 
 
 def is_lost(cells: Cells) -> NDArray[np.bool_]:
-    """Which swings a method loses; UNKNOWN cells do not count."""
+    """Return which swings a method loses; UNKNOWN cells do not count."""
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
@@ -57,10 +57,10 @@ def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Fl
 
 @np.errstate(all="ignore")  # a swing that is lost may go on to infinity
 def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
-    """What becomes of each of many swings within `steps` steps; `fast`: compiled by Numba.
+    """Return the outcome of each of many swings within `steps` steps; `fast`: compiled by Numba.
 
-    theta [rad], between 0 and pi, and z are one-dimensional and of one length; the answer is a CELL
-    for each.  No cell depends on the others.
+    theta [rad], between 0 and pi, and z are one-dimensional and of one length, as are the CELLs
+    returned.  No cell depends on the others.
     """
     model = Pendulum(1.0)
     watch = (compiled if fast else plain)(method, model)
@@ -104,7 +104,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
 
 
 def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
-    """Return the fates of held swings that grow too wide or pass the linear limit."""
+    """Return the fates of held swings that are too wide or beyond the linear limit."""
     chaotic = is_chaotic(method, theta, z, min(steps, 2000))
     steady = np.where(z > method.linear_limit, CAUGHT, WOBBLES)
     return np.where(chaotic, CHAOTIC, steady)
@@ -120,11 +120,11 @@ class Failure:
 
 
 def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:
-    """The first failure of a swing on an ascending ladder of z; None if it is held on all of it.
+    """Return the first failure on an ascending ladder of z; None if the swing is held on all of it.
 
-    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit
-    moves with them; an orbit is chaotic however many steps of it are taken. There is no bisection:
-    above the first failure there are windows of z where the swing is held again.
+    `cells` are the outcomes on the ladder.  With `within`, only failures in so many steps count,
+    and chaos, which does not depend on steps.  Bisection would not do, because above the first
+    failure there are windows of z where the swing is held again.
     """
     lost = is_lost(cells)
     if within is not None:

@@ -16,7 +16,7 @@ from engine.stability.outcomes import Cells, Failure, first_failure
 THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
 
 LADDER = np.geomspace(1e-3, 3.2, 812)
-"""The z at which failures are sought: a rung every 1 %, to beyond every method's linear limit."""
+"""The z at which failures are searched, a rung every 1 %, to beyond every linear limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class Row:
     method: Method
     theta: float  # rad
     failure: Failure | None  # None: holds on the whole ladder
-    early: Failure | None  # the same within a tenth of the steps
-    here: Any  # the CELL at the scene's z, which may be UNKNOWN
+    early: Failure | None  # within a tenth of the steps
+    here: Any  # the CELL at the scene's z
 
 
 def amplitude(scene: Scene) -> float | None:
@@ -38,13 +38,11 @@ def amplitude(scene: Scene) -> float | None:
     if share >= 1:
         return None
     angle = 2 * math.asin(math.sqrt(share))
-    if 0 < angle < math.pi:
-        return angle
-    return None
+    return angle if 0 < angle < math.pi else None
 
 
 def early_steps(steps: int) -> int:
-    """Return the steps whose limit shows whether the limit still moves with the steps: a tenth."""
+    """Return a tenth of the steps, whose limit shows whether it still moves with the steps."""
     return max(1, round(0.1 * steps))
 
 
@@ -54,9 +52,10 @@ def ladder_of(
     """Return a table's grid: amplitudes [rad] on a ladder of z that includes the scene's own."""
     rungs = np.union1d(LADDER if zs is None else zs, [scene.z])
     if thetas is None:
-        own = list(filter(None, [amplitude(scene)]))
-        others = (theta for theta in THETAS if not np.isclose(theta, own, rtol=0.01).any())
-        thetas = sorted([*own, *others])
+        thetas = list(THETAS)
+        if own := amplitude(scene):
+            others = [theta for theta in THETAS if not np.isclose(theta, own, rtol=0.01)]
+            thetas = sorted([own, *others])
     return Grid(np.array(thetas), rungs, steps, scene.cast)
 
 
