@@ -151,6 +151,7 @@ def time_chart(
     plot.draw_marks(changes, levels, log_time)
     for run, (low, high) in reversed([*zip(runs, sides, strict=True)]):
         plot.draw_curves(run, low, high)
+    low, high = sides[0]
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high

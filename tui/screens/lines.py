@@ -247,7 +247,7 @@ class KeyLine(CellWidget):
             hint = ""
             if isinstance(each.node, (Screen, App)):
                 hint = each.binding.description
-            return [*self.ORDER, hint].index(hint)
+            return self.ORDER.index(hint) if hint in self.ORDER else len(self.ORDER)
 
         return sorted(by_action.values(), key=place)
 

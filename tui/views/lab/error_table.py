@@ -90,7 +90,11 @@ def extra_columns(model: Model) -> list[Column]:
     return [column(each) for each in model.extra_columns]
 
 
-def _chosen(columns: list[Column], room: int) -> list[Column]:
+def _columns(source: Source, room: int) -> list[Column]:
+    """Return the columns that fit; that of h only where methods differ in it."""
+    columns = [*COLUMNS[:-1], *extra_columns(source.scene.equations), COLUMNS[-1]]
+    if len(set(source.stepping.own)) == 1:
+        columns = columns[1:]
     wide = [each._replace(head=each.wide_head, width=each.wide_width) for each in columns]
     if sum(column.width + 1 for column in wide) <= room:
         return wide
@@ -109,28 +113,31 @@ def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[flo
 
 
 def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
-    """Return the rows, the head first; with step sizes where they differ."""
+    """Return the rows, the head first."""
     cast = source.scene.cast
     model = source.scene.equations
-    steps = source.stepping.own
-    judgements = source.judgements
     exact = source.exact.at(sample.t).theta
-    largest, before, head = _since_change(source, sample)
+    largest, theta_errors, head = _since_change(source, sample)
     names = [f"{mark(place, method)} {method.label}" for place, method in enumerate(cast)]
     room = max([20, *map(len, names)])
-    columns = [*COLUMNS[:-1], *extra_columns(model), COLUMNS[-1]]
-    if len(set(steps)) == 1:
-        columns = columns[1:]
-    columns = _chosen(columns, width - room)
+    columns = _columns(source, width - room)
     spare = width - room - sum(column.width + 1 for column in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), 3))
-    heads = [column.head.replace("dE/E0", model.energy_error.symbol) for column in columns]
-    sized = zip(heads, columns, strict=True)
-    rows = [[(head.ljust(room), QUIET), *((gap + h.rjust(c.width), QUIET) for h, c in sized)]]
+    row = [(head.ljust(room), QUIET)]
+    for column in columns:
+        title = column.head.replace("dE/E0", model.energy_error.symbol)
+        row.append((gap + title.rjust(column.width), QUIET))
+    rows = [row]
     for place in shown.places(cast):
         reading = sample.readings[place]
-        off = abs(model.theta_error(reading.theta, exact) - before[place])
-        line = TableLine(cast[place], reading, judgements[place], steps[place], largest[place], off)
+        line = TableLine(
+            cast[place],
+            reading,
+            source.judgements[place],
+            h=source.stepping.own[place],
+            largest=largest[place],
+            theta_error=abs(model.theta_error(reading.theta, exact) - theta_errors[place]),
+        )
         row = [(names[place].ljust(room), inks(cast)[place])]
         for column in columns:
             text = column.cell(line, column.width)
