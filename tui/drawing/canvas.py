@@ -111,18 +111,20 @@ class Canvas:
                 self.scatter(x, y, ink)
             dx = np.diff(x)
             dy = np.diff(y)
-            steep = abs(dy) > abs(dx)
+            steep = abs(dy) > abs(dx)  # these lines have a dot in each row, others in each column
             start = np.where(steep, y[:-1], x[:-1])
-            step = np.where(steep, dy, dx)
-            low = np.floor(np.minimum(start, start + step)).clip(0)
-            high = np.floor(np.maximum(start, start + step))
-            dots = high.clip(max=np.where(steep, self.height, self.width) - 1) - low + 1
-            counts = np.where(np.isfinite(dx + dy), dots, 0).clip(0).astype(np.intp)
-            which = np.repeat(np.arange(len(counts)), counts)
-            at = low[which] + np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
-            share = np.nan_to_num((at + 0.5 - start[which]) / step[which]).clip(0, 1)
-            right = np.where(steep[which], x[which] + share * dx[which], at)
-            self.scatter(right, np.where(steep[which], at, y[which] + share * dy[which]), ink)
+            length = np.where(steep, dy, dx)
+            first = np.floor(np.minimum(start, start + length)).clip(0)
+            last = np.floor(np.maximum(start, start + length))
+            last = last.clip(max=np.where(steep, self.height, self.width) - 1)
+            counts = np.where(np.isfinite(dx + dy), last - first + 1, 0).clip(0).astype(np.intp)
+            line = np.repeat(np.arange(len(counts)), counts)  # the line of each dot
+            nth = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
+            at = first[line] + nth
+            share = np.nan_to_num((at + 0.5 - start[line]) / length[line]).clip(0, 1)
+            right = np.where(steep[line], x[line] + share * dx[line], at)
+            down = np.where(steep[line], at, y[line] + share * dy[line])
+            self.scatter(right, down, ink)
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of (x, y); `hollow`: only the rim."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import atan2, cos, isfinite, pi, remainder, sin, tau
-from operator import itemgetter
+from operator import attrgetter
 from typing import NamedTuple
 
 from textual import events
@@ -19,7 +19,12 @@ from tui.views.view import Held, Pane
 TOP = 4  # dots between the edge and a pivot at the top
 MAGNIFIED = 0.8  # rad, to which small swings are enlarged
 
-_Letter = tuple[int, int, str, int]  # row, column, letter, ink
+
+class _Letter(NamedTuple):
+    row: int
+    column: int
+    text: str
+    ink: int
 
 
 class Bob(NamedTuple):
@@ -73,8 +78,9 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             canvas.disc(x, y, radius, bob.ink, hollow=bob.ghost)
         if bob.letter:
             row = int(y + (radius + 3) * down) // 4
-            letters.append((row, int(x + (radius + 2) * right) // 2, bob.letter, bob.ink))
-    _write(canvas, sorted(letters, key=itemgetter(0, 1)))
+            column = int(x + (radius + 2) * right) // 2
+            letters.append(_Letter(row, column, bob.letter, bob.ink))
+    _write(canvas, sorted(letters, key=attrgetter("row", "column")))
     canvas.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
     return canvas.picture()
 
@@ -82,17 +88,18 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
 def _write(canvas: Canvas, letters: Sequence[_Letter]) -> None:
     """Write letters with a blank between those that would touch."""
     groups: list[list[_Letter]] = []
-    for each in letters:
-        row, column, *_ = each
-        if groups and groups[-1][-1][0] == row and column - groups[-1][-1][1] < 2:
-            groups[-1].append(each)
+    previous: _Letter | None = None
+    for letter in letters:
+        if previous and previous.row == letter.row and letter.column - previous.column < 2:
+            groups[-1].append(letter)
         else:
-            groups.append([each])
+            groups.append([letter])
+        previous = letter
     for group in groups:
-        first = (group[0][1] + group[-1][1]) // 2 - len(group) + 1
-        first = max(min(first, canvas.columns - 2 * len(group) + 1), 0)
-        for place, (row, _, letter, ink) in enumerate(group):
-            canvas.label(first + 2 * place, row, letter, ink)
+        middle = (group[0].column + group[-1].column) // 2
+        first = min(middle - len(group) + 1, canvas.columns - 2 * len(group) + 1)
+        for place, letter in enumerate(group):
+            canvas.label(max(first, 0) + 2 * place, letter.row, letter.text, letter.ink)
 
 
 class Pendulum(Pane):
@@ -143,12 +150,14 @@ class Pendulum(Pane):
 
     def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
         """Start a run from the last angle, at the pointer's speed over the last 0.1 s."""
-        recent = [each for each in drag if now - each[0] < 0.1] or drag[-1:]
-        seconds = (recent[-1][0] - recent[0][0]) * abs(self.source.playhead.speed)
+        recent = [(time, theta) for time, theta in drag if now - time < 0.1] or drag[-1:]
+        first_time, first_theta = recent[0]
+        last_time, last_theta = recent[-1]
+        seconds = (last_time - first_time) * abs(self.source.playhead.speed)
         omega = 0.0
         if seconds > 0:
-            omega = round(remainder(recent[-1][1] - recent[0][1], tau) / seconds, 2)
-        self.start_at(drag[-1][1], omega)
+            omega = round(remainder(last_theta - first_theta, tau) / seconds, 2)
+        self.start_at(last_theta, omega)
 
     def _let_go(self) -> None:
         self.release_mouse()
