@@ -1,4 +1,4 @@
-"""The command palette: scenes and themes first, then all actions."""
+"""The command palette: themes and scenes first, then all actions."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
