@@ -61,7 +61,7 @@ def cast_of(
         for name in options.methods.split(","):
             method = find(name.strip(), (*METHODS, *own), model=model)
             if method in cast:
-                raise UserError(f"--methods: {method.key} is there twice; name each method once.")
+                raise UserError(f"--methods: {method.key} is given twice; name each method once.")
             cast.append(method)
     cast += [method for method in own if method not in cast]
     if most is not None and len(cast) > most:

@@ -217,7 +217,7 @@ def _records(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Recor
         if start.startswith(magic):
             raise _unreadable(f"this is {kind}.")
     if b"\0" in start:
-        raise _unreadable("this is no text.")
+        raise _unreadable("this is not text.")
     lines = _lines(stream)
     if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
         return _of_objects(map(_parsed, filter(str.strip, lines)), wanted)

@@ -330,6 +330,6 @@ def _methods(keys: Sequence[Any], folder: Path) -> Cast:
         is_own = ".py:" in key
         found = own_method_at(f"{folder / key}", cast) if is_own else find(key, METHODS, "methods")
         if found in cast:
-            raise ValueError(f"{key} is there twice")
+            raise ValueError(f"{key} is given twice")
         cast.append(found)
     return tuple(cast)

@@ -36,7 +36,7 @@ class AccuracyPane(Chooser[Point]):
     HELP = "A click uses that point's h; the pointer reads points out."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("e", "chart", "Over time", tooltip="next chart: time, theta, …"),
-        Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or the shown"),
+        Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or those shown"),
     ]
 
     def __init__(self) -> None:
