@@ -296,7 +296,7 @@ def test_a_file_or_a_gate_that_cannot_be_read_is_one_sentence():
         ("t,E\n0,1\n".encode("utf-16"), "UTF-16"),
         (b"\x1f\x8b\x08\x00rest", "gzip"),
         (b"\x89MCAP0\r\nrest", "a recording"),
-        (b"\0" * 5000, "no text"),
+        (b"\0" * 5000, "not text"),
         (b"x" * (1 << 21), "longer than 1 MB"),
         (b"t,E\n" + b"y\n" * 1002, "lines without a row"),
         (PICKLES.getvalue(), "this .npz cannot be read"),
