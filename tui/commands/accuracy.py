@@ -17,7 +17,7 @@ examples:
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
 
-Exit 1: no method reaches the target.
+Exit code 1: no method reaches the target.
 """
 
 MAX_RUNGS = 1000
@@ -27,23 +27,23 @@ MAX_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compi
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     add = parser.add_argument
-    every = "chart all methods for any force, with --cost seconds also series and closed form"
+    every = "chart all methods for any force; with --cost seconds, also series and closed form"
     add("--all", action="store_true", help=every)
-    some = "simulated time in s; if several, the last is charted (ten small swings)"
-    add("--time", metavar="S[,S...]", type=times, help=some)
-    ladder = "N step sizes from A to B in s, log spaced (12, z = h·w0 from 0.6 to 0.0015)"
+    durations = "simulated time in s (ten small swings); the chart shows the last of several"
+    add("--time", metavar="S[,S...]", type=times, help=durations)
+    ladder = "N step sizes from A to B in s, log-spaced (12, with z = h·w0 from 0.6 to 0.0015)"
     add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
-    kinds = "largest angle error [rad], largest energy error, last angle error (%(default)s)"
+    kinds = "largest angle error [rad], largest energy error or last angle error (%(default)s)"
     add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
-    costs = "force evaluations, or seconds, without Numba if a method is your own (%(default)s)"
+    costs = "what counts as cost (%(default)s); seconds are without Numba if a method is your own"
     add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
-    wish = "find each method's cheapest h for this error; without --methods, try all of them"
-    add("--target", metavar="ERROR", type=positive, help=wish)
-    margin = "reach a target FACTOR times as small, for other starts and longer times (1)"
+    target = "find the cheapest h of each method, or of each in --methods, for this error"
+    add("--target", metavar="ERROR", type=positive, help=target)
+    margin = "divide the target by FACTOR, as a margin for other starts and longer times (1)"
     add("--safety", metavar="FACTOR", type=positive, default=1.0, help=margin)
-    limit = "limit of force evaluations; alone: find the least error within it"
+    limit = "limit the force evaluations; without --target, find the smallest error within it"
     add("--budget", metavar="N", type=budget, help=limit)
-    add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
+    add("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_worker_options(parser)
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
 
@@ -64,20 +64,17 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 
 def budget(text: str) -> int:
-    if not 1 <= (evaluations := positive(text)) <= MAX_BUDGET:
+    evaluations = positive(text)
+    if not 1 <= evaluations <= MAX_BUDGET:
         raise argparse.ArgumentTypeError(f"{text} is out of range; use 1 to {MAX_BUDGET:g}")
     return int(evaluations)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Measure, recommend, print.  Ctrl+C keeps what is done."""
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
-        raise UserError(
-            "seconds are measured in this process, where others would disturb them; use workers "
-            "with --cost evaluations."
-        )
+        raise UserError("seconds are measured in this process; use workers for evaluations only.")
     if options.safety < 1:
         raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
     is_figure = figures.check_output(options)
@@ -87,22 +84,23 @@ def run(options: argparse.Namespace) -> int:
             "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
             "--omega."
         )
-    from tui.commands.studies.accuracy import Findings, measure, report
+    from tui.commands.studies.accuracy import Results, measure, report
 
-    found = Findings(scene, options)
+    results = Results(scene, options)
     interrupted = False
     try:
-        measure(found)
+        measure(results)
     except KeyboardInterrupt:
         interrupted = True
     if is_figure:
-        figures.draw_accuracy(options, found.scene.cast, found.points)
+        figures.draw_accuracy(options, results.scene.cast, results.points)
     else:
-        publish(report(found, interrupted), options)
+        publish(report(results, interrupted), options)
     if interrupted:
         warn("interrupted; partial results are kept.")
         return Exit.INTERRUPTED
-    if missed := [f"{advice.time:g} s" for advice in found.advice if advice.point is None]:
+    missed = [f"{advice.time:g} s" for advice in results.advice if advice.point is None]
+    if missed:
         warn(f"no method reaches the target over {', '.join(missed)}.")
         return Exit.CHECK_FAILED
     return Exit.FINE

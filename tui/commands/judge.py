@@ -1,7 +1,7 @@
 """Judge the energies of another program: does its integrator gain or lose energy?
 
-The table may be a CSV, a GROMACS .xvg, a log of LAMMPS or Amber, JSON lines, an .npz or the like.
-Units in its heads, such as Time (ps), are those of the answer.
+A table is a CSV, a GROMACS .xvg, a log of LAMMPS or Amber, JSON lines, an .npz or the like.
+Results have the units in its heads, such as Time (ps).
 """
 
 import argparse
@@ -16,7 +16,7 @@ from recordings.errors import printable
 from tui.cli.checks import Check, add_check_options, conclude, parse
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, count, positive
-from tui.cli.report import Report, add_report_options, form_of
+from tui.cli.report import Report, add_report_options, publish
 from tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ examples:
   pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
-verdicts, and how many of 100 are wrong on series made with a known truth:
+verdicts, and in parentheses how many of 100 were wrong on series with a known answer:
 """ + "\n".join(
     f"  {verdict}: {text}" + (f" ({FALSE_ALARMS[verdict]})" if verdict in FALSE_ALARMS else "")
     for verdict, text in DEFINITIONS.items()
@@ -43,11 +43,9 @@ FIELDS = (
     *("energy_per_ns_per_atom", "kt_per_ns_per_atom", "samples", "skipped"),
     *("independent_samples", "fluctuation_order", "drift_order"),
 )
-
-
 MAX_ERROR = 1e300  # JSON has no infinity
 NANOSECONDS = {"fs": 1e-6, "ps": 1e-3, "ns": 1.0, "us": 1e3, "µs": 1e3, "ms": 1e6, "s": 1e9}
-BOLTZMANN = {  # in the unit a kelvin; the 2019 SI
+BOLTZMANN = {  # per kelvin, in the 2019 SI
     "ev": 8.617333262e-5,
     "mev": 8.617333262e-2,
     **dict.fromkeys(("kj/mol", "kj/mole"), 8.31446261815324e-3),
@@ -67,22 +65,25 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     energies = "the column of total energies, or several joined by +"
     add("--energy", metavar="COLUMN", required=True, help=energies)
     add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    start = "judge from time T on"
+    start = "ignore rows before time T"
     add("--from", metavar="T", dest="start", type=float, default=-math.inf, help=start)
-    relative = "errors are relative to first, std, kinetic:COLUMN, or a number"
-    add("--scale", type=scale, default="first", help=relative)
-    add("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
-    add("--temperature", metavar="K", type=positive, help="give it in kT, too")
-    follow = "the step sizes of the files: how do the errors follow them?"
-    add("--steps", metavar="H,H", type=steps, default=[], help=follow)
+    divisor = (
+        "divide errors by the first energy (first), the standard deviation (std), the mean of a "
+        "column (kinetic:COLUMN) or a number; default: first"
+    )
+    add("--scale", type=scale, default="first", help=divisor)
+    add("--atoms", metavar="N", type=count, help="print the trend per ns and atom, too")
+    add("--temperature", metavar="K", type=positive, help="with --atoms: and in kT")
+    sizes = "the step size of each file, to see how the errors scale with it"
+    add("--steps", metavar="H,H", type=steps, default=[], help=sizes)
     names = (*FIELDS, "verdict")
-    meaning = f"exit 1 if the expression is true; fields: {', '.join(names)}"
+    meaning = f"exit with 1 if the expression is true; fields: {', '.join(names)}"
     add_check_options(parser, names, meaning)
     add_report_options(parser)
 
 
 def scale(text: str) -> float | str:
-    """Return a number, first, std, or the name of a column after kinetic: ."""
+    """Return a number, or the text: first, std or kinetic:COLUMN."""
     if text in ("first", "std") or text.startswith("kinetic:"):
         return text
     try:
@@ -114,34 +115,28 @@ def run(options: argparse.Namespace) -> int:
         gate = parse(options.fail_if, fields=FIELDS)
     _check(options)
     results = [judge(name, options) for name in options.files]
+    lines = [line for result in results for line in lines_of(result)]
     fields = results[0]
-    title = title_of(fields)
-    lines = lines_of(fields)
-    shared: dict[str, float | None] = {}
+    orders: dict[str, float | None] = {}
     if options.steps:
-        shared = orders(options.steps, results)
-        fields = {"steps": options.steps, "files": results, **shared}
-        title = ""
-        lines = [line for each in results for line in (("file", title_of(each)), *lines_of(each))]
-        for name, order in shared.items():
-            text = "none that stands out at each step"
-            if order is not None:
-                text = f"goes as h^{order:.2f}"
-            lines.append((name.removesuffix("_order"), text))
-    notes = [f"{name:<13} {text}" for name, text in lines]
-    Report(name="judge", title=title, notes=notes, fields=fields).show(form_of(options))
-    failures: dict[str, None] = {}
+        orders = orders_of(options.steps, results)
+        fields = {"steps": options.steps, "files": results, **orders}
+        for name, order in orders.items():
+            text = "no clear power of h" if order is None else f"goes as h^{order:.2f}"
+            lines.append(_line(name.removesuffix("_order"), text))
+    publish(Report(name="judge", notes=lines, fields=fields), options)
+    failures: list[str] = []
     if gate:
-        for each in results:
-            skipped = sum(each["skipped"].values())  # rows, for whatever reason
-            failures[gate({"": each | shared | {"skipped": skipped}})] = None
+        for result in results:
+            skipped = sum(result["skipped"].values())  # rows, for whatever reason
+            failures.append(gate({"": result | orders | {"skipped": skipped}}))
     check = Check(
         f"{options.energy}: {options.fail_if or 'no check'}",
-        "; ".join(map(" ".join, lines)),
-        "; ".join(filter(None, failures)) or None,
+        "; ".join(lines),
+        "; ".join(filter(None, dict.fromkeys(failures))) or None,
     )
     code = conclude(options, f"pendu-tui judge {' '.join(options.files)}", [check])
-    if any(each["verdict"] == "failed" for each in results):
+    if any(result["verdict"] == "failed" for result in results):
         return Exit.CHECK_FAILED
     return code
 
@@ -152,10 +147,12 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
     table = _read(name, options)
     times, energies, *_ = map(np.asarray, table.columns)
-    # a deviation has no zero of energy
+    # relative to the standard deviation, no result may depend on the zero of energy
     is_absolute = options.scale != "std"
-    found = Judge.read(times, energies, failed=table.failed_at is not None, absolute=is_absolute)
-    rest = energies[found.first :]
+    judgement = Judge.read(
+        times, energies, failed=table.failed_at is not None, absolute=is_absolute
+    )
+    rest = energies[judgement.first :]
     size = _size(table, rest, options.scale)
     with np.errstate(over="ignore"):
         errors = np.clip((rest - rest[0]) / size, -MAX_ERROR, MAX_ERROR)
@@ -163,12 +160,12 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
         "file": name,
         "table": table.number,
         "tables": table.count,
-        "verdict": found.verdict,
-        "progress": found.progress and found.progress._asdict(),
-        "transient": found.transient,
-        **_trend(table, found.slope, found.uncertainty, size),
-        "independent_samples": found.independent,
-        "fluctuation": found.fluctuation,
+        "verdict": judgement.verdict,
+        "progress": judgement.progress and judgement.progress._asdict(),
+        "transient": judgement.transient,
+        **_trend(table, judgement.slope, judgement.uncertainty, size),
+        "independent_samples": judgement.independent,
+        "fluctuation": judgement.fluctuation,
         "max_energy_error": float(np.abs(errors).max()),
         "energy_error": float(errors[-1]),
         "first_energy": float(rest[0]),
@@ -201,14 +198,14 @@ def _read(name: str, options: argparse.Namespace) -> "Table":
     rows = len(table.columns[0])
     if table.skipped["time_not_later"] > rows:
         raise UserError(
-            "most rows are not later than the row before: there seem to be several methods in this"
-            " table; judge one of them, for example filtered with grep.",
+            "most rows are not later than the row before, so this table seems to hold several "
+            "methods; judge one of them, for example filtered with grep.",
             Exit.INPUT_UNREADABLE,
         )
     if rows == 0:
         why = f"no row has a usable time and energy; skipped: {', '.join(_skipped(table.skipped))}."
         if table.failed_at is not None:
-            why += f" Judge from a later time than {table.failed_at:g} on with --from."
+            why += f" Use --from with a later time than {table.failed_at:g}."
         raise UserError(why, Exit.INPUT_UNREADABLE)
     return table
 
@@ -220,6 +217,7 @@ def _skipped(skipped: dict[str, int]) -> list[str]:
 
 
 def _size(table: "Table", energies: Any, scale: float | str) -> float:
+    """Return the energy by which errors are divided.  Raises UserError if it is 0."""
     if isinstance(scale, float):
         return scale
     if scale == "first":
@@ -264,87 +262,94 @@ def _trend(
 
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
+    trend = fields["absolute_trend"]
     time_unit = fields["time_unit"]
     energy_unit = fields["energy_unit"].casefold()
     if time_unit not in NANOSECONDS:
         raise UserError(
-            "--atoms needs the unit of the times in the head of the column, such as Time (ps); "
-            f"units: {', '.join(NANOSECONDS)}."
+            "--atoms needs the unit of time in the column's head, such as Time (ps); units: "
+            f"{', '.join(NANOSECONDS)}."
         )
-    each = fields["absolute_trend"] and fields["absolute_trend"] / NANOSECONDS[time_unit] / atoms
-    found = {"atoms": atoms, "energy_per_ns_per_atom": each}
+    energy = trend and trend / NANOSECONDS[time_unit] / atoms
+    result = {"atoms": atoms, "energy_per_ns_per_atom": energy}
     if temperature is None:
-        return found
+        return result
     if energy_unit not in BOLTZMANN:
         raise UserError(
-            "--temperature needs the unit of the energies in the head of the column, such as E "
-            f"(eV); units: {', '.join(BOLTZMANN)}."
+            "--temperature needs the unit of energy in the column's head, such as E (eV); units: "
+            f"{', '.join(BOLTZMANN)}."
         )
-    in_kt = each and each / (BOLTZMANN[energy_unit] * temperature)
-    return found | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
+    in_kt = energy and energy / (BOLTZMANN[energy_unit] * temperature)
+    return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
 
 
-def orders(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
-    """Return the powers of the step size with which fluctuation and drift go.
+def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
+    """Return the powers of the step size with which fluctuation and drift scale.
 
-    A drift that is not significant at each step size has no order.
+    The drift has no order unless it is significant at each step size.
     """
-    found = {"fluctuation_order": _power(steps, [fields["fluctuation"] for fields in results])}
-    found["drift_order"] = None
+    orders = {"fluctuation_order": _power(steps, [fields["fluctuation"] for fields in results])}
+    orders["drift_order"] = None
     if all(fields["verdict"] in ("grows", "loses") for fields in results):
-        found["drift_order"] = _power(steps, [fields["absolute_trend"] for fields in results])
-    return found
+        orders["drift_order"] = _power(steps, [fields["absolute_trend"] for fields in results])
+    return orders
 
 
 def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | None:
-    """Return the slope of log |value| over log step by least squares; None if one is unknown."""
-    sizes = [abs(value) for value in values if value]
-    if len(sizes) < len(steps):
+    """Return the slope of log |value| over log step, or None if a value is 0 or None."""
+    if not all(values):
         return None
-    return linear_regression([*map(math.log, steps)], [*map(math.log, sizes)]).slope
+    logs = [math.log(abs(value)) for value in values if value]
+    return linear_regression([math.log(step) for step in steps], logs).slope
 
 
-def title_of(fields: dict[str, Any]) -> str:
-    span = f"from {fields['first_time']:g} to {fields['last_time']:g}{_unit(fields, 'time')}"
-    name = {"-": "stdin"}.get(fields["file"]) or printable(fields["file"])
-    text = f"{name}: {counted(fields['samples'], 'sample')} {span}"
-    if fields["tables"] > 1:
-        text += f", table {fields['table']} of {fields['tables']}"
-    if skipped := _skipped(fields["skipped"]):
-        text += f"; skipped: {', '.join(skipped)}"
-    return text
-
-
-def _unit(fields: dict[str, Any], name: str) -> str:
-    unit = fields[f"{name}_unit"]
-    return unit and f" {unit}"
-
-
-def lines_of(fields: dict[str, Any]) -> list[tuple[str, str]]:
-    time_unit = _unit(fields, "time")
-    energy_unit = _unit(fields, "energy")
+def lines_of(fields: dict[str, Any]) -> list[str]:
+    """Return the lines on one file."""
+    time_unit = _spaced(fields["time_unit"])
+    energy_unit = _spaced(fields["energy_unit"])
     verdict = fields["verdict"]
-    if progress := fields["progress"]:
-        verdict += f": {Progress(**progress)}"
+    if fields["progress"]:
+        verdict += f": {Progress(**fields['progress'])}"
     if fields["diverged_at"] is not None:
         verdict += f": the energy is nan or inf at {fields['diverged_at']:g}{time_unit}"
     if fields["transient"]:
         verdict += f", after a transient of {fields['transient']:.3g}{time_unit}"
-    lines = [("verdict", verdict)]
+    lines = [_title(fields), _line("verdict", verdict)]
     if fields["trend"] is not None:
         per = f"per {fields['time_unit'] or 'unit of time'}"
         relative = f"relative {fields['trend']:+.2e} ± {fields['uncertainty']:.0e} {per}"
-        size = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}"
-        lines.append(("trend", f"{relative}, absolute {size}{energy_unit} {per}"))
-    if (each := fields.get("energy_per_ns_per_atom")) is not None:
-        text = f"{each:+.2e}{energy_unit} per ns"
-        if (in_kt := fields.get("kt_per_ns_per_atom")) is not None:
-            text += f", {in_kt:+.2e} kT per ns"
-        lines.append(("per atom", text))
+        absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}"
+        lines.append(_line("trend", f"{relative}, absolute {absolute}{energy_unit} {per}"))
+    if fields.get("energy_per_ns_per_atom") is not None:
+        text = f"{fields['energy_per_ns_per_atom']:+.2e}{energy_unit} per ns"
+        if "temperature" in fields:
+            text += f", {fields['kt_per_ns_per_atom']:+.2e} kT per ns"
+        lines.append(_line("per atom", text))
     error = f"{fields['energy_error']:+.2e} at the end, {fields['max_energy_error']:.2e} at most"
-    lines.append(("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"))
+    relative = f"{error}, relative to {fields['scale']:.6g}{energy_unit}"
+    lines.append(_line("energy error", relative))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     if is_of_first and fields["max_energy_error"] >= 1 and fields["verdict"] == "bounded":
         hint = "the energies lie around zero; --scale std compares errors with their spread"
-        lines.append(("hint", hint))
+        lines.append(_line("hint", hint))
     return lines
+
+
+def _title(fields: dict[str, Any]) -> str:
+    name = "stdin" if fields["file"] == "-" else printable(fields["file"])
+    span = f"{fields['first_time']:g} to {fields['last_time']:g}{_spaced(fields['time_unit'])}"
+    text = f"{name}: {counted(fields['samples'], 'sample')} from {span}"
+    if fields["tables"] > 1:
+        text += f", table {fields['table']} of {fields['tables']}"
+    skipped = _skipped(fields["skipped"])
+    if skipped:
+        text += f"; skipped: {', '.join(skipped)}"
+    return text
+
+
+def _line(name: str, text: str) -> str:
+    return f"{name:<13} {text}"
+
+
+def _spaced(unit: str) -> str:
+    return unit and f" {unit}"

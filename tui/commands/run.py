@@ -1,4 +1,4 @@
-"""Run a scene without the TUI, as fast as possible, and judge each method."""
+"""Simulate a scene as fast as possible, without the TUI, and judge each method."""
 
 import argparse
 from pathlib import Path
@@ -23,31 +23,32 @@ examples:
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
-drift_per_second: the slope of the relative energy error, null without evidence for a trend
+drift_per_second: the slope of the relative energy error, or null without evidence for a trend
 
 verdicts:
 """ + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
 
-MAX_TIME = 1e9  # s, 30 years; a recording's clock ends there, too
+MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser, lists=True)
     add = parser.add_argument
-    add("--time", metavar="S", type=duration, help="simulated time: 60 (s) or 1min; required")
+    time = "simulated time: 60 (s) or 1min"
+    add("--time", metavar="S", type=duration, required=True, help=time)
     record = "record to FILE (the same bytes each time)"
     add_file(parser, "--record", metavar="FILE", type=Path, help=record)
     every = "record every N steps (default: every 1/30 s)"
     add("--sample-every", metavar="N", type=count, help=every)
     names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
     meaning = (
-        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows (fields: "
-        "see --json)"
+        "exit with 1 if the expression is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == "
+        "grows; fields: those of --json"
     )
     add_check_options(parser, names, meaning)
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
-    add("--resume", action="store_true", help="go on with the list of runs in FILE.csv.partial")
+    add("--resume", action="store_true", help="continue the list of runs in FILE.csv.partial")
     add_worker_options(parser)
 
 
@@ -67,9 +68,7 @@ def run(options: argparse.Namespace) -> int:
     return run_one(scene, options, gate, is_figure)
 
 
-def _check_time(scene: Scene, seconds: float | None) -> None:
-    if seconds is None:  # last: argparse would say it before what else is wrong
-        raise UserError("--time is missing: how many seconds to simulate, for example --time 60.")
+def _check_time(scene: Scene, seconds: float) -> None:
     if seconds > MAX_TIME:
         raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
     if round(seconds / scene.h) == 0:

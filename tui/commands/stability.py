@@ -1,6 +1,6 @@
-"""Find where each method becomes unstable: theory next to measurement.
+"""Find the step size at which each method becomes unstable, in theory and as measured.
 
---section draws the phase portrait of a method's own map, with the orbit of the scene's start.
+--section draws the phase portrait of one method instead, with the orbit of the scene's start.
 """
 
 import argparse
@@ -32,15 +32,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
-    portrait = "draw the phase portrait of the first of the methods"
+    portrait = "draw the phase portrait of the first method"
     what.add_argument("--section", action="store_true", help=portrait)
-    thetas = f"amplitudes: 0.5,1,120deg or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
+    thetas = f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; for a map 100)"
     add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
-    zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
+    zs = f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 in steps of 1 %%; for a map 200 up to 3)"
     add("--z-values", metavar="LIST", type=values(number), help=zs)
-    steps = f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})"
+    steps = f"steps for each amplitude ({STEPS}) or orbit ({SECTION_STEPS})"
     add("--steps", metavar="N", type=count, help=steps)
-    add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
+    add(
+        "--starts",
+        metavar="N",
+        type=count,
+        default=300,
+        help="orbits to draw with --section (%(default)s)",
+    )
     add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", *figures.SUFFIXES))
     add_worker_options(parser)
 

@@ -193,7 +193,7 @@ def test_trends_have_the_units_of_the_heads():
     assert answer["energy_per_ns_per_atom"] == pytest.approx(1.0, rel=1e-3)
     assert answer["kt_per_ns_per_atom"] == pytest.approx(1 / 0.025852, rel=1e-3)
     assert "kT per ns" in judge(GROWING, *atoms, **names).out
-    assert judge(table(), "--atoms", 5).refused(2, "--atoms needs the unit of the times")
+    assert judge(table(), "--atoms", 5).refused(2, "--atoms needs the unit of time")
     assert judge(GROWING, "--temperature", 5, **names).refused(2, "belongs to --atoms")
 
 

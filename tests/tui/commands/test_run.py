@@ -108,12 +108,12 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--h", "0"), "h"),
-        (("--length", "-1"), "length"),
+        (("--time", "1", "--h", "0"), "h"),
+        (("--time", "1", "--length", "-1"), "length"),
         (("--time", "0.01"), "shorter than one step"),
         (("--time", "1e10"), "out of range"),
-        (("--fail-if", "rk5.theta > 1"), "rk5"),
-        ((), "--time is missing"),
+        (("--time", "1", "--fail-if", "rk5.theta > 1"), "rk5"),
+        ((), "required: --time"),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):

@@ -62,12 +62,13 @@ HEADS = {
 TRUTH = "the exact motion, against which errors are taken"
 
 
-class Findings:
-    """What was asked for, and what has been found so far."""
+class Results:
+    """The options of a study, and what has been measured so far."""
 
     def __init__(self, scene: Scene, options: argparse.Namespace) -> None:
         self.options = options
-        self.scene = self.searched = scene
+        self.scene = scene  # with the methods to chart
+        self.searched = scene  # with the methods to recommend
         if not options.methods:
             self.searched = with_all_methods(scene)
         if options.all:
@@ -79,108 +80,109 @@ class Findings:
             self.clock = time.perf_counter
         self.points: list[Point] = []
         self.orders: list[Order] = []
-        self.advice: list[Advice] = []  # one for each time asked for
+        self.advice: list[Advice] = []  # one for each duration
         self.references: References | None = None
         self.series: Sequence[Point] = ()  # of Taylor
 
     @property
     def front(self) -> list[Cheapest]:
         """Return the cheapest method at each accuracy."""
-        points = [*self.points, *self.series]
-        return front(points, self.options.error, self.options.cost)
+        return front([*self.points, *self.series], self.options.error, self.options.cost)
 
 
-def measure(found: Findings) -> None:
-    """Add what was asked for to the findings, so that an interrupt keeps what was found."""
-    scene = found.scene
-    rungs = _ladder(found)
+def measure(results: Results) -> None:
+    """Fill the results step by step, so that an interrupt keeps those that are there."""
+    scene = results.scene
+    rungs = _ladder(results)
     study_loops: LoopsOf = compiled.TieredLoops
     timed_loops: LoopsOf = compiled.compiled
-    # seconds are those of compiled methods, or of none
-    fast = not found.options.no_compiled and (not found.clock or compilable(scene.cast))
+    # seconds compare methods only if all or none of them are compiled
+    fast = not results.options.no_compiled and (not results.clock or compilable(scene.cast))
     if not fast:
         study_loops = timed_loops = loops.PlainLoops
-    if found.options.target is not None or found.options.budget is not None:
-        _search(found, study_loops, timed_loops)
+    if results.options.target is not None or results.options.budget is not None:
+        _search(results, study_loops, timed_loops)
     tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
     done = 0
-    with workers_of(found.options) as workers, progress("measuring") as show:
-        for point in workers.map(partial(measured_point, scene, found.time, study_loops), tasks):
-            if found.clock:
-                point = timed(point, scene, found.clock, timed_loops)
-            found.points.append(point)
+    with workers_of(results.options) as workers, progress("measuring") as show:
+        for point in workers.map(partial(measured_point, scene, results.time, study_loops), tasks):
+            if results.clock:
+                point = timed(point, scene, results.clock, timed_loops)
+            results.points.append(point)
             done += point.steps
             show(done, len(scene.cast) * sum(rungs))
-    if found.options.all and found.clock:
-        found.references = references(scene, found.time, found.clock, fast)
-        found.series = found.references.taylor
-    found.orders += orders(scene, found.time, study_loops)
+    if results.options.all and results.clock:
+        results.references = references(scene, results.time, results.clock, fast)
+        results.series = results.references.taylor
+    results.orders += orders(scene, results.time, study_loops)
 
 
-def _search(found: Findings, study_loops: LoopsOf, timed_loops: LoopsOf) -> None:
-    options = found.options
+def _search(results: Results, study_loops: LoopsOf, timed_loops: LoopsOf) -> None:
+    kind = results.options.error
+    target = results.options.target
+    budget = results.options.budget
     with progress("searching") as show:
-        for number, duration in enumerate(found.durations):
-            study = Study(found.searched, duration, study_loops)
+        for done, duration in enumerate(results.durations):
+            study = Study(results.searched, duration, study_loops)
 
-            def show_share(share: float, number: int = number) -> None:
-                show(number + share, len(found.durations))
+            def show_share(share: float, done: int = done) -> None:
+                show(done + share, len(results.durations))
 
-            if options.target is None:
-                advice = least_error(study, options.error, options.budget, show_share)
+            if target is None:
+                advice = least_error(study, kind, budget, show_share)
             else:
-                wish = (options.error, options.target / options.safety, options.budget)
-                advice = least_cost(study, *wish, show_share, found.clock, timed_loops)
-            found.advice.append(advice)
+                goal = target / results.options.safety
+                clock = results.clock
+                advice = least_cost(study, kind, goal, budget, show_share, clock, timed_loops)
+            results.advice.append(advice)
 
 
-def _ladder(found: Findings) -> list[int]:
-    w0 = found.scene.w0
-    z_max, z_min, rungs = Z_LADDER
-    if found.options.all:
-        z_max, z_min, rungs = ALL_LADDER
-    largest, smallest, rungs = found.options.h_values or (
-        min(z_max / w0, found.time),
-        z_min / w0,
-        rungs,
-    )
+def _ladder(results: Results) -> list[int]:
+    """Return the numbers of steps to chart.  Raises UserError and SceneError."""
+    w0 = results.scene.w0
+    if results.options.h_values:
+        largest, smallest, rungs = results.options.h_values
+    else:
+        z_max, z_min, rungs = ALL_LADDER if results.options.all else Z_LADDER
+        largest = min(z_max / w0, results.time)
+        smallest = z_min / w0
     for h in (largest, smallest):
         check_h(h, w0)
-    if largest > found.time:
+    if largest > results.time:
         raise UserError(
-            f"h = {largest:g} s is longer than the time of {found.time:g} s; use a longer --time."
+            f"h = {largest:g} s is longer than the time of {results.time:g} s; use a longer --time."
         )
-    if found.time / smallest > MAX_STEPS:
+    if results.time / smallest > MAX_STEPS:
         raise UserError(
-            f"{found.time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for "
-            "example 0.2:0.01:8."
+            f"{results.time:g} s in steps of {smallest:.2g} s take hours; use larger ones, for "
+            "example --h-values 0.2:0.01:8."
         )
-    return ladder(found.time, largest, smallest, rungs)
+    return ladder(results.time, largest, smallest, rungs)
 
 
-def report(found: Findings, interrupted: bool) -> Report:
-    kind = found.options.error
-    points = list(_records(found))
-    durations = [_advice_fields(found, advice) for advice in found.advice]
+def report(results: Results, interrupted: bool) -> Report:
+    kind = results.options.error
+    points = list(_records(results))
+    durations = [_advice_fields(results, advice) for advice in results.advice]
     return Report(
         name="accuracy",
-        title=f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[kind]}\n",
-        columns=_columns(found),
-        rows=_rungs(found),
-        notes=list(_notes(found)),
+        title=f"{scene_line(results.scene)}, over {results.time:g} s\n{ERROR_LABELS[kind]}\n",
+        columns=_columns(results),
+        rows=_rungs(results),
+        notes=list(_notes(results)),
         records=points,
         fields={
-            "scene": found.scene.fields(),
-            "time": found.time,
+            "scene": results.scene.fields(),
+            "time": results.time,
             "error": kind,
             "points": points,
             "front": [
-                {"error": one.target, "method": one.method.key, "cost": one.cost}
-                | {"saves_over_rk4": one.saves}
-                for one in found.front
+                {"error": place.target, "method": place.method.key, "cost": place.cost}
+                | {"saves_over_rk4": place.saves}
+                for place in results.front
             ],
-            "absent": found.references and found.references.absent,
-            "orders": list(map(_order_fields, found.orders)),
+            "absent": results.references and results.references.absent,
+            "orders": list(map(_order_fields, results.orders)),
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
             "interrupted": interrupted,
@@ -195,38 +197,41 @@ def _order_fields(order: Order) -> dict[str, Any]:
     return {"method": order.method.key, "claimed": claimed, "measured": order.measured}
 
 
-def _records(found: Findings) -> Iterator[dict[str, Any]]:
-    """Yield the points of all lines, in the fields of JSON and CSV."""
-    for point in (*found.points, *found.series):
-        flaw = point.flaw(found.options.error)
+def _records(results: Results) -> Iterator[dict[str, Any]]:
+    """Yield the points of all methods, the series and the closed form, for JSON and CSV."""
+    for point in (*results.points, *results.series):
+        flaw = point.flaw(results.options.error)
         record = {"method": point.method.key, **fields_of(point, *NUMBERS), "valid": flaw is None}
         if point.tolerance is not None:
             record |= {"h": None, "force_evaluations": None}
         yield record | {"reason": flaw and REASONS[flaw], "tolerance": point.tolerance}
-    if found.references:
+    if results.references:
         record = {"method": "closed_form", **dict.fromkeys(NUMBERS)}
-        record |= {"seconds": found.references.closed_form, "valid": False}
+        record |= {"seconds": results.references.closed_form, "valid": False}
         yield record | {"reason": TRUTH, "tolerance": None}
 
 
-def _rungs(found: Findings) -> list[dict[str, Any]]:
-    """Return the rows of the table: the points of all methods with one h."""
+def _rungs(results: Results) -> list[dict[str, Any]]:
+    """Return a row for each h, with the points of all methods."""
     rows: dict[int, dict[str, Any]] = {}
-    for point in found.points:
+    for point in results.points:
         row = rows.setdefault(point.steps, fields_of(point, "h", "z", "steps"))
         row[point.method.key] = point
     return list(rows.values())
 
 
-def _columns(found: Findings) -> list[Column]:
+def _columns(results: Results) -> list[Column]:
     def error(point: Point) -> str:
-        text = f"{point.error(found.options.error):.1e}{_seconds(point)}"
-        flaw = point.flaw(found.options.error)
+        text = f"{point.error(results.options.error):.1e}{_seconds(point)}"
+        flaw = point.flaw(results.options.error)
         return f"{MARKS[flaw]} {text}" if flaw else text
 
-    columns = [Column("h [s]", "h", ".4g"), Column("z = h·w0", "z", ".3g")]
-    columns.append(Column("steps", "steps", "d"))
-    for method in found.scene.cast:
+    columns = [
+        Column("h [s]", "h", ".4g"),
+        Column("z = h·w0", "z", ".3g"),
+        Column("steps", "steps", "d"),
+    ]
+    for method in results.scene.cast:
         head = f"{method.label} ({method.force_evaluations}/step)"
         columns.append(Column(head, methodcaller("get", method.key), error))
     return columns
@@ -236,37 +241,43 @@ def _seconds(point: Point) -> str:
     return "" if point.seconds is None else f" in {length(point.seconds)}"
 
 
-def _notes(found: Findings) -> Iterator[Any]:
-    kind = found.options.error
-    cost = found.options.cost
-    flaws = {point.flaw(kind) for point in found.points}
+def _notes(results: Results) -> Iterator[Any]:
+    kind = results.options.error
+    cost = results.options.cost
+    flaws = {point.flaw(kind) for point in results.points}
     yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
     yield "n/step: force evaluations"
-    known = (order for order in found.orders if order.measured is not None)
-    measured = [f"{order.method.label} {order.measured:.2f}" for order in known]
+    measured = [
+        f"{order.method.label} {order.measured:.2f}"
+        for order in results.orders
+        if order.measured is not None
+    ]
     yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
-    if found.references:
-        yield from filter(None, [found.references.absent])
-        yield f"Closed form, the floor: {length(found.references.closed_form)}"
+    if results.references:
+        if results.references.absent:
+            yield results.references.absent
+        yield f"Closed form, the floor: {length(results.references.closed_form)}"
     yield ""
     series = accuracy_series(
-        found.points, kind, cost, found.scene.cast, references=found.references
+        results.points, kind, cost, results.scene.cast, references=results.references
     )
     columns, rows = CHART_SIZE
     chart = accuracy_chart(series, kind, cost, min(console(columns).width, columns), rows)
     yield from lines_of(chart, PALETTES["dark"])
-    if found.options.all and found.points:
-        alone = front(found.points, kind, "evaluations")
-        yield f"\n{front_words(found.front, cost, alone)}"
-        yield from filter(None, [factor_words(alone)])
-    for advice in found.advice:
-        yield from _advice_notes(found, advice)
-    if len(found.advice) > 1:
-        yield f"\n{_winners(found.advice)}"
+    if results.options.all and results.points:
+        without_series = front(results.points, kind, "evaluations")
+        yield f"\n{front_words(results.front, cost, without_series)}"
+        savings = factor_words(without_series)
+        if savings:
+            yield savings
+    for advice in results.advice:
+        yield from _advice_notes(results, advice)
+    if len(results.advice) > 1:
+        yield f"\n{_winners(results.advice)}"
 
 
-def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
-    options = found.options
+def _advice_notes(results: Results, advice: Advice) -> Iterator[Any]:
+    options = results.options
     kind = options.error
     wish = f"smallest {kind} error"
     if options.target is not None:
@@ -284,19 +295,19 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
         cost = f"{point.force_evaluations} force evaluations{_seconds(point)}"
         yield f"{cost}, {kind} error {point.error(kind):.2e}, confirmed"
         if options.target is not None and options.safety == 1:
-            yield "Steps near it may miss the target; --safety 2 leaves a margin."
-    rows = [_attempt_fields(found, attempt) for attempt in advice.attempts]
-    timed = [Column("seconds", "seconds", length)]
+            yield "Other steps near it may miss the target; --safety 2 leaves a margin."
+    rows = [_attempt_fields(results, attempt) for attempt in advice.attempts]
     columns = [
         method_column([attempt.method for attempt in advice.attempts]),
         Column("h [s]", "h", ".5g"),
         Column("z", "z", ".3g"),
         Column("steps a swing", "steps_per_swing", few),
         Column("evaluations", "force_evaluations", "d"),
-        *(timed if any(row["seconds"] is not None for row in rows) else ()),
         Column(HEADS[kind], "error", ".1e"),
         Column("times the cheapest", _times),
     ]
+    if any(row["seconds"] is not None for row in rows):
+        columns.insert(-2, Column("seconds", "seconds", length))
     yield Table(columns, rows)
 
 
@@ -307,9 +318,11 @@ def _times(row: dict[str, Any]) -> str:
 
 
 def _winners(advice: Sequence[Advice]) -> str:
+    """Say where the cheapest method changes with the duration."""
     changes = []
     for earlier, later in pairwise(advice):
-        before, after = map(_winner, (earlier, later))
+        before = _winner(earlier)
+        after = _winner(later)
         if before != after:
             when = f"from {later.time:g} s on (not yet at {earlier.time:g} s)"
             changes.append(f"{after} instead of {before} {when}")
@@ -320,18 +333,19 @@ def _winner(advice: Advice) -> str:
     return advice.point.method.label if advice.point else "no method"
 
 
-def _attempt_fields(found: Findings, attempt: Attempt) -> dict[str, Any]:
-    numbers = ("h", "z", "steps_per_swing", "force_evaluations", "error", "seconds")
-    fields = {"method": attempt.method.key, **dict.fromkeys(numbers)}
-    if point := attempt.point:
-        fields |= {name: getattr(point, name) for name in numbers if name != "error"}
-        fields["error"] = point.error(found.options.error)
+def _attempt_fields(results: Results, attempt: Attempt) -> dict[str, Any]:
+    numbers = ("h", "z", "steps_per_swing", "force_evaluations")
+    fields = {"method": attempt.method.key, **dict.fromkeys((*numbers, "error", "seconds"))}
+    point = attempt.point
+    if point:
+        fields |= fields_of(point, *numbers, "seconds")
+        fields["error"] = point.error(results.options.error)
     return fields | {"times_the_cheapest": attempt.times, "why_not": attempt.why_not}
 
 
-def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
-    attempts = [_attempt_fields(found, attempt) for attempt in advice.attempts]
-    options = fields_of(found.options, "target", "budget", "safety")
+def _advice_fields(results: Results, advice: Advice) -> dict[str, Any]:
+    attempts = [_attempt_fields(results, attempt) for attempt in advice.attempts]
+    options = fields_of(results.options, "target", "budget", "safety")
     best = attempts[0]
     if not advice.point:
         best = dict.fromkeys(best) | {"why_not": "no method gets there"}
