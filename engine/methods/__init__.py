@@ -1,10 +1,9 @@
 """The methods, one family a file, and the list that everything else derives from.
 
 A method is a generator function (force, phase, h) -> phases, written as in the book, with only
-+ - * / on the phase and never `+=`, which would change arrays in place.  It therefore runs
-unchanged on floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The methods of
-`precision`, `adaptive`, `damped`, `stiff` and `learned` are not as general, and there for one scene
-each.
++ - * / on the phase and never `+=`, which would change arrays in place.  So it runs unchanged on
+floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The methods of `precision`,
+`adaptive`, `damped`, `stiff` and `learned` are made for one scene each.
 """
 
 import copyreg
@@ -48,35 +47,40 @@ FAMILIES: dict[str, Cast] = {
 METHODS: Cast = tuple(method for family in FAMILIES.values() for method in family)
 
 GENERAL: Cast = tuple(method for method in METHODS if method.general)
-"""The methods for any force and any numbers.  The others belong to a scene that needs them."""
+"""The methods for any force and any numbers."""
 
 USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 
 
 def method_of(key: str) -> Method:
-    """The method of a key.  Raises KeyError."""
+    """Return the method of a key.  Raises KeyError."""
     return _BY_KEY[key]
 
 
 def matching(name: str, methods: Sequence[Method] = METHODS) -> list[Method]:
     """Return the one method of this name, or those in whose keys a word starts with it.
 
-    Case, accents and hyphens do not count.  Methods that take any force come before the others.
+    Case, accents and hyphens do not count.  Methods for one scene match only if no general one
+    does, and later words of keys only if no first one does.
     """
     wanted = simplified(name)
     for method in methods:
         if wanted in map(simplified, method.names):
             return [method]
-    for some in ([method for method in methods if method.general], methods):
-        first = [each for each in some if wanted and simplified(each.key).startswith(wanted)]
-        found = first or [each for each in some if wanted and f" {wanted}" in simplified(each.key)]
-        if found:
-            return found
+    if not wanted:
+        return []
+    general = [method for method in methods if method.general]
+    for candidates in (general, methods):
+        keys = {method: simplified(method.key) for method in candidates}
+        matches = [method for method, key in keys.items() if key.startswith(wanted)]
+        matches = matches or [method for method, key in keys.items() if f" {wanted}" in key]
+        if matches:
+            return matches
     return []
 
 
 def simplified(name: str) -> str:
-    """Return a name in small letters, without accents, its words separated by single spaces."""
+    """Return a name in lower case, without accents, its words separated by single spaces."""
     letters = unicodedata.normalize("NFKD", name.casefold())
     return " ".join(re.findall(r"[a-z0-9]+", letters.encode("ascii", "ignore").decode()))
 

@@ -1,8 +1,7 @@
 """Step size control: a step is divided until it looks accurate enough.
 
-Where a step is divided depends on where it is, and back from its end it may be divided otherwise:
-neither symplectic nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006),
-VIII.1.
+Whether a step is divided depends on its start, and may differ on the way back: it is neither
+symplectic nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006), VIII.1.
 """
 
 import math
@@ -17,11 +16,11 @@ TOLERANCE = 0.1  # rad and rad/s, of a step
 
 
 def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
-    """The method with step doubling: h is halved where a step and two halves differ too much.
+    """Return the method with step doubling: h is halved where a step and two halves differ.
 
-    The two halves are what counts, or with `richardson` their extrapolation for a method of order
-    2, which is of order 4.  Nothing is kept from step to step, so each begins with h again.  The
-    difference is hypot(theta, omega), in rad and rad/s.
+    The result is that of the two halves, or with `richardson` their extrapolation, of order 4 for a
+    method of order 2.  Each step begins with h again.  The difference is hypot(theta, omega), in
+    rad and rad/s.
     """
 
     def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
@@ -37,7 +36,7 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
 
     def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         while True:
-            # at most ten halvings: where nothing looks accurate, as at 1e9 rad/s, it ends, too
+            # at most ten halvings, because at 1e9 rad/s no step looks accurate
             phase = step(force, phase, h, 10)
             yield phase
 
@@ -52,9 +51,8 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
         f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
-        note="Its force evaluations are those of a minute of scene halving, on average, and equal "
-        "cost goes by them; a step that is not divided takes six, and of this order it is as long "
-        "as none is.",
+        note="Its force evaluations, which equal cost uses, are the mean of a minute of the scene "
+        "halving. An undivided step takes six, and the order is that of undivided steps.",
         models=("pendulum", "linear"),
         any_numbers=False,
         varies=True,

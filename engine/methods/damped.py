@@ -1,6 +1,6 @@
-"""Friction: where in a step it acts decides the order, and whether area shrinks as it should.
+"""Methods for friction: where in a step it acts decides the order and how area shrinks.
 
-These take the pendulum's force and its friction, gamma [s⁻¹], apart.
+They take the pendulum's force and its friction, gamma [s⁻¹], separately.
 """
 
 import math
@@ -14,7 +14,7 @@ from engine.models.model import Phase
 def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet, with omega times exp(-gamma h/2) before and after each step.
 
-    Around a symplectic method, area shrinks by exp(-gamma h) exactly.
+    Area shrinks by exp(-gamma h) exactly.
     """
     force, friction = parts
     theta, omega = phase
@@ -32,7 +32,7 @@ def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Pha
 def lagged_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet with friction taken from the omega before each half kick.
 
-    Order 1 only: the second half kick should know the omega that it leads to.
+    It is of order 1 only, because the second half kick depends on the omega that it leads to.
     """
     force, friction = parts
     theta, omega = phase

@@ -1,4 +1,4 @@
-"""The Euler methods: one force a step, order 1."""
+"""The Euler methods: one force evaluation a step, order 1."""
 
 from collections.abc import Iterator
 

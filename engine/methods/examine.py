@@ -1,4 +1,4 @@
-"""Checks of a user's function: what the lab, its charts and its files need of a method."""
+"""Check that a user's function is a method as the lab, its charts and its files need it."""
 
 import math
 from itertools import islice
@@ -13,8 +13,7 @@ from engine.models.model import Phase
 
 H = 0.05  # s
 STEPS = 6
-# relative; rounding makes far smaller differences, a wrong kind of number far larger ones
-SAME = 1e-9
+SAME = 1e-9  # relative; rounding differs by far less, wrong numbers by far more
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
@@ -29,11 +28,10 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     phases = own_phases(source, key, file)
     try:
         _examine(phases, f"{file}: {key}")
-        found = measured(phases)
+        properties = measured(phases)
     except (ValueError, ArithmeticError) as error:
-        # a run may overflow; these few small steps must not
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
-    return own_method(source, key, letter, file, found)
+    return own_method(source, key, letter, file, properties)
 
 
 def _examine(phases: Phases, who: str) -> None:
@@ -75,27 +73,23 @@ def _path(phases: Phases, start: Phase) -> list[Phase]:
 
 
 def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
-    """Whether arrays give the numbers that floats give."""
+    """Return whether arrays give the numbers that floats give."""
     start = tuple(np.full(3, value) for value in START)
     h = np.full(3, H)
-    given = [each.copy() for each in (*start, h)]
-    found: list[Any] = []
-    copies: list[Any] = []
-    for phase in islice(
-        phases(PENDULUM.force(np.sin), (start[0], start[1]), cast(float, h)), STEPS
-    ):
-        found += phase
-        copies += [each.copy() for each in phase]
-    pairs = zip((*start, h, *found), (*given, *copies), strict=True)
-    if not all(np.array_equal(now, then) for now, then in pairs):
+    arrays: list[Any] = [*start, h]
+    copies = [array.copy() for array in arrays]
+    for phase in islice(phases(PENDULUM.force(np.sin), start, cast(float, h)), STEPS):
+        arrays += phase
+        copies += [array.copy() for array in phase]
+    if not all(map(np.array_equal, arrays, copies)):
         raise OwnMethodError(
             f"{who} changes an array in place; write theta = theta + x instead of theta += x."
         )
-    return np.allclose([each[0] for each in found], np.ravel(path), rtol=SAME, atol=SAME)
+    return np.allclose([array[0] for array in arrays[3:]], np.ravel(path), rtol=SAME, atol=SAME)
 
 
 def _examine_complexes(phases: Phases, path: list[Phase], who: str) -> bool:
-    """Whether real parts are the numbers that floats give, and imaginary parts the derivative."""
+    """Return whether real parts are as with floats, and imaginary parts the derivative."""
     force = PENDULUM.force(np.sin)
     for along in ((1.0, 0.0), (0.0, 1.0)):
 

@@ -1,7 +1,7 @@
-"""Implicit methods for any force: each step solves an equation for theta, by Newton's iteration.
+"""Implicit methods for any force: each step solves an equation for theta by Newton's iteration.
 
-The slope of the force is a difference quotient, so that they run on anybody's force.  A number of
-an array that has converged is left as it is, so that its bits do not depend on its neighbours.
+The slope of the force is a difference quotient.  An element of an array that has converged is not
+changed any more, so its bits do not depend on the others.
 """
 
 import math
@@ -14,16 +14,15 @@ from engine.models.model import Force, Phase
 from engine.models.modified_energy import implicit_midpoint_modified_energy
 from engine.models.spring import SpringParts
 
-TOLERANCE = 1e-12  # rad, and relative: of the last correction; the next would be far smaller
+TOLERANCE = 1e-12  # rad, and relative, of the last correction: the next would be far smaller
 MAX_ITERATIONS = 30  # a solution takes 3 to 7 below z = 0.9
-WIDTH = 2.0**-26  # rad, and relative: of the difference quotient: half the digits of a double
+WIDTH = 2.0**-26  # rad, and relative, of the difference quotient: half the digits of a double
 
 
 def implicit(share: float) -> Phases:
-    """Return the method whose force is that at a share of the step: 1/2 the middle, 1 the end.
+    """Return the method with the force at a share s of the step: 1/2 is the middle, 1 the end.
 
-    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), which has one solution where s z
-    < 1.
+    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.
     """
     for_numbers = _solving(share, abs, bool)
 
@@ -43,7 +42,7 @@ def implicit(share: float) -> Phases:
 
 
 def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], Any]) -> Phases:
-    """Return the phases for a kind of numbers, with their absolute value and "any of them"."""
+    """Return the method for numbers with these functions for |x| and "is any true"."""
 
     def solved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta, omega = phase
@@ -71,7 +70,7 @@ def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], A
 
 
 def implicit_midpoint_of_spring(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
-    """The implicit midpoint rule on a spring, solved for the middle in closed form."""
+    """The implicit midpoint rule on a spring, with a closed form for the middle."""
     z, w = phase
     while True:
         middle = parts.solve(z + h / 2 * w + h * h / 4 * parts.slow(z), h * h / 4)
@@ -92,9 +91,9 @@ BACKWARD_EULER = Method(
     other_names=("implicit Euler",),
     reference=f"{HAIRER}, I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
-    note="The mirror of explicit Euler: it loses energy at every h. Newton's iteration, to 1e-12 "
-    "rad, takes two evaluations each time, on a usual swing three times; beyond z = 1 there may be "
-    "several solutions.",
+    note="The mirror image of explicit Euler: it loses energy at every h. Newton's iteration to "
+    "1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 there may be several "
+    "solutions.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -114,9 +113,9 @@ IMPLICIT_MIDPOINT = Method(
     reference=f"{HAIRER}, II.1.1",
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
-    note="It keeps the energy of small swings exactly, at any h, with a phase that is wrong where "
-    "h is long. Newton's iteration, to 1e-12 rad, takes two evaluations each time; a spring is "
-    "solved in closed form, counted as one.",
+    note="It keeps the energy of small swings exactly at any h, but not their phase. Newton's "
+    "iteration to 1e-12 rad takes two evaluations a round; a spring has a closed form, counted as "
+    "one.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

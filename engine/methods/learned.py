@@ -1,11 +1,10 @@
-"""A pendulum learned from noisy measurements in four ways, and what structure each keeps.
+"""A pendulum learned from noisy measurements in four ways, which keep different structure.
 
 A field and a Hamiltonian are integrated by RK4; a map and a symplectic map are steps themselves.
-The first two are sums of the same 60 random features, each fitted to the same 600 measurements by
-one least-squares problem (tests/bench/learn.py); only in one of them the field is made of the
-slopes of one function, which it then conserves. The one that was measured had w0² = 9.81 s⁻²; what
-was learned is in units of w0, so it holds for any w0.  These methods take w0 from the model, and
-never ask for the force.
+Field and Hamiltonian are sums of the same 60 random features, fitted to the same 600 measurements
+by least squares (tests/bench/learn.py).  Only the Hamiltonian's field consists of the slopes of one
+function, which it conserves.  The measured pendulum had w0² = 9.81 s⁻²; everything is in units of
+w0, so it holds for any w0.  These methods take w0 from the model, and never the force.
 """
 
 import math
@@ -25,7 +24,7 @@ def _numbers(text: str) -> list[tuple[float, ...]]:
 
 @cache
 def _rows(coefficients: str) -> list[tuple[float, ...]]:
-    """Return for each feature its three numbers and its coefficients."""
+    """Return the three numbers of each feature with its coefficients."""
     pairs = zip(_numbers(FEATURES), _numbers(coefficients), strict=True)
     return [(*feature, *each) for feature, each in pairs]
 
@@ -73,7 +72,7 @@ def _learned(*, note: str, **fields: Any) -> Method:
         takes_parts=True,
         any_numbers=False,
         models=("pendulum",),
-        note=f"{note} Of this order in what was learned; counted are evaluations of that.",
+        note=f"{note} Order and evaluations are those of the learned functions.",
     )
 
 
@@ -111,7 +110,7 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     other_names=("learned Hamiltonian",),
     formula="RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
-    note="Its field is as inexact as the learned field, yet it conserves its H: the true energy is "
+    note="Its field is as inexact as the learned field, but it conserves its H: the true energy is "
     "off by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
     used="learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian "
     "Neural Network]",
@@ -119,10 +118,7 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
 
 
 def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
-    """The learned map.
-
-    It is right for w0 h = 0.1, and for other h as far as its increment is proportional to h.
-    """
+    """The learned map, for w0 h = 0.1; at other h its increment is taken as proportional to h."""
     w0 = model.w0
     tau = w0 * h
     rows = _rows(MAP)
@@ -152,7 +148,7 @@ def _module(numbers: str) -> Callable[[float], float]:
 def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
     """The learned symplectic map: half a kick by theta, a drift by omega, half a kick.
 
-    Symplectic whatever the functions are: gradient modules.
+    It is symplectic whatever the two functions are.
     """
     w0 = model.w0
     tau = w0 * h

@@ -1,7 +1,6 @@
 """Measured properties of a method: order, cost, symplecticity, reversibility, linear limit.
 
-All but the linear limit on the pendulum with w0² = 9.81 s⁻².  The tests hold the claims of METHODS
-against these; for a user's own method they are the claims.
+Tests compare them with the fields of METHODS; a user's own method has them as fields.
 """
 
 import cmath
@@ -19,12 +18,11 @@ from engine.models.pendulum import Pendulum
 
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
-LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a miss of the start
-# z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
+LARGE_H = 0.2  # s; with small steps a high order hides a change of area, or a miss of the start
 WIDEST_Z = 16
-RUNGS = 2048
-NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
-LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much
+RUNGS = 2048  # for each 1 in z: two thirds of the narrowest gap, BM6's
+NO_LIMIT_BELOW = 0.1  # z, below which some unstable methods grow by less than rounding
+LINEAR_ROUNDING = 3e-13  # of a linear step; the limit moves by up to a thousand times as much
 
 
 class Measured(NamedTuple):
@@ -39,12 +37,10 @@ class Measured(NamedTuple):
 
 
 def measured(phases: Phases) -> Measured:
-    """Measure them all.  Raises what the method raises."""
-    each, more = evaluations(phases)
+    """Measure all properties.  Raises what the method raises."""
     return Measured(
         order(phases),
-        each,
-        more,
+        *evaluations(phases),
         is_symplectic(phases),
         is_reversible(phases),
         linear_limit(phases),
@@ -52,93 +48,91 @@ def measured(phases: Phases) -> Measured:
 
 
 def after(phases: Phases, force: Force, phase: Phase, h: Any, steps: int) -> Phase:
-    """The phase after some steps."""
+    """Return the phase after some steps."""
     return next(islice(phases(force, phase, h), steps - 1, None))
 
 
 def order(phases: Phases) -> float | None:
-    """The slope of log theta error over log h, over half a period.
+    """Return the slope of log theta error over log h, over half a period.
 
-    Later, what a method loses in energy adds a power of its own, and RK4 reads 5 to 6.6.
+    Over longer times the loss of energy adds a power of its own, and RK4 reads 5 to 6.6.
     """
     exact = PENDULUM.exact(*START)
     force = PENDULUM.force()
     half = (exact.period or 1.0) / 2
-    found: list[tuple[float, float]] = []
+    points: list[tuple[float, float]] = []
     for power in range(2, 25):
         steps = round(2 ** (power / 2))
         largest = 0.0
         for step, phase in enumerate(islice(phases(force, START, half / steps), steps), 1):
             largest = max(largest, abs(phase[0] - exact.at(step * half / steps).theta))
-            if not largest < 0.1:  # rad, not yet proportional to a power of h; or nan
+            if not largest < 0.1:  # rad: not yet proportional to a power of h, or nan
                 break
         if largest <= 1e-14 * steps:  # rad: rounding
             break
         if largest < 0.1:
-            found.append((math.log(half / steps), math.log(largest)))
-    if len(found) < 3:
+            points.append((math.log(half / steps), math.log(largest)))
+    if len(points) < 3:
         return None
-    slope = linear_regression(*zip(*found[-6:], strict=True)).slope
-    if slope <= 0.5:
-        return None
-    return slope
+    slope = linear_regression(*zip(*points[-6:], strict=True)).slope
+    return slope if slope > 0.5 else None
 
 
 def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
-    """Force evaluations of a step, on average, and how many more a run has at its start."""
+    """Return the mean force evaluations of a step, and how many more a run has at its start."""
     count = 0
-    sine = PENDULUM.force()
+    force = PENDULUM.force()
 
     def counted(theta: Any) -> Any:
         nonlocal count
         count += 1
-        return sine(theta)
+        return force(theta)
 
-    counts = []
-    for n in (steps, 2 * steps):
-        count = 0
-        after(phases, counted, START, 0.05, n)
-        counts.append(count)
-    each = (counts[1] - counts[0]) / steps
-    return each, round(counts[0] - steps * each)
+    after(phases, counted, START, 0.05, steps)
+    first = count
+    count = 0
+    after(phases, counted, START, 0.05, 2 * steps)
+    mean = (count - first) / steps
+    return mean, round(first - steps * mean)
 
 
 def determinant(phases: Phases, phase: Phase, h: float) -> float:
-    """Return area after a step over area before, from the complex-step derivative of the step."""
+    """Return area after a step over area before, by complex-step derivatives."""
     tiny = 1e-100
     force = PENDULUM.force(cmath.sin)
     theta, omega = phase
-    a, c = after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1)
-    b, d = after(phases, force, (complex(theta), omega + 1j * tiny), h, 1)
-    (a, b), (c, d) = ((value.imag / tiny for value in row) for row in ((a, b), (c, d)))
+    ends = (
+        *after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1),
+        *after(phases, force, (complex(theta), omega + 1j * tiny), h, 1),
+    )
+    a, c, b, d = (end.imag / tiny for end in ends)
     return float(a * d - b * c)
 
 
 def is_symplectic(phases: Phases) -> bool:
-    """Whether a step keeps area wherever it starts."""
+    """Return whether a step keeps area wherever it starts."""
     starts = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
     return all(abs(determinant(phases, start, LARGE_H) - 1) < 1e-12 for start in starts)
 
 
 def is_reversible(phases: Phases) -> bool:
-    """Whether a swing that turns round after 10 s, and takes as long again, meets its start.
+    """Return whether swings that turn round after 10 s come back to their start, but for rounding.
 
-    But for the rounding of 100 steps of a dozen forces.
+    100 steps with a dozen forces each are rounded.
     """
     force = PENDULUM.force()
     for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0)):
         theta, omega = after(phases, force, start, LARGE_H, 50)
         theta, omega = after(phases, force, (theta, -omega), LARGE_H, 50)
-        if not max(abs(theta - start[0]), abs(omega + start[1])) < 1e-11:  # rad, rad/s; or nan
+        if not max(abs(theta - start[0]), abs(omega + start[1])) < 1e-11:  # or nan
             return False
     return True
 
 
 def linear_limit(phases: Phases) -> float:
-    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, inf
-    where all up to WIDEST_Z are.
+    """Return the first z beyond which small swings grow, to 1e-9; 0: at once, inf: not found.
 
-    Looked for upwards, as high-order methods are stable again beyond it, in islands.
+    The search goes upwards, as methods of high order have islands of stability beyond it.
     """
     if not is_stable(phases, NO_LIMIT_BELOW):
         return 0.0
@@ -158,7 +152,7 @@ def linear_limit(phases: Phases) -> float:
 
 
 def is_stable(phases: Phases, z: Any) -> Any:
-    """Whether both multipliers of a linear step lie in the closed unit disc, but for rounding.
+    """Return whether both eigenvalues of a linear step lie in the unit disc, but for rounding.
 
     `z` is a number or an array.  They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and
     Application of the z-Transform Method (1964).

@@ -12,48 +12,48 @@ from engine.models.modified_energy import ModifiedEnergy
 Phases = Callable[[Any, Phase, float], Iterator[Phase]]
 """(force, phase, h) -> the phases after one step of h [s], after two, and so on without end.
 
-Methods made for one model take its `parts` in place of the force.
+Methods made for one model take its `parts` instead of the force.
 """
 
 BoundPhases = Callable[[Phase, float], Iterator[Phase]]
-"""The same of a method on a model: (phase, h) -> phases."""
+"""(phase, h) -> phases, on one model."""
 
 
 HAIRER = "Hairer, Lubich & Wanner, Geometric Numerical Integration (2006)"
 
 COMPILABLE: dict[Phases, Callable[[], Phases]] = {}
-"""Of phases that Numba cannot compile, what returns others that it can, the same to the bit."""
+"""Phases that Numba cannot compile -> a function that returns equal ones that it can."""
 
 
 def compilable(phases: Phases) -> Phases:
-    """Return the phases as Numba can compile them."""
+    """Return equal phases that Numba can compile."""
     return COMPILABLE.get(phases, lambda: phases)()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Method:
-    """A method and what is claimed of it; tests/engine/methods measure every claim."""
+    """A method and its properties, which tests/engine/methods measure."""
 
     key: str  # in topics, JSON and on the command line
     label: str  # for people
-    letter: str  # its mark on charts, never colour alone
-    hue: int | None = None  # its own number on every palette; None: the next free one of the cast
+    letter: str  # its mark on charts
+    hue: int | None = None  # its number on every palette; None: the next free one of the cast
     phases: Phases
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period
     force_evaluations: int  # a step
-    # the last force of a step is the next one's first: a run needs one more than its steps
+    # the last force of a step is the first of the next, so a run needs one more at its start
     first_same_as_last: bool = False
     symplectic: bool = False  # the step's Jacobian has determinant 1
-    reversible: bool = False  # the step and omega -> -omega undo each other
+    reversible: bool = False  # a step with -omega undoes a step
     # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
     linear_limit: float | None = None
     other_names: tuple[str, ...] = ()
     reference: str
     used: str | None  # a program that uses it, with its page in brackets; None if we know of none
-    note: str = ""  # what else to know; also tested
+    note: str = ""  # also tested
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
-    takes_parts: bool = False  # `phases` takes the parts of its model, not any force
+    takes_parts: bool = False  # `phases` takes the parts of its model, not a force
     # (rates, phase, h) -> phases: the same method for first-order systems
     on_rates: Callable[[Rates, Phase, float], Iterator[Phase]] | None = None
     on_spring: Phases | None = None  # the same method with the parts of a spring
@@ -61,8 +61,7 @@ class Method:
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
     epsilon: float = 2.0**-53  # the relative error of a rounding
-    # its evaluations depend on the phase; `force_evaluations` is then an average
-    varies: bool = False
+    varies: bool = False  # evaluations depend on the phase; `force_evaluations` is a mean
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.key})"
@@ -73,7 +72,7 @@ class Method:
         return self.any_numbers and not self.takes_parts
 
     def on(self, model: Model, sin: Sine = math.sin) -> BoundPhases:
-        """Return the method's phases on a model, for the numbers of this sine."""
+        """Return the method's phases on a model, for numbers with this sine."""
         phases = self.phases_from_parts(model)
         if phases is not None:
             return partial(phases, model.parts(sin))
@@ -83,7 +82,7 @@ class Method:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All the names by which it can be asked for."""
+        """All names that users may type."""
         return (self.key, self.label, *self.other_names)
 
     def phases_from_parts(self, model: Model) -> Phases | None:
@@ -95,9 +94,9 @@ class Method:
         return None
 
     def step(self, force: Any, phase: Phase, h: float) -> Phase:
-        """The phase after one step of h [s]."""
+        """Return the phase after one step of h [s]."""
         return next(self.phases(force, phase, h))
 
     def evaluations(self, steps: int) -> int:
-        """How many times a run of so many steps evaluates the force; about, where that varies."""
+        """Return how often a run of so many steps evaluates the force, or about that."""
         return steps * self.force_evaluations + self.first_same_as_last

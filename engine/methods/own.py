@@ -1,7 +1,6 @@
 """A user's own method: a generator function from a file, measured, and guarded in use.
 
-It claims nothing: its properties are measured when the text is loaded.  Its code is executed like
-any Python. Another process receives the text and compiles it again.
+Its code is executed like any Python.  Other processes receive the text and compile it again.
 """
 
 import ast
@@ -23,18 +22,18 @@ MAX_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
 
 
 class OwnMethodError(Exception):
-    """What is wrong with a user's method; its text is a sentence for the user."""
+    """A user's method is wrong; the text is a sentence for the user."""
 
 
 class TooLongError(BaseException):
-    """A signal handler raises it in a user's code; no Exception, which that may catch.
+    """A user's code takes too long.  It is no Exception, which that code might catch.
 
-    Its text continues the sentence about a line: "takes more than 3 s for a step".
+    A signal handler raises it.  Its text continues a sentence: "takes more than 3 s for a step".
     """
 
 
 class UserCode:
-    """Where a user's code is, for the time limit."""
+    """What a user's code is doing, for the time limit."""
 
     is_running = False
     steps = 0  # begun; 0 while the file itself runs
@@ -42,15 +41,15 @@ class UserCode:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class OwnMethod(Method):
-    """A user's method.  The fields that other methods claim are measured."""
+    """A user's method.  Its fields are measured."""
 
     measured: "Measured"
-    source: str  # the whole text of the file
-    file: str  # its name, for sentences
+    source: str  # the text of the file
+    file: str  # its name
 
     @property
     def sha256(self) -> str:
-        """Of the source in UTF-8, in hexadecimal."""
+        """The digest of the source in UTF-8, in hexadecimal."""
         import hashlib  # slow
 
         return hashlib.sha256(self.source.encode()).hexdigest()
@@ -58,7 +57,7 @@ class OwnMethod(Method):
 
 @cache
 def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
-    """Return the method of a measured text, one for each text."""
+    """Return the method of a measured text, the same for equal texts."""
     phases = own_phases(source, key, file)
     name = key.replace("_", " ").strip()
     return OwnMethod(
@@ -81,7 +80,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: "Measure
     )
 
 
-# To another process it goes as its text: an executed function has no module.
+# Methods are pickled as text, because executed functions have no module.
 copyreg.pickle(
     OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured))
 )
@@ -89,7 +88,7 @@ copyreg.pickle(
 
 @cache
 def own_phases(source: str, name: str, file: str) -> Phases:
-    """The generator function of this name in a text, guarded.  Raises OwnMethodError."""
+    """Return the guarded generator function of this name in a text.  Raises OwnMethodError."""
     namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file, "print": _no_print}
     try:
         UserCode.is_running = True
@@ -134,7 +133,7 @@ def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
 
 
 def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
-    """Return the method wrapped to raise OwnMethodError if it does not yield phases."""
+    """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
     where = file
     if code := getattr(function, "__code__", None):
         where = f"{file}, line {code.co_firstlineno}"
@@ -148,7 +147,7 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
                 UserCode.steps += 1
                 if following is None:
                     following = _iterator(function(force, phase, h), f"{where}: {name}")
-                found = next(following)
+                value = next(following)
             except StopIteration:
                 break
             except (OwnMethodError, OverflowError, KeyboardInterrupt):
@@ -161,13 +160,13 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
                 UserCode.is_running = False
             if (
                 plain
-                and type(found) is tuple
-                and len(found) == 2
-                and type(found[0]) is type(found[1]) is float
+                and type(value) is tuple
+                and len(value) == 2
+                and type(value[0]) is type(value[1]) is float
             ):
-                yield found
+                yield value
             else:
-                yield _phase(found, phase, f"{where}: {name}")
+                yield _phase(value, phase, f"{where}: {name}")
         raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
 
     phases.__doc__ = function.__doc__
@@ -184,12 +183,12 @@ def _iterator(returned: Any, who: str) -> Iterator[Any]:
 _FORM = "write `while True:` with the formulas and `yield theta, omega`"
 
 
-def _phase(found: Any, start: Phase, who: str) -> Phase:
-    """The yielded value as a phase, in the kind of numbers of the start."""
+def _phase(value: Any, start: Phase, who: str) -> Phase:
+    """Return the yielded value as a phase, in the kind of numbers of the start."""
     try:
-        theta, omega = (_number(value, like) for value, like in zip(found, start, strict=True))
+        theta, omega = (_number(number, like) for number, like in zip(value, start, strict=True))
     except (TypeError, ValueError):
-        raise OwnMethodError(f"{who} yields {_short(found)}; {_FORM}.") from None
+        raise OwnMethodError(f"{who} yields {_short(value)}; {_FORM}.") from None
     return theta, omega
 
 
@@ -216,12 +215,12 @@ def _short(value: object) -> str:
 
 
 def _line(text: str) -> str:
-    """Return a text in one line, without the control characters that a terminal would obey."""
+    """Return a text in one line, without control characters."""
     return "".join(filter(str.isprintable, " ".join(text.split())))
 
 
 def _is_of_force(error: BaseException, force: Force) -> bool:
-    """Whether the force raised it, as the sine of infinity does: then the run has diverged."""
+    """Return whether the force raised it, as the sine of infinity does: the run has diverged."""
     if not isinstance(error, ValueError | ArithmeticError):
         return False
     return any(frame.f_code is getattr(force, "__code__", None) for frame, _ in _frames(error))
@@ -235,7 +234,7 @@ def _frames(error: BaseException) -> Iterator[tuple[Any, int]]:
 
 
 def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
-    """Return the error with the last line of the user's file in its traceback, else `where`."""
+    """Return the error with the user's line in its traceback, or else with `where`."""
     lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
     if lines:
         where = f"{file}, line {lines[-1]}: `{_line(source.splitlines()[lines[-1] - 1])[:60]}`"

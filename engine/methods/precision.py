@@ -1,7 +1,4 @@
-"""Verlet in other numbers than doubles: what rounding does, and how little it takes to undo it.
-
-Both are velocity Verlet, unchanged; only the numbers that it is given are others.
-"""
+"""Velocity Verlet in other numbers than doubles, to show what rounding does."""
 
 import struct
 from collections.abc import Iterator
@@ -15,14 +12,14 @@ from engine.models.model import Force, Phase
 class Float32(float):
     """A number of 32 bits, IEEE binary32.
 
-    A sum or product of two, rounded to a double and then to 32 bits, is the same as rounded once: a
+    A sum or product rounded to a double and then to 32 bits is the same as rounded once, because a
     double has more than twice the digits.  Figueroa, ACM SIGNUM Newsletter 30 (1995) 21.
     """
 
     __slots__ = ()
 
     def __new__(cls, value: float) -> "Float32":
-        """Rounded to 32 bits.  Raises OverflowError beyond 3.4e38."""
+        """Round to 32 bits.  Raises OverflowError beyond 3.4e38."""
         return super().__new__(cls, _BINARY32.unpack(_BINARY32.pack(value))[0])
 
     def __add__(self, other: float) -> "Float32":
@@ -38,7 +35,7 @@ _BINARY32 = struct.Struct("<f")
 
 
 class Compensated(float):
-    """A double that keeps what its last addition lost, and gives it to the next.
+    """A double that keeps what its last addition lost, and adds it in the next.
 
     Compensated summation: Kahan, Comm. ACM 8 (1965) 40; Hairer, Lubich & Wanner (2006), VIII.5.
     """
@@ -58,10 +55,7 @@ class Compensated(float):
 
 
 def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Velocity Verlet with all numbers in 32 bits; the sine is rounded from a double.
-
-    It yields doubles, which hold the 32 bits exactly.
-    """
+    """Velocity Verlet with all numbers in 32 bits; the sine is rounded from a double."""
 
     def rounded(theta: Any) -> Float32:
         return Float32(force(float(theta)))
@@ -72,11 +66,7 @@ def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def verlet_compensated(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Velocity Verlet that keeps what its additions round off.
-
-    It yields Compensated numbers, which are doubles: what is lost stays in the phase, so a run may
-    be cut anywhere.
-    """
+    """Velocity Verlet with compensated sums.  The compensation is a part of the phase."""
     theta, omega = (x if isinstance(x, Compensated) else Compensated(x) for x in phase)
     return velocity_verlet(force, (theta, omega), h)
 
@@ -120,7 +110,7 @@ VERLET_COMPENSATED = _verlet(
     numbers="each sum keeps what it rounds off for the next",
     keeps_area=True,
     used=None,
-    note="It takes three additions more for each sum, and no more memory than two numbers.",
+    note="Each sum takes three more additions.",
 )
 
 FAMILY = (VERLET_FLOAT32, VERLET_COMPENSATED)

@@ -1,4 +1,4 @@
-"""The classical Runge-Kutta method."""
+"""Explicit Runge-Kutta methods."""
 
 import math
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from engine.models.model import Force, Phase, Rates
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """The classical Runge-Kutta method.
 
-    det - 1 ~ h⁶: it loses a little area on most of the plane, and gains some near upright.
+    det - 1 ~ h⁶: area shrinks a little on most of the plane, and grows near upright.
     """
     theta, omega = phase
     half = h / 2

@@ -1,7 +1,6 @@
-"""Methods as data: kicks and drifts in turn, of order 4 and 6.
+"""Splittings of order 4 and 6: kicks and drifts in turn.
 
-Made of kicks and drifts they are symplectic, and the same forwards as backwards they are
-reversible.
+Kicks and drifts make them symplectic; the same coefficients backwards make them reversible.
 """
 
 from collections.abc import Iterator
@@ -12,10 +11,10 @@ from engine.models.model import Force, Phase
 
 
 def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
-    """The method of kicks and drifts by these fractions of h in turn, from kick to kick.
+    """Return the method of kicks and drifts by these fractions of h in turn, from kick to kick.
 
     There is one kick more than there are drifts, and both add up to 1.  The last force of a step is
-    the next one's first.  Hairer, Lubich & Wanner (2006), II.5.
+    the first of the next.  Hairer, Lubich & Wanner (2006), II.5.
     """
     first = kicks[0]
     following = kicks[1:]
@@ -35,7 +34,7 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
             yield theta, omega
 
     def without_list(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        """The same: Numba never frees a list that a generator holds (numba/numba#1278)."""
+        """Do the same for Numba, which never frees a list in a generator (numba/numba#1278)."""
         theta, omega = phase
         a = force(theta)
         while True:
@@ -51,13 +50,16 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
 
 
 def composition(*weights: float) -> Phases:
-    """Velocity Verlet with these fractions of h in turn.  Hairer, Lubich & Wanner (2006), II.4."""
+    """Return velocity Verlet with these fractions of h in turn.
+
+    Hairer, Lubich & Wanner (2006), II.4.
+    """
     inner = (before / 2 + after / 2 for before, after in pairwise(weights))
     return splitting((weights[0] / 2, *inner, weights[-1] / 2), weights)
 
 
 def mirrored(half: tuple[float, ...], odd: bool) -> tuple[float, ...]:
-    """These coefficients and then the same backwards, of an odd number the last one once."""
+    """Return coefficients and then the same backwards; if `odd`, without repeating the last."""
     return (*half, *half[::-1][odd:])
 
 
@@ -79,9 +81,9 @@ FOREST_RUTH = Method(
     other_names=("Yoshida 4", "triple jump"),
     reference="Forest & Ruth, Physica D 43 (1990) 105",
     used="orbits in galaxies: gala, Ruth4Integrator [gala.adrian.pw, Ruth4Integrator]",
-    note="A warning: its middle step goes backwards, by 1.7 h. Its limit is the smallest of the "
-    "symplectic methods, and at 20 evaluations a second its energy error is hardly less than "
-    "Verlet's. Three evaluations, not five, and energy is not exact.",
+    note="A warning: its middle step goes backwards by 1.7 h. Its limit is the smallest of the "
+    "symplectic methods, and at 20 evaluations a second its energy error is hardly smaller than "
+    "Verlet's.",
 )
 
 BLANES_MOAN_4 = Method(

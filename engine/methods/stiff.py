@@ -32,7 +32,7 @@ def respa(inner: Phases, n: int) -> Phases:
 def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
 
-    Stable at any h because it damps whatever it does not resolve, and what it does.
+    It is stable at any h because it damps every motion.
     """
     z, w = phase
     while True:
@@ -42,10 +42,7 @@ def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def mean_field_splitting(parts: MeanField, phase: Phase, h: float) -> Iterator[Phase]:
-    """Half a drift; the exact flow of all else, in which theta stands still; half a drift.
-
-    |s| stays, at any nu h.
-    """
+    """Half a drift; the exact flow of the rest, with theta fixed; half a drift.  |s| stays."""
     while True:
         phase = strang(parts, phase, h)
         yield phase
@@ -68,7 +65,7 @@ RESPA = Method(
     reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
     used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, "
     "MTSIntegrator]",
-    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are "
+    note="Its kicks resonate if h is a multiple of the fast motion's period. Counted are "
     "evaluations of its parts.",
     models=("spring",),
     takes_parts=True,
@@ -106,7 +103,7 @@ MEAN_FIELD_SPLITTING = Method(
     other_names=("Strang splitting",),
     reference=f"{HAIRER}, II.5",
     used=None,
-    note="Counted are its kicks, of which each takes the two levels exactly over the whole step.",
+    note="Counted are its kicks, each of which moves the two levels exactly over the whole step.",
     models=("mean_field",),
     takes_parts=True,
     any_numbers=False,
