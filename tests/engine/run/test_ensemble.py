@@ -41,13 +41,6 @@ def path(method, h, steps, fast, which=slice(None)):
     return np.array([np.array(phase) for _, phase in stops])
 
 
-@each_way
-def test_no_swing_depends_on_the_others(fast):
-    together = path(VELOCITY_VERLET, 0.3, 50, fast)
-    for part in (slice(0, 1), slice(5, 30), slice(30, 37)):
-        assert np.array_equal(path(VELOCITY_VERLET, 0.3, 50, fast, part), together[:, :, part])
-
-
 @needs_numba
 def test_compiled_steps_are_freed():
     """Numba 0.68 keeps all that a compiled generator yields: 4 pages a step of these."""

@@ -117,7 +117,8 @@ def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped"]
+    "name",
+    ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped", "stiff-slow"],
 )
 def test_verdicts_and_milestones_do_not_depend_on_the_samples_or_the_loops(name: str) -> None:
     scene, uneven = SCENES[name], random.Random(1)
