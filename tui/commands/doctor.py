@@ -52,8 +52,7 @@ def _findings() -> Iterator[tuple[str, str, str]]:
     yield "encoding", encoding, "" if is_utf8(encoding) else advice
     yield "colours", *colour(os.environ)
     yield "recordings", *folder(library.folder())
-    system = f"{platform.python_version()}, {platform.system()} {platform.machine()}"
-    yield "python", system, ""
+    yield "python", f"{platform.python_version()}, {platform.system()} {platform.machine()}", ""
     yield "versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES), ""
     try:
         yield "numba", version("numba"), ""

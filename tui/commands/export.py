@@ -30,8 +30,7 @@ Rows = Iterator[tuple[object, ...]]
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
     add = parser.add_argument
-    form = "the default is %(default)s"
-    add("--format", choices=("csv", "parquet"), default="csv", help=form)
+    add("--format", choices=("csv", "parquet"), default="csv", help="the default is %(default)s")
     where = "write to OUT instead of stdout"
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help=where)
     add("--force", action="store_true", help="overwrite OUT")

@@ -326,8 +326,7 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
             text += f", {fields['kt_per_ns_per_atom']:+.2e} kT per ns"
         lines.append(_line("per atom", text))
     error = f"{fields['energy_error']:+.2e} at the end, {fields['max_energy_error']:.2e} at most"
-    relative = f"{error}, relative to {fields['scale']:.6g}{energy_unit}"
-    lines.append(_line("energy error", relative))
+    lines.append(_line("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     if is_of_first and fields["max_energy_error"] >= 1 and fields["verdict"] == "bounded":
         hint = "the energies lie around zero; --scale std compares errors with their spread"

@@ -221,7 +221,7 @@ def test_ctrl_c_keeps_the_rows_that_are_done(part):
     short = ("--h", "0.01:0.02:2000", "--time", "2", "-o", str(part.with_suffix("")))
     code, _, err = stopped(*short, number=signal.SIGINT, part=part, bytes=2000)
     assert code == 130
-    assert "--resume goes on" in err
+    assert "--resume continues" in err
     assert part.read_bytes().endswith(b"\n")
     part.unlink()
     endless = ("--h", "0.05,0.1", "--time", "1e8", "--no-compiled", *short[4:])

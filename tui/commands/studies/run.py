@@ -1,8 +1,8 @@
-"""One run, or a list of runs: every combination of the scenes' numbers, computed anywhere.
+"""One run, or a list of runs with every combination of the scene's numbers.
 
-With `-o FILE.csv` the rows of a list are appended to FILE.csv.partial, which gets its name at the
-end.  Each row begins with all numbers of its scene and the time, so a file that is resumed shows
-which arguments it belongs to.
+With `-o FILE.csv`, rows of a list are appended to FILE.csv.partial, which is renamed at the end.
+Each row begins with all numbers of its scene and the time, so that --resume can check that the
+file belongs to its arguments.
 """
 
 import csv
@@ -53,7 +53,7 @@ from tui.words.insight import irregular, milestone_insight, sentence
 from tui.words.numbers import file_size, z_text
 
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
-MAX_POINTS = 20_000  # of a figure, from which it takes the largest
+MAX_POINTS = 20_000  # samples for a figure
 
 Row = dict[str, Any]
 
@@ -84,7 +84,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
 
 
 def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
-    """Return the lockstep of a run, in machine code where that pays."""
+    """Return the lockstep of a run, compiled if that pays."""
     if not is_compiled:
         return Lockstep(scene, judged=True)
     tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
@@ -92,16 +92,16 @@ def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockste
 
 
 def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: bool) -> list[Sample]:
-    """Run to the end, or until a signal; return the last sample, or for a figure all of them."""
+    """Run to the end or until a signal; return the last sample, or for a figure all of them."""
     scene = lockstep.scene
-    batch = MAX_BATCH
-    if options.method:  # the user's own may be slow, and Ctrl+C waits
-        batch = 16
-    every = options.sample_every or batch
     recorder: Any = nullcontext()
+    every = MAX_BATCH
+    if options.method:  # a method of the user's own may be slow, and Ctrl+C waits for a batch
+        every = 16
     if options.record:
-        every = options.sample_every or min(batch, max(1, round(SAMPLE_EVERY / scene.h)))
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
+        every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
+    every = options.sample_every or every
     if is_figure:
         every = min(every, math.ceil(steps / MAX_POINTS))
     samples: list[Sample] = []
@@ -117,67 +117,66 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
-    """Return the results by method, as in --json.
-
-    Where evaluations vary they are counted, by running again, unless the run was interrupted.
-    """
-    exact = scene.exact().at(sample.t).theta
-    each = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
-    return [_row(scene, sample.step, exact, is_whole, *one) for one in each]
-
-
-def _row(
-    scene: Scene,
-    steps: int,
-    exact: float,
-    is_whole: bool,
-    method: Method,
-    reading: Reading,
-    judgement: Judgement,
-) -> Row:
+    """Return the results of each method, as in --json."""
     model = scene.equations
-    error = abs(model.theta_error(reading.theta, exact))
-    if reading.diverged_at is not None:  # no theta to compare
-        steps = round(reading.diverged_at / scene.h)
-        error = math.nan
-    evaluations = method.evaluations(steps)
-    if method.varies and reading.diverged_at is None and steps and is_whole:
-        start = model.start(scene.theta, scene.omega)
-        evaluations = loops.count_evaluations(method, model, start, scene.h, steps)
-    row = {"method": method.key, **fields_of(reading, *NUMBERS)}
-    if not model.energy_error.conserved:
-        row["log_energy_error"] = reading.energy_error
-    optional = fields_of(reading, *OPTIONAL)
-    row |= {name: value for name, value in optional.items() if value is not None}
-    row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
-    return row | {
-        "theta_error": None if math.isnan(error) else error,
-        "drift_per_second": judgement.slope,
-        "verdict": judgement.verdict,
-        "progress": judgement.progress and judgement.progress._asdict(),
-        "lyapunov_per_second": judgement.lyapunov,
-        "force_evaluations": evaluations,
-        "diverged_at": reading.diverged_at,
-    }
+    exact = scene.exact().at(sample.t).theta
+    rows = []
+    methods = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
+    for method, reading, judgement in methods:
+        row = {"method": method.key, **fields_of(reading, *NUMBERS)}
+        if not model.energy_error.conserved:
+            row["log_energy_error"] = reading.energy_error
+        optional = fields_of(reading, *OPTIONAL)
+        row |= {name: value for name, value in optional.items() if value is not None}
+        row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
+        theta_error = math.nan
+        if reading.diverged_at is None:
+            theta_error = abs(model.theta_error(reading.theta, exact))
+        rows.append(
+            row
+            | {
+                "theta_error": None if math.isnan(theta_error) else theta_error,
+                "drift_per_second": judgement.slope,
+                "verdict": judgement.verdict,
+                "progress": judgement.progress and judgement.progress._asdict(),
+                "lyapunov_per_second": judgement.lyapunov,
+                "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
+                "diverged_at": reading.diverged_at,
+            }
+        )
+    return rows
+
+
+def _evaluations(
+    scene: Scene, method: Method, reading: Reading, steps: int, is_whole: bool
+) -> float:
+    """Return the force evaluations; if they vary, count them by repeating a whole run."""
+    if reading.diverged_at is not None:
+        return method.evaluations(round(reading.diverged_at / scene.h))
+    if method.varies and steps and is_whole:
+        start = scene.equations.start(scene.theta, scene.omega)
+        return loops.count_evaluations(method, scene.equations, start, scene.h, steps)
+    return method.evaluations(steps)
 
 
 def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
-    found = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
+    verdicts = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
     failure = gate and gate({row["method"]: row for row in rows})
-    return Check(name, found, failure or None)
+    return Check(name, verdicts, failure or None)
 
 
 def _report(
     scene: Scene, sample: Sample, lockstep: Lockstep, rows: Sequence[Row], wall_seconds: float
 ) -> Report:
     notes = [
-        sentence(milestone_insight(each, scene.equations.energy_error.conserved))
-        for each in lockstep.milestones
-        if each.kind in ("over the top", "errors cross")
+        sentence(milestone_insight(milestone, scene.equations.energy_error.conserved))
+        for milestone in lockstep.milestones
+        if milestone.kind in ("over the top", "errors cross")
     ]
     for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
-        if judgement.lyapunov and (found := irregular(method, judgement, 0.0)):
-            notes.append(sentence(found))
+        insight = irregular(method, judgement, 0.0)
+        if judgement.lyapunov and insight:
+            notes.append(sentence(insight))
     return Report(
         name="run",
         title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
@@ -197,7 +196,7 @@ def _report(
 
 
 def for_json(rows: Sequence[Row]) -> list[Row]:
-    """Return rows for JSON, where only an irregular orbit has a Lyapunov number."""
+    """Return rows for JSON, in which only irregular orbits have a Lyapunov number."""
     lyapunov = "lyapunov_per_second"
     return [{name: row[name] for name in row if name != lyapunov or row[name]} for row in rows]
 
@@ -220,7 +219,7 @@ def columns_of(scene: Scene, *trend: Column) -> list[Column]:
 
 
 def verdict_of(row: Row) -> str:
-    """Return the verdict, how much of the evidence there is, or when the method failed."""
+    """Return the verdict with the progress towards one, or when the method failed."""
     if row["diverged_at"] is not None:
         return f"failed at {row['diverged_at']:g} s"
     if row["progress"] is None:
@@ -234,12 +233,12 @@ class Task:
 
     scene: Scene
     time: float  # s
-    expected_steps: int  # of all runs together, which decides whether compiling pays
+    expected_steps: int  # of all runs together, to decide whether compiling pays
     is_compiled: bool
 
     @property
     def start(self) -> Row:
-        """The fields that its rows begin with."""
+        """The fields with which its rows begin."""
         numbers = {_column(name): value for name, value in self.scene.numbers.items()}
         return {"model": self.scene.model, **numbers, "time": self.time}
 
@@ -257,7 +256,7 @@ def _column(name: str) -> str:
 
 def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
     """Yield the runs of a list, in order."""
-    steps = 0  # loops are compiled for one model
+    steps = 0  # compiled loops cannot be shared by runs with other parameters
     if scenes.axes.keys() <= {"theta", "omega", "h"}:
         corners = scenes.corners()
         total = sum(steps_for(scene, options.time) for scene in corners)
@@ -277,13 +276,13 @@ def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
 
 
 def partial_of(path: Path) -> Path:
-    """Return the name of a file of rows until all of them are there."""
+    """Return the name of the file until all its rows are there."""
     return path.with_name(f"{path.name}.partial")
 
 
 @contextmanager
 def _opened(options: Namespace) -> Iterator[IO[bytes] | None]:
-    """Yield FILE.partial for rows of CSV.  Raises UserError if it is taken."""
+    """Yield FILE.csv.partial, or None without one.  Raises UserError if it is taken."""
     path: Path | None = options.output
     if path is None or path.suffix.lower() != ".csv" or is_stream(path):
         yield None
@@ -294,21 +293,22 @@ def _opened(options: Namespace) -> Iterator[IO[bytes] | None]:
         raise UserError(f"{printable(str(part))} is being written by another process.", Exit.DISK)
     if is_there and not (options.resume or options.force):
         raise UserError(
-            f"{printable(str(part))} is there: --resume goes on with it, --force starts anew.",
+            f"{printable(str(part))} exists: --resume continues it, --force starts again.",
             Exit.DISK,
         )
-    mode = "w+b"
-    if is_there and options.resume:
-        mode = "r+b"
-    with writing(part), part.open(mode) as file:
+    with writing(part), part.open("a+b") as file:
         hold(file)
+        file.seek(0)
+        if not options.resume:
+            file.truncate()
         yield file
 
 
 def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
-    """Return how many whole runs a file has, and cut it after them.
+    """Return the number of whole runs in a file, and cut it after them.
 
-    Raises UserError if its rows are not of these tasks, or if the last run gives other numbers now.
+    Raises UserError if its rows belong to other tasks, or if repeating the last run gives other
+    numbers.
     """
     name = printable(file.name)
     head = file.readline()
@@ -320,9 +320,9 @@ def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
         if not lines[-1].endswith(b"\n"):
             break
         for method, line in zip(task.scene.cast, lines, strict=True):
-            begins = ",".join(map(str, (*task.start.values(), method.key, "")))
-            if not line.startswith(begins.encode()):
-                raise UserError(f"{name} was begun with other arguments; {begins} is missing.")
+            start = ",".join(map(str, (*task.start.values(), method.key, "")))
+            if not line.startswith(start.encode()):
+                raise UserError(f"{name} was begun with other arguments; {start} is missing.")
         end = file.tell()
         done += 1
         last = task, b"".join(lines)
@@ -330,8 +330,8 @@ def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
         raise UserError(f"{name} was begun with other arguments; it has more runs.")
     if last is not None and _text_of(last[0].rows(), with_head=True) != head + last[1]:
         raise UserError(
-            f"the last run in {name} gives other numbers when it is repeated, so its method, this"
-            " machine or pendu-tui has changed; start anew with --force."
+            f"repeating the last run in {name} gives other numbers, so its method, this machine or "
+            "pendu-tui has changed; start again with --force."
         )
     file.seek(end)
     file.truncate()
@@ -347,20 +347,18 @@ def _check(options: Namespace, is_figure: bool) -> None:
     if options.resume and not is_csv:
         raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
     if options.resume and options.fail_if:
-        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")
+        raise UserError("--fail-if cannot check the earlier runs; leave out --resume or --fail-if.")
 
 
 def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
-    """Run every combination, and print the rows, or keep them in the file as they come."""
+    """Run every combination, and print the rows or append them to the file as they come."""
     _check(options, is_figure)
     runs = len(scenes)
     kept: list[Row] = []
     checks: list[Check] = []
-    ended: UserError | None = None
+    ended = None
     with _opened(options) as file:
-        done = 0
-        if file:
-            done = _resumed(file, _tasks(scenes, options), runs)
+        done = _resumed(file, _tasks(scenes, options), runs) if file else 0
         rest = islice(_tasks(scenes, options), done, None)
         try:
             with workers_of(options) as workers, progress(f"{runs:,} runs") as show:
@@ -387,14 +385,11 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
         return conclude(options, f"pendu-tui run, {runs} runs", checks)
     if not done:
         raise ended
-    _warn_of(ended, f"{done} of {runs} runs are done", None if kept else options.output)
+    where = ""
+    if not kept:
+        where = f" and kept in {printable(str(partial_of(options.output)))}; --resume continues"
+    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done{where}.")
     return ended.code
-
-
-def _warn_of(ended: UserError, what: str, path: Path | None) -> None:
-    if path:
-        what += f" and kept in {printable(str(partial_of(path)))}; --resume goes on"
-    warn(f"{str(ended).rstrip('.')}: {what}.")
 
 
 def _computed(task: Task) -> tuple[Task, list[Row]]:

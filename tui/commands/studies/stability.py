@@ -1,14 +1,10 @@
-"""What the stability command computes, and its reports: theory next to measurement, and the map.
-
-With --section, a method's portrait and the orbits of the start.
-"""
+"""The stability command's limits, its map, and the portrait that --section draws."""
 
 import math
 import os
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -59,23 +55,22 @@ from tui.words.orbit import cells as orbit_cells
 
 MAX_POINTS = 10**8  # of a section: 1.6 GB in memory
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
-CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 LINEAR = """\
-This scene is the linear oscillator itself: these limits hold at every amplitude.
-Swings are lost at other steps by a pendulum only: pendu-tui stability drift"""
+This scene is the linear oscillator itself, and these limits hold at every amplitude.
+A pendulum's depend on the amplitude: pendu-tui stability drift"""
 
 Computed = tuple[Grid, Cells]
 
 
 def grids_of(scene: Scene, options: Namespace, is_map: bool) -> list[Grid]:
-    """Return the grids of the table and the map, each if it is wanted.
+    """Return the grids of the table and the map, as far as the options ask for them.
 
-    Raises UserError for what is not about this scene, or out of range.
+    Raises UserError for options that do not suit the scene or are out of range.
     """
     lists = options.theta_values or options.z_values
     if not scene.equations.turns and (options.map or options.csv or options.output or lists):
         raise UserError(
-            "limits of the linear oscillator hold everywhere; leave out --map, --csv, -o, "
+            "limits of the linear oscillator hold at every amplitude; leave out --map, --csv, -o, "
             "--theta-values and --z-values."
         )
     _check("amplitude", options.theta_values or (), (0, math.pi))
@@ -102,9 +97,9 @@ def _check(what: str, numbers: Sequence[float], limits: tuple[float, float]) -> 
 
 
 def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], UserError | None]:
-    """Return the grids with their cells, and why the last of them has unknown ones.
+    """Return the grids with their cells, and what interrupted the last of them, if anything.
 
-    Raises UserError if all its cells are unknown.
+    Raises the interruption if none of its cells were computed.
     """
     computed = []
     with workers_of(options) as workers:
@@ -128,13 +123,13 @@ def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], 
 
 
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
-    """Return the report of a table's grid and a map's: neither for the linear oscillator."""
+    """Return the report on the grids of the table and the map, if there are any."""
     linear = [_linear(scene, method) for method in scene.cast]
     notes: list[Any] = [LINEAR]
     rows: list[Row] = []
     if computed:
         rows = table(scene, *computed[0])
-    if not is_whole and len(computed) == 1:  # beyond the last z that was computed
+    if not is_whole and len(computed) == 1:  # the others may fail at a z not yet computed
         rows = [row for row in rows if row.failure]
     pendulum = [_row_fields(row) for row in rows]
     records: Iterable[dict[str, Any]] = pendulum
@@ -207,16 +202,24 @@ def _cell(cell: Any) -> dict[str, Any] | None:
 
 
 def _cell_fields(cells: Any) -> dict[str, Any]:
-    """Return CELL_FIELDS of cells, each in their shape, and None where they are unknown."""
+    """Return the fields of cells as lists of their shape, with None for unknown cells."""
     known = cells["fate"] != UNKNOWN
     fates = np.array(FATES, object)[np.where(known, cells["fate"], 0)]
-    columns = zip(CELL_FIELDS, (fates, cells["steps"], cells["error"]), strict=True)
-    return {name: np.where(known, column, np.array(None)).tolist() for name, column in columns}
+
+    def listed(values: Any) -> Any:
+        return np.where(known, values, np.array(None)).tolist()
+
+    return {
+        "fate": listed(fates),
+        "steps_survived": listed(cells["steps"]),
+        "max_energy_error": listed(cells["error"]),
+    }
 
 
 def _map_fields(grid: Grid, cells: Cells) -> dict[str, Any]:
     methods = [
-        {"method": method.key, **_cell_fields(cells[:, m])} for m, method in enumerate(grid.methods)
+        {"method": method.key, **_cell_fields(cells[:, index])}
+        for index, method in enumerate(grid.methods)
     ]
     return {"z": grid.z.tolist(), "theta": grid.theta.tolist(), "methods": methods}
 
@@ -230,12 +233,12 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    yield "\nPendulum: the z from which a swing is lost in so many steps; more steps lower it."
+    yield "\nPendulum: the z from which a swing is lost within so many steps; more steps lower it."
     yield LOST.replace("\n", " ")
-    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
+    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
     swing = amplitude(scene)
     if swing is None:
-        yield "The start itself does not swing, so it has no row."
+        yield "The scene's own start does not swing, so it has no row."
     elif not math.isclose(swing, scene.theta):
         start = f"{math.degrees(scene.theta):.4g} deg"
         if scene.omega:
@@ -257,11 +260,10 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
 
 
 def write_map(options: Namespace, grid: Grid, cells: Cells) -> None:
-    """Write a map to a file for numpy.load.
+    """Write a map for numpy.load: arrays z, theta [rad], methods, steps, fates and cells.
 
-    Arrays `z`, `theta` [rad], `methods`, `steps`, `fates`, and `cells`, of axes (z, methods, theta)
-    and fields steps (survived), error (the largest relative energy error) and fate (an index into
-    `fates`, or 255: unknown).
+    Cells have the axes (z, methods, theta) and the fields steps (survived), error (the largest
+    relative energy error) and fate (an index into fates, or 255 if unknown).
     """
     keys = [method.key for method in grid.methods]
     arrays: Any = {"z": grid.z, "theta": grid.theta, "methods": keys}
@@ -294,12 +296,12 @@ def show_section(scene: Scene, options: Namespace, is_figure: bool) -> None:
 
 def _orbits(scene: Scene, method: Method, options: Namespace, viewport: Viewport) -> list[Points]:
     orbits: list[Points] = []
-    followed = partial(iterate, method, scene.equations, scene.h, steps=options.steps)
+    iterated = partial(iterate, method, scene.equations, scene.h, steps=options.steps)
     done = 0
     with workers_of(options) as workers, progress("section") as show:
-        for piece in workers.map(followed, batches(starts(viewport, options.starts))):
-            orbits.append(piece)
-            done += piece[0].shape[1]
+        for batch in workers.map(iterated, batches(starts(viewport, options.starts))):
+            orbits.append(batch)
+            done += batch[0].shape[1]
             show(done, options.starts)
     return orbits
 
@@ -311,8 +313,8 @@ def _portrait(scene: Scene, method: Method, options: Namespace) -> list[Text]:
     width = max(console().width, 40)
     viewport = Viewport.portrait(width, width * 5 // 16, scene)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
-    for piece in _orbits(scene, method, options, viewport):
-        section.add(piece)
+    for points in _orbits(scene, method, options, viewport):
+        section.add(points)
     drawn = section.picture(orbit(method, model, scene.h, start, options.steps), start)
     return lines_of(drawn, PALETTES[fitting_theme(os.environ)])
 
@@ -321,21 +323,18 @@ def _section(scene: Scene, method: Method, title: str, steps: int, picture: list
     model = scene.equations
     start = State(scene.theta, scene.omega)
     kinds = {
-        each: kind_of(each, model, scene.h, orbit(each, model, scene.h, start, steps))
-        for each in scene.cast
+        member: kind_of(member, model, scene.h, orbit(member, model, scene.h, start, steps))
+        for member in scene.cast
     }
-    columns = [
-        Column(head, itemgetter(at), right=at > 1) for at, head in enumerate(("method", *HEADS))
-    ]
+    columns = [Column(head, at, right=at > 1) for at, head in enumerate(("method", *HEADS))]
+    rows = [(member.label, *orbit_cells(member, kind)) for member, kind in kinds.items()]
     return Report(
         name="section",
         title=title,
         notes=[
             *picture,
             f"\n{scene_line(scene, 'h', 'z')}, {steps} steps",
-            Table(
-                columns, [(each.label, *orbit_cells(each, kind)) for each, kind in kinds.items()]
-            ),
+            Table(columns, rows),
             f"{steps} steps cannot tell a Lyapunov number below about {least_lyapunov(steps):.2g} "
             "from 0.",
             f"\n{method.label}: {sentence(method, kinds[method])}",
@@ -344,7 +343,7 @@ def _section(scene: Scene, method: Method, title: str, steps: int, picture: list
             "scene": scene.fields(),
             "z": scene.z,
             "steps": steps,
-            "orbits": [_orbit_fields(each, kind) for each, kind in kinds.items()],
+            "orbits": [_orbit_fields(member, kind) for member, kind in kinds.items()],
         },
     )
 
