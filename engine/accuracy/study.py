@@ -155,20 +155,18 @@ class Study:
         An error below the floor of so many roundings is rounding unless it falls with h.  Only then
         `refines` is called, for that is slow.
         """
-        floors = [
-            floor * math.sqrt(roundings)
-            for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
-        ]
-        found: list[Flaw | None] = [None, None, None]
-        below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
+        floors = (self._theta_floor, self._energy_floor, self._theta_floor)
+        root = math.sqrt(roundings)
+        flaws: list[Flaw | None] = [None, None, None]
+        below = [error <= floor * root for error, floor in zip(errors, floors, strict=True)]
         if any(below):
             for kind, refined in enumerate(refines()):
                 if below[kind] and not refined:
-                    found[kind] = "rounding"
+                    flaws[kind] = "rounding"
         for kind, size in enumerate(self.sizes.values()):
             if errors[kind] >= size:
-                found[kind] = "lost"
-        return Flaws(*found)
+                flaws[kind] = "lost"
+        return Flaws(*flaws)
 
     def _evaluations(self, method: Method, steps: int) -> int:
         """Return the force evaluations of so many steps, extrapolated from the first 2000."""

@@ -29,19 +29,29 @@ def _rows(coefficients: str) -> list[tuple[float, ...]]:
     return [(*feature, *each) for feature, each in pairs]
 
 
-@lru_cache(maxsize=16)
-def learned_field(w0_squared: float) -> Rates:
-    """Return (theta, omega) -> (theta', omega') with a sum for each."""
-    w0 = math.sqrt(w0_squared)
-    rows = _rows(FIELD)
+def _two_sums(coefficients: str, w0: float) -> Callable[[float, float], tuple[float, float]]:
+    """Return (theta, omega) -> two sums of features."""
+    rows = _rows(coefficients)
 
-    def field(phase: Phase) -> Phase:
-        theta, omega = phase
+    def sums(theta: float, omega: float) -> tuple[float, float]:
         drift = kick = 0.0
         for a, b, c, to_theta, to_omega in rows:
             feature = math.tanh(a * theta + b / w0 * omega + c)
             drift += to_theta * feature
             kick += to_omega * feature
+        return drift, kick
+
+    return sums
+
+
+@lru_cache(maxsize=16)
+def learned_field(w0_squared: float) -> Rates:
+    """Return (theta, omega) -> (theta', omega') with a sum for each."""
+    w0 = math.sqrt(w0_squared)
+    sums = _two_sums(FIELD, w0)
+
+    def field(phase: Phase) -> Phase:
+        drift, kick = sums(*phase)
         return w0 * drift, w0_squared * kick
 
     return field
@@ -121,14 +131,10 @@ def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
     """The learned map, for w0 h = 0.1; at other h its increment is taken as proportional to h."""
     w0 = model.w0
     tau = w0 * h
-    rows = _rows(MAP)
+    sums = _two_sums(MAP, w0)
     theta, omega = phase
     while True:
-        drift = kick = 0.0
-        for a, b, c, to_theta, to_omega in rows:
-            feature = math.tanh(a * theta + b / w0 * omega + c)
-            drift += to_theta * feature
-            kick += to_omega * feature
+        drift, kick = sums(theta, omega)
         theta = theta + tau * drift
         omega = omega + w0 * tau * kick
         yield theta, omega

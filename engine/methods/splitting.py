@@ -5,6 +5,7 @@ Kicks and drifts make them symplectic; the same coefficients backwards make them
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
 from engine.methods.method import COMPILABLE, Method, Phases
 from engine.models.model import Force, Phase
@@ -63,9 +64,13 @@ def mirrored(half: tuple[float, ...], odd: bool) -> tuple[float, ...]:
     return (*half, *half[::-1][odd:])
 
 
+def _method(**fields: Any) -> Method:
+    return Method(**fields, first_same_as_last=True, symplectic=True, reversible=True)
+
+
 _C = 1 / (2 - 2 ** (1 / 3))
 
-FOREST_RUTH = Method(
+FOREST_RUTH = _method(
     key="forest_ruth",
     label="Forest–Ruth",
     letter="f",
@@ -73,9 +78,6 @@ FOREST_RUTH = Method(
     formula="velocity Verlet with c h, (1 - 2c) h and c h in turn, c = 1/(2 - 2^(1/3)) = 1.3512",
     order=4,
     force_evaluations=3,
-    first_same_as_last=True,
-    symplectic=True,
-    reversible=True,
     linear_limit=1.57340194743,
     longest_substep=2 * _C - 1,
     other_names=("Yoshida 4", "triple jump"),
@@ -86,7 +88,7 @@ FOREST_RUTH = Method(
     "Verlet's.",
 )
 
-BLANES_MOAN_4 = Method(
+BLANES_MOAN_4 = _method(
     key="blanes_moan_4",
     label="BM4",
     letter="b",
@@ -101,9 +103,6 @@ BLANES_MOAN_4 = Method(
     "backwards, times h",
     order=4,
     force_evaluations=6,
-    first_same_as_last=True,
-    symplectic=True,
-    reversible=True,
     linear_limit=3.16346506656,
     other_names=("Blanes-Moan SRKN 6b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
@@ -113,7 +112,7 @@ BLANES_MOAN_4 = Method(
     "Yoshida 6 7700 (23 800), RK4 15 600 (59 000).",
 )
 
-BLANES_MOAN_6 = Method(
+BLANES_MOAN_6 = _method(
     key="blanes_moan_6",
     label="BM6",
     letter="m",
@@ -145,9 +144,6 @@ BLANES_MOAN_6 = Method(
     "-.012, .357, .237, .205 and the same backwards, times h",
     order=6,
     force_evaluations=11,
-    first_same_as_last=True,
-    symplectic=True,
-    reversible=True,
     linear_limit=3.14143108775,
     other_names=("Blanes-Moan SRKN 11b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
@@ -159,7 +155,7 @@ BLANES_MOAN_6 = Method(
 
 _YOSHIDA = (0.78451361047755726, 0.23557321335935813, -1.1776799841788710)
 
-YOSHIDA_6 = Method(
+YOSHIDA_6 = _method(
     key="yoshida_6",
     label="Yoshida 6",
     letter="y",
@@ -167,9 +163,6 @@ YOSHIDA_6 = Method(
     formula="velocity Verlet with .785, .236, -1.178, 1.315, -1.178, .236 and .785 h in turn",
     order=6,
     force_evaluations=7,
-    first_same_as_last=True,
-    symplectic=True,
-    reversible=True,
     linear_limit=2.26905799640,
     longest_substep=1 - 2 * sum(_YOSHIDA),
     other_names=("Yoshida 6A",),

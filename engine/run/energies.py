@@ -1,14 +1,13 @@
 """Judge the record of any program from times and energies alone.
 
-The means of up to 64 blocks of the record are fitted by least squares with a level, perhaps a wave,
-and one more curve at a time.  Some curves still move at the end (a line, exponentials, logarithms),
-others have settled (approaches, steps).  The likelihoods of the best of each kind give the verdict.
+The means of up to 64 blocks are fitted by least squares with a level, perhaps a wave, and one more
+curve at a time.  Some curves still move at the end (a line, exponentials, logarithms), others have
+settled (approaches, steps).  The likelihoods of the best of each kind give the verdict.
 
-The noise may have any correlation time, from none to that of a random walk, and white noise on top.
-The terms of its cosine transform are independent, with its spectrum as their variances (Whittle,
-J. R. Stat. Soc. B 15 (1953) 125).  Each fit is averaged over a grid of such spectra, weighted by
-restricted likelihood (Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of a slope
-holds for correlated energies, too.
+The noise may have any correlation time up to a random walk's, and white noise on top.  The terms of
+its cosine transform are independent, with its spectrum as variances (Whittle, J. R. Stat. Soc. B 15
+(1953) 125).  A fit is averaged over a grid of spectra, weighted by restricted likelihood (Harville,
+J. Am. Stat. Assoc. 72 (1977) 320), so its uncertainties hold for correlated energies, too.
 """
 
 import math

@@ -92,6 +92,8 @@ def compiled(method: Method, model: Pendulum) -> Watch:
 
 
 def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
+    """Return a function that updates the extremes, and counts the swings beyond their limits."""
+
     def looking(
         theta: Floats,
         omega: Floats,
@@ -102,7 +104,6 @@ def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
         worst: Floats,
         width: Floats,
     ) -> int:
-        """Return how many swings are over their top or out of their band."""
         outside = 0
         for i in range(theta.size):
             off[i] = energy((theta[i], omega[i])) - start[i]

@@ -3,10 +3,10 @@
 The lockstep shows each method to its judge at look points, a fixed number of steps apart, so a
 verdict depends on the scene, the stepping and the step alone.
 
-- A symplectic method can neither gain nor lose energy for good.  Its orbit is regular, and
-  `bounded`, where a theorem says so or where neighbouring starts have separated no faster than in
-  proportion to time.  Where they separate exponentially it is `chaotic`, or `wanders` if no
-  invariant curve fences it in.  A linear map is never chaotic.
+- A symplectic method can neither gain nor lose energy for good.  Its orbit is regular, and so
+  `bounded`, where a theorem says so or neighbouring starts separate no faster than in proportion
+  to time.  Where they separate exponentially it is `chaotic`, or `wanders` if no invariant curve
+  fences it in.  A linear map is never chaotic.
 - Any other method is judged by the bands of its energy error: whether they have left the start
   (`grows`, `loses`), have come to rest elsewhere (`caught`) or nowhere (`wanders`), or stay where
   they began without a trend (`bounded`).

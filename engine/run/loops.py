@@ -151,36 +151,29 @@ def advance_with_errors(
     return Errors(n, phase, energy, error, low, high)
 
 
-class _Counted:
-    """A function that counts its calls."""
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._function = function
-        self.calls = 0
-
-    def __call__(self, *arguments: Any) -> Any:
-        self.calls += 1
-        return self._function(*arguments)
-
-
 def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
-    """Count the force evaluations of n >= 1 steps, by taking them unless their cost is fixed.
+    """Count the force evaluations of n >= 1 steps, or those of `Model.counted_parts`."""
+    count = 0
 
-    Of a method that takes the parts of its model, the parts in `Model.counted_parts` count.
-    """
+    def counted(function: Callable[..., Any]) -> Callable[..., Any]:
+        def counting(*arguments: Any) -> Any:
+            nonlocal count
+            count += 1
+            return function(*arguments)
+
+        return counting
+
     takes_parts = method.phases_from_parts(model)
     if takes_parts is not None:
         parts = model.parts()
-        counted = {name: _Counted(getattr(parts, name)) for name in model.counted_parts}
-        phases = takes_parts(parts._replace(**counted), phase, h)
+        replaced = {name: counted(getattr(parts, name)) for name in model.counted_parts}
+        phases = takes_parts(parts._replace(**replaced), phase, h)
     elif not model.second_order and method.on_rates is not None:
-        counted = {"rates": _Counted(model.rates())}
-        phases = method.on_rates(counted["rates"], phase, h)
+        phases = method.on_rates(counted(model.rates()), phase, h)
     else:
-        counted = {"force": _Counted(model.force())}
-        phases = method.phases(counted["force"], phase, h)
+        phases = method.phases(counted(model.force()), phase, h)
     next(islice(phases, n - 1, None))
-    return sum(each.calls for each in counted.values())
+    return count
 
 
 OVERFLOW = (ValueError, ArithmeticError)
