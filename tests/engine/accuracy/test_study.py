@@ -135,8 +135,3 @@ def test_seconds_are_the_shortest_of_several_runs_with_their_spread():
 def test_a_time_and_steps_that_make_no_usable_h_are_refused():
     with pytest.raises(SceneError, match="not a usable step"):
         Study(DRIFT, 1e6).run(R, 1)
-
-
-@pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
-def test_a_study_finds_the_same_points_compiled_and_plain(points):
-    assert list(Study(DRIFT, 20.0, compiled.compiled).points(STEPS)) == points

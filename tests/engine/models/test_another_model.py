@@ -1,4 +1,4 @@
-"""A model is added by a file of its own and its place in the list; nothing else asks which models there are."""
+"""A model is added by a file of its own and a place in the list."""
 
 import json
 import math

@@ -1,12 +1,8 @@
 """Area kept and lost along a run, and a ring of neighbours that keeps up with one."""
 
-from itertools import islice
-
 import numpy as np
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.models.pendulum import Pendulum
 from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping
@@ -38,17 +34,6 @@ def test_a_small_ring_encloses_the_area_of_the_jacobians():
     found = np.divide([shoelace(ring) for ring in neighbourhood.rings], before)
     # a ring of radius 1e-4 bends by its square, and cancellation in the shoelace costs as much
     assert found == pytest.approx(neighbourhood.area_ratios, rel=1e-6)
-
-
-def test_the_ring_is_carried_by_the_very_step_of_the_method():
-    neighbourhood = Neighbourhood(Scene(theta=0.5), radius=0.1, points=8)
-    start = np.transpose(neighbourhood.rings[0]).tolist()
-    neighbourhood.advance(3, Stepping(0.05))
-    for method, ring in zip(USUAL_CAST, neighbourhood.rings, strict=True):
-        runs = [method.phases(Pendulum(9.81).force(), tuple(phase), 0.05) for phase in start]
-        expected = np.transpose([list(islice(run, 3))[-1] for run in runs])
-        # NumPy's sine and the C library's may differ in the last place
-        assert np.array(ring) == pytest.approx(expected, rel=1e-14, abs=1e-14)
 
 
 def test_a_method_that_overflows_keeps_its_last_ring():

@@ -49,14 +49,6 @@ def test_a_map_computed_in_pieces_is_not_compiled():
     assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
 
 
-@needs_numba
-def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding():
-    regular = replace(GRID, z=GRID.z[:5])
-    one, other = (replace(regular, fast=fast).cells() for fast in (False, True))
-    assert np.array_equal(one[["fate", "steps"]], other[["fate", "steps"]])
-    assert one["error"] == pytest.approx(other["error"], rel=1e-9)
-
-
 @pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
 def test_the_default_grid_reaches_beyond_every_limit(cast):
     grid = default_grid(cast)

@@ -31,21 +31,17 @@ def test_the_amplification_is_the_textbooks(z):
         assert amplification(BY_KEY[key], z) == pytest.approx(formula(z), rel=1e-12)
 
 
-@given(z=st.floats(0.05, 1.9))
-def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z):
-    cycles = [2 * math.sin(math.pi * p / q) for q in range(2, 21) for p in range(1, q)]
-    for key in ("symplectic_euler", "velocity_verlet"):
-        phases = islice(BY_KEY[key].phases(np.negative, (1.0, 0.0), z), 2000)
-        theta, omega = np.array([(1.0, 0.0), *phases]).T
-        energies = theta**2 + omega**2
-        found = energies.min(), energies.max(), np.abs(theta).max()
-        lowest, highest, widest = expected = wobble(BY_KEY[key], z)
-        assert lowest * (1 - 1e-9) <= found[0]  # 2000 steps' rounding is 1e-12
-        assert found[1] <= highest * (1 + 1e-9)
-        assert found[2] <= widest * (1 + 1e-9)
-        if all(abs(z - cycle) > 0.01 for cycle in cycles):
-            # Where the orbit is no short cycle it comes close to every point of the ellipse.
-            assert found == pytest.approx(expected, rel=0.05)
+@pytest.mark.parametrize("z", [0.05, 0.3, 1.1, 1.9])  # no short cycles
+@pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
+def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(key, z):
+    phases = islice(BY_KEY[key].phases(np.negative, (1.0, 0.0), z), 2000)
+    theta, omega = np.array([(1.0, 0.0), *phases]).T
+    energies = theta**2 + omega**2
+    ratios = np.divide(
+        (energies.min(), energies.max(), np.abs(theta).max()), wobble(BY_KEY[key], z)
+    )
+    assert ratios == pytest.approx(1, rel=0.01)
+    assert (ratios * (1, -1, -1) >= np.array((1, -1, -1)) - 1e-9).all()
 
 
 @given(z=st.floats(0.05, 1.9))
