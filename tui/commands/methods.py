@@ -15,6 +15,7 @@ from tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
 from tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
+from tui.words.cards import method_card
 
 EXAMPLES = """\
 examples:
@@ -72,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     ]
     notes = [NOTE, f"in the lab: {', '.join(labels)}"]
     if options.keys:
-        notes = [NOTE, *map(_about, rows)]
+        notes = [NOTE, *(f"\n{method_card(method)}" for method in cast)]
     report = Report(
         name="methods",
         columns=columns,
@@ -125,9 +126,3 @@ def _yes(value: bool) -> str:
 
 def _limit(z: float) -> str:
     return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.3f}"
-
-
-def _about(row: Row) -> str:
-    names = ", ".join((row["label"], *row["other_names"]))
-    lines = ("", f"{names} ({row['letter']})", row["formula"] or "", row["reference"] or "")
-    return "\n".join(lines).rstrip()

@@ -1,13 +1,15 @@
 """List the scenes and what to watch in them, or show one scene and its numbers."""
 
 import argparse
+from collections.abc import Iterator
 from typing import Any
 
-from engine.scenes import GROUPS, SCENES, Scene
+from engine.scenes import GROUPS, SCENES
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
 from tui.cli.report import Column, Report, add_report_options, publish
 from tui.cli.scene import scene_named
+from tui.words.cards import scene_card
 
 EXAMPLES = """\
 examples:
@@ -17,6 +19,13 @@ examples:
 """
 
 
+COLUMNS = (
+    Column("scene", lambda scene: scene.name),
+    Column("z", lambda scene: scene.z, ".3g"),
+    Column("what to watch", lambda scene: scene.watch),
+)
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     names = Suggestions(SCENES)
     parser.add_argument("key", metavar="SCENE", nargs="?", choices=names, help="the scene to show")
@@ -24,29 +33,25 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    rows: list[Any] = []
+    scenes = list(SCENES.values())
     if options.key:
         scenes = [scene_named(options.key)]
-        fields = _fields(scenes[0])
-        shown = fields | {"methods": ", ".join(fields["methods"])}
-        rows += [(name, str(value)) for name, value in shown.items() if value is not None]
-        columns = [Column("", 0), Column("", 1)]
-        notes = [f"See it: pendu-tui {options.key}"]
-    else:
-        scenes = list(SCENES.values())
-        for group, members in GROUPS.items():
-            rows += ["", group.upper(), *members]
-        columns = [
-            Column("scene", lambda scene: scene.name),
-            Column("z", lambda scene: scene.z, ".3g"),
-            Column("what to watch", lambda scene: scene.watch),
+    fields = {"scenes": [scene.fields() | {"speed": scene.speed} for scene in scenes]}
+    report = Report(name="scenes", columns=COLUMNS, rows=list(_rows()), fields=fields)
+    if options.key:
+        (scene,) = scenes
+        labels = ", ".join(method.label for method in scene.cast)
+        notes = [
+            f"{scene_card(scene)}\n  methods       {labels}",
+            f"\nSee it: pendu-tui {scene.name}",
         ]
-        notes = []
-    values = {"scenes": [_fields(scene) for scene in scenes]}
-    report = Report(name="scenes", columns=columns, rows=rows, notes=notes, fields=values)
+        report = Report(name="scenes", notes=notes, fields=fields)
     publish(report, options)
     return Exit.FINE
 
 
-def _fields(scene: Scene) -> dict[str, Any]:
-    return scene.fields() | {"speed": scene.speed}
+def _rows() -> Iterator[Any]:
+    for group, members in GROUPS.items():
+        yield ""
+        yield group.upper()
+        yield from members

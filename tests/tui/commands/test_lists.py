@@ -9,6 +9,7 @@ from engine.run.compiled import available
 from engine.scenes import GROUPS, SCENES
 from tests.tui.command_line import pendu
 from tui.commands.methods import MEASURED
+from tui.words.cards import method_card, scene_card
 
 
 def test_scenes_are_listed_in_groups_with_what_to_watch():
@@ -25,7 +26,7 @@ def test_scenes_as_json_hold_everything_that_determines_a_run():
     assert pendu("scenes", "--json").json["scenes"] == fields
     (scene,) = pendu("scenes", "crossover", "--json").json["scenes"]
     assert scene in fields
-    assert scene["watch"] in pendu("scenes", "crossover").out
+    assert scene_card(SCENES["crossover"]) in pendu("scenes", "crossover").out
     assert pendu("scenes", "crosover").refused(2, "crossover")
 
 
@@ -43,7 +44,7 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
 def test_methods_that_are_named_are_listed_alone():
     listed = pendu("methods", "rk4", "--methods", "verlet", "--json").json["methods"]
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
-    assert METHODS[0].reference in pendu("methods", METHODS[0].key).out
+    assert method_card(METHODS[0]) in pendu("methods", METHODS[0].key).out
     assert pendu("methods", "rk5").refused(2, "rk4")
 
 
