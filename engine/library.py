@@ -166,7 +166,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """
     import numpy as np
 
-    from engine.run.judge import Judge
+    from engine.run.energies import judge_record
 
     t = _finite("times", _array("times", times))
     e = _array("energies", energies)
@@ -184,7 +184,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         raise ValueError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    judgement = Judge.read(t, e, failed=failed, absolute=scale != "std")
+    judgement = judge_record(t, e, failed=failed, absolute=scale != "std")
     e = e[judgement.first :]
     size = _size(e, scale)
     trend = judgement.slope

@@ -31,11 +31,16 @@ _LOGARITHMS = np.geomspace(1, 3000, 15)  # k of log(1 + k t), which never settle
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that end within the record
 
 
-def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
-    """Judge finite `energies` at increasing `times`; the slope has their units.
+def judge_record(
+    times: Any, energies: Any, failed: bool = False, absolute: bool = True
+) -> Judgement:
+    """Judge arrays of finite `energies` at increasing `times`; the slope has their units.
 
-    `absolute`: zero is the least possible energy.
+    `failed`: nan or inf came after the last of them.  `absolute`: zero is the least possible
+    energy, so that an energy can be lost or multiplied.
     """
+    if failed:
+        return Judgement("failed")
     if len(times) < limits.MIN_SAMPLES:
         return _too_early(len(times), limits.MIN_SAMPLES, "samples")
     unit = float(np.abs(energies).max()) or 1.0

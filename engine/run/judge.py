@@ -16,7 +16,7 @@ import copy
 import math
 from collections.abc import Sequence
 from itertools import permutations
-from typing import Any, Self
+from typing import Self
 
 from engine.methods import Cast, Method
 from engine.models.model import Model
@@ -71,17 +71,6 @@ class Judge:
         other._bands = copy.copy(self._bands)
         other._orbit = copy.copy(self._orbit)
         return other
-
-    @staticmethod
-    def read(times: Any, energies: Any, failed: bool = False, absolute: bool = True) -> Judgement:
-        """Judge a whole record: arrays of finite energies at increasing times, in any units.
-
-        `failed`: nan or inf came after the last of them.  `absolute`: zero is the least possible
-        energy, so that an energy can be lost or multiplied.
-        """
-        from engine.run.energies import judged
-
-        return Judgement("failed") if failed else judged(times, energies, absolute)
 
     def look(self, point: LookPoint) -> None:
         """Take in the next look point; a full bin brings a new judgement."""

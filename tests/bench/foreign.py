@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.run.judge import Judge
+from engine.run.energies import judge_record
 
 LIMITS = {"wrong_percent": 1.0, "too_early_percent": 5.0}
 SIZES = (100, 200, 500, 2000, 6000)
@@ -234,7 +234,7 @@ def measure(share: float) -> dict[str, Any]:
             scale = 10.0 ** random.integers(-3, 3)
             energies = np.round((zero + series.energies) * scale, 8)
             kept = np.isfinite(energies)
-            verdict = Judge.read(times[kept], energies[kept]).verdict
+            verdict = judge_record(times[kept], energies[kept]).verdict
             is_early = verdict == "too early"
             wrong = not is_early and verdict not in series.truth
             kinds[series.kind][verdict] += 1

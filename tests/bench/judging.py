@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.methods import GENERAL
 from engine.run.compiled import compiled
-from engine.run.judge import Judge
+from engine.run.energies import judge_record
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
@@ -70,7 +70,7 @@ def contradictions() -> list[tuple[str, str, str, str]]:
             times = np.abs([sample.t for sample in samples[: len(readings)]])
             energies = np.array([getattr(each, name) for each in readings])
             failed = len(readings) < len(samples)
-            alone = Judge.read(times, energies, failed=failed).verdict
+            alone = judge_record(times, energies, failed=failed).verdict
             both = (judgement.verdict, alone)
             if judgement.verdict != alone and "too early" not in both:
                 found.append((scene.name, scene.cast[index].key, *both))

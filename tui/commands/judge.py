@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
-from engine.run.judge import Judge
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS, Progress
 from recordings.errors import printable
 from tui.cli.checks import Check, add_check_options, conclude, parse
@@ -145,11 +144,13 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one file; - is stdin.  Raises UserError."""
     import numpy as np
 
+    from engine.run.energies import judge_record
+
     table = _read(name, options)
     times, energies, *_ = map(np.asarray, table.columns)
     # relative to the standard deviation, no result may depend on the zero of energy
     is_absolute = options.scale != "std"
-    judgement = Judge.read(
+    judgement = judge_record(
         times, energies, failed=table.failed_at is not None, absolute=is_absolute
     )
     rest = energies[judgement.first :]

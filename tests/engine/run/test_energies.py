@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from engine.run.judge import Judge
+from engine.run.energies import judge_record
 from engine.run.judgement import MIN_INDEPENDENT, MIN_SAMPLES
 from tests.bench.foreign import correlated
 
@@ -45,18 +45,18 @@ MAKES = {
 @pytest.mark.parametrize("name", MAKES)
 def test_the_verdict_is_the_truth(name):
     energies, truth = MAKES[name]
-    assert Judge.read(T, 1000 + energies).verdict == truth
+    assert judge_record(T, 1000 + energies).verdict == truth
 
 
 @pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a step"])
 def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
     energies, truth = MAKES[name]
-    assert Judge.read(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).verdict == truth
+    assert judge_record(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).verdict == truth
 
 
 def test_uneven_sampling_changes_no_trend():
     times = np.sort(np.random.default_rng(6).uniform(0, 1, 3000)) ** 2
-    found = Judge.read(times, 1000 + np.sin(100 * times) - 20 * times)
+    found = judge_record(times, 1000 + np.sin(100 * times) - 20 * times)
     assert found.verdict == "loses"
     assert found.slope == pytest.approx(-20, rel=0.05)
 
@@ -64,7 +64,8 @@ def test_uneven_sampling_changes_no_trend():
 @pytest.mark.parametrize("times", [200, 50, 20])
 def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(times):
     found = [
-        Judge.read(T[::4], 1000 + noise_of(times, seed, 500) + 0.01 * T[::4]) for seed in range(40)
+        judge_record(T[::4], 1000 + noise_of(times, seed, 500) + 0.01 * T[::4])
+        for seed in range(40)
     ]
     sigmas = np.array([(each.slope - 0.01) / each.uncertainty for each in found])
     assert 0.5 < np.mean(np.abs(sigmas) < 1) < 0.95
@@ -74,28 +75,28 @@ def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(times
 def test_a_walk_neither_grows_nor_is_bounded():
     random = np.random.default_rng(3)
     walks = [np.cumsum(random.standard_normal(1000)) for _ in range(40)]
-    verdicts = [Judge.read(T[:1000], 1e4 + walk).verdict for walk in walks]
+    verdicts = [judge_record(T[:1000], 1e4 + walk).verdict for walk in walks]
     assert sum(verdict in ("too early", "wanders") for verdict in verdicts) >= 36
     assert "wanders" in verdicts
 
 
 def test_an_initial_transient_is_left_out():
-    found = Judge.read(T, 1000 + 0.01 * NOISE - 5 * np.exp(-T))
+    found = judge_record(T, 1000 + 0.01 * NOISE - 5 * np.exp(-T))
     assert found.verdict == "bounded"
     assert 2 < found.transient < 10
     assert found.first == np.searchsorted(T, found.transient)
 
 
 def test_few_samples_and_few_independent_ones_are_too_early():
-    few = Judge.read(T[: MIN_SAMPLES - 1], 1000 + NOISE[: MIN_SAMPLES - 1])
+    few = judge_record(T[: MIN_SAMPLES - 1], 1000 + NOISE[: MIN_SAMPLES - 1])
     assert few.progress == (MIN_SAMPLES - 1, MIN_SAMPLES, "samples")
-    found = Judge.read(T, 1000 + noise_of(5))
+    found = judge_record(T, 1000 + noise_of(5))
     assert found.verdict == "too early"
     assert found.progress.have < found.progress.need == MIN_INDEPENDENT
 
 
 def test_what_multiplies_is_judged_in_its_logarithm():
-    assert Judge.read(T, np.exp(T)).verdict == "grows"
-    assert Judge.read(T, np.exp(-T / 5)).verdict == "loses"
+    assert judge_record(T, np.exp(T)).verdict == "grows"
+    assert judge_record(T, np.exp(-T / 5)).verdict == "loses"
     # backward Euler at h = 0.1 in a quartic well
-    assert Judge.read(T, (1 + 0.06 * T) ** -2 * (1 + 0.01 * np.sin(T))).verdict == "loses"
+    assert judge_record(T, (1 + 0.06 * T) ** -2 * (1 + 0.01 * np.sin(T))).verdict == "loses"
