@@ -1,4 +1,4 @@
-"""What a browser makes of the lab that `serve` shows."""
+"""The lab that `serve` shows, in a real browser."""
 
 import asyncio
 import json
@@ -12,11 +12,11 @@ from tui.drawing.palette import PALETTES
 
 pytestmark = [NEEDED, pytest.mark.slow]
 
-METHODS = [*PALETTES["dark"].methods[:4]]
+METHODS = PALETTES["dark"].methods[:4]
 
 
 class Shown:
-    """The terminal of a page: what its websocket brought, as another terminal of its size would show it."""
+    """The text that a page's terminal shows, by what its websocket received."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -36,14 +36,15 @@ class Shown:
     @property
     def size(self) -> tuple[int, int]:
         """The columns and rows that the page asked for last."""
-        size = json.loads([said for said in self.page.sent if '"resize"' in said][-1])[1]
+        *_, last = (message for message in self.page.sent if '"resize"' in message)
+        size = json.loads(last)[1]
         return size["width"], size["height"]
 
     async def resized(self, width: int, height: int) -> tuple[int, int]:
-        """Resize the page, whose lab is paused, and wait until that fits; columns and rows."""
+        """Resize the page of a paused lab, wait until the lab fits, and return its size."""
         count = len(self.page.sent)
         await self.page.resize(width, height)
-        await self.page.until(lambda: any('"resize"' in said for said in self.page.sent[count:]))
+        await self.page.until(lambda: '"resize"' in "".join(self.page.sent[count:]))
         self.screen = pyte.Screen(*self.size)
         await self.page.until(self._fits)
         return self.size
@@ -59,10 +60,8 @@ async def test_a_lab_is_painted_takes_keys_and_clicks_fits_its_tab_and_ends_with
             page = await browser.open(server.address)
             tab = Shown(page)
             await tab.shows("LIVE", "scene drift", "RK4", "ctrl+p")
-            async with asyncio.timeout(60):
-                while (
-                    min(await page.pixels(METHODS)) < 50
-                ):  # each method has its colour on the screen
+            async with asyncio.timeout(60):  # until each method has its colour on the screen
+                while min(await page.pixels(METHODS)) < 50:
                     await asyncio.sleep(0.1)
             await page.click(500, 350)
             await page.press(" ")

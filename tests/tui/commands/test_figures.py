@@ -18,15 +18,14 @@ COMMANDS = {
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_same_input_gives_the_same_figure_of_the_width_of_a_column(name, tmp_path):
     pytest.importorskip("matplotlib")
-    one, two = tmp_path / "one.svg", tmp_path / "two.svg"
-    for file in (one, two):
+    files = [tmp_path / "one.svg", tmp_path / "two.svg"]
+    for file in files:
         assert pendu(*COMMANDS[name], "-o", file).code == 0
-    assert one.read_bytes() == two.read_bytes()
-    svg = one.read_text(encoding="utf-8")
+    svg, again = (file.read_text(encoding="utf-8") for file in files)
+    assert svg == again
     width = float(re.search(r'width="([0-9.]+)pt"', svg)[1])
     assert width / 72 * 2.54 == pytest.approx(8.5, abs=0.01)
     assert "<text" not in svg  # letters are outlines
-    assert pendu(*COMMANDS[name], "-o", one).code == 5
 
 
 @pytest.mark.slow

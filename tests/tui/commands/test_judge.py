@@ -55,7 +55,6 @@ LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
     ("text", "names"),
     [
         (table(), ("t", "E")),
-        (table(), ("1", "2")),
         (table(), ("T", "2")),
         ("\ufeff" + table(), ("t", "E")),
         (table("{t}\t{e}", '"t"\t"E"'), ("t", "E")),
@@ -162,21 +161,17 @@ def test_rows_that_cannot_be_used_are_counted():
     assert (answer["samples"], answer["first_time"], answer["diverged_at"]) == (201, 10.0, None)
 
 
-@pytest.mark.parametrize("after", ["", "32,100\n33,100\n"])
 @pytest.mark.parametrize("energy", ["nan", "-inf", "1e999"])
-def test_the_first_energy_that_is_nan_or_inf_has_failed(energy, after):
-    text = table() + f"30.0,{energy}\n31.0,{energy}\n{after}"
+def test_the_first_energy_that_is_nan_or_inf_has_failed(energy):
+    text = table() + f"30.0,{energy}\n31.0,{energy}\n32,100\n"
     outcome = judge(text, "--json")
     assert (outcome.code, outcome.json["verdict"], outcome.json["samples"]) == (1, "failed", 300)
     assert outcome.json["diverged_at"] == 30
-    assert outcome.json["skipped"]["energy_not_finite"] == 2 + after.count("\n")
+    assert outcome.json["skipped"]["energy_not_finite"] == 3
     assert "nan or inf at 30" in judge(text).out
-
-
-def test_energies_that_begin_with_nan_are_judged_from_a_later_time_on():
-    text = "-0.1,nan\n" + table(head="")
-    assert judge(text, time="1", energy="2").refused(3, "--from")
-    assert judge(text, "--from", 0, time="1", energy="2").code == 0
+    first = f"-0.1,{energy}\n{lines('{t},{e}')}"
+    assert judge(first, time="1", energy="2").refused(3, "--from")
+    assert judge(first, "--from", 0, time="1", energy="2").code == 0
 
 
 GROWING = "Time (ps),E (eV),K\n" + "".join(
@@ -199,13 +194,14 @@ def test_trends_have_the_units_of_the_heads():
 
 def test_with_a_scale_of_std_nothing_depends_on_the_zero_of_the_energies():
     gate = ("--fail-if", "trend > 0.05 and verdict == grows")
-    found = [
-        judge("t,E\n" + lines("{t},{e:.9f}", rows), "--scale", "std", "--json", *gate)
-        for rows in ([(t, e + t / 9 + zero) for t, e in ROWS] for zero in (-100, 0, 1e5))
-    ]
-    assert {(each.code, each.json["verdict"]) for each in found} == {(1, "grows")}
+    answers = []
+    for zero in (-100, 0, 1e5):
+        text = "t,E\n" + lines("{t},{e:.9f}", [(t, e + t / 9 + zero) for t, e in ROWS])
+        outcome = judge(text, "--scale", "std", "--json", *gate)
+        assert (outcome.code, outcome.json["verdict"]) == (1, "grows")
+        answers.append(outcome.json)
     for name in ("trend", "uncertainty", "max_energy_error"):
-        values = [each.json[name] for each in found]
+        values = [answer[name] for answer in answers]
         assert values == pytest.approx([values[0]] * 3, rel=1e-6)
 
 
@@ -260,7 +256,6 @@ def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
         ("1 2\n", "t E", 2, "give columns by number"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time goes back"),
-        (table(), " ", 2, "there is no column ''; choose from t, E"),
         ("\x1b[31m,\x07\n", "t E", 2, "there is no column 't'"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
     ],

@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+import re
 import signal
 import subprocess
 import time
@@ -56,17 +57,14 @@ def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
     assert out.count("over the top") == 1
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_every_scene_runs_and_its_json_has_no_nan(name):
-    assert pendu("run", "--scene", name, "--time", 20, "--json").json["scene"]["name"] == name
+EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=0"]
 
 
-@pytest.mark.parametrize("start", ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=0"])
-def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
-    assert pendu("run", start, "--time", "200", "--json").code == 0
-    out = pendu("run", start, "--time", "200").out
-    assert "nan" not in out.replace("nance", "")
-    assert "inf" not in out
+@pytest.mark.parametrize("start", [*(f"--scene={name}" for name in SCENES), *EXTREME])
+def test_every_scene_and_extreme_start_runs_and_prints_no_nan(start):
+    run = ("run", start, "--time", 20)
+    assert pendu(*run, "--json").json["steps"] > 0  # its parser refuses nan
+    assert not re.search(r"\b(nan|inf)\b", pendu(*run).out)
 
 
 def test_evaluations_that_vary_are_counted():
@@ -83,7 +81,6 @@ def test_a_failed_method_is_reported_with_its_time():
     tiny = ("--theta", "1e-150", "--time", 1500, "--methods", "explicit_euler")
     euler = rows_of(*tiny)["explicit_euler"]
     assert euler["theta_error"] is None
-    assert 0 < euler["diverged_at"] < 1500
     assert euler["force_evaluations"] == round(euler["diverged_at"] / DEFAULT_SCENE.h)
     outcome = pendu("run", *tiny, "--fail-if", "explicit_euler.max_energy_error < 0")
     assert f"failed at {euler['diverged_at']:g} s" in outcome.out
@@ -179,17 +176,15 @@ def resumed(part: Path, *more: object):
     return pendu(*LIST, *more, "-o", part.with_suffix(""), "--resume")
 
 
-def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run():
-    found = list(csv.DictReader(pendu(*LIST, "--csv").out.splitlines()))
-    assert len({(row["start_theta"], row["h"], row["method"]) for row in found}) == 2 * 2 * 2
+def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run(whole):
+    text = pendu(*LIST, "--csv").out
+    assert whole.decode() == text
+    rows = list(csv.DictReader(text.splitlines()))
+    assert len({(row["start_theta"], row["h"], row["method"]) for row in rows}) == 2 * 2 * 2
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
-    assert single.items() <= found[-1].items()
+    assert single.items() <= rows[-1].items()
     assert pendu(*LIST).out.split()[:3] == ["start_theta", "h", "method"]  # which vary
-
-
-def test_a_file_has_the_rows_of_stdout(whole):
-    assert whole.decode() == pendu(*LIST, "--csv").out
 
 
 @pytest.mark.parametrize("cut", [0, 40, 1500])

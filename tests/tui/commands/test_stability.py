@@ -2,16 +2,13 @@
 
 import csv
 import io
-import math
 
 import numpy as np
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
-from engine.stability.study import amplitude
 from tests.tui.command_line import own_method, pendu
 from tui.cli.errors import Exit, UserError
 from tui.cli.workers import Workers
@@ -107,13 +104,6 @@ def test_impossible_values_are_refused_in_one_sentence(arguments, words):
     assert pendu("stability", *arguments).refused(2, *words)
 
 
-def test_the_amplitude_of_a_scene_is_how_far_it_swings():
-    assert amplitude(Scene(theta=1.0)) == amplitude(Scene(theta=-1.0)) == 1.0
-    moving = Scene(theta=0.0, omega=2.0)  # omega²/2 = w0² (1 - cos amplitude)
-    assert math.cos(amplitude(moving)) == pytest.approx(1 - 2 / moving.w0_squared, rel=1e-12)
-    assert amplitude(SCENES["spin"]) is amplitude(Scene(theta=0.0)) is None
-
-
 def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():
     out = pendu("stability", "--scene", "linear").out
     for method in USUAL_CAST:
@@ -123,14 +113,18 @@ def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence()
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():
-    out = pendu("stability", "--theta", "200deg", "--methods", "verlet", "--steps", 20).out
-    assert "200 deg swings as far as one from rest at 160 deg" in out
-    row = line_of(out, " 160° ")
+    def out(*start):
+        return pendu("stability", *start, "--methods", "verlet", "--steps", 20).out
+
+    beyond = out("--theta", "200deg")
+    assert "200 deg swings as far as one from rest at 160 deg" in beyond
+    row = line_of(beyond, " 160° ")
     assert float(row[-1]) == pytest.approx(float(row[4]) / 0.1566, rel=2e-3)  # the margin
-    near = pendu("stability", "--theta", "5.73deg", "--methods", "verlet", "--steps", 20).out
-    assert line_of(near, " 5.73° ")
-    at_rest = pendu("stability", "--theta", "0", "--methods", "verlet", "--steps", 20).out
-    assert "does not swing" in at_rest
+    # omega²/2 = w0² (1 - cos amplitude)
+    assert "one from rest at 37.24 deg" in out("--theta", "0", "--omega", "2")
+    assert line_of(out("--theta", "5.73deg"), " 5.73° ")
+    assert "does not swing" in out("--theta", "0")
+    assert "does not swing" in out("--scene", "spin")
 
 
 def section(*arguments):
