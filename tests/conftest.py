@@ -4,20 +4,20 @@ import signal
 import pytest
 from hypothesis import settings
 
-# A deadline judges how busy the machine is, not the code: everything here runs beside other work.
-# In CI the same examples are tried each time, so that only a change can make it fail.
+# No deadline, which a busy machine would miss.  CI tries the same examples each time, so that only a
+# change of the code can make it fail.
 settings.register_profile(
     "pendu", deadline=None, max_examples=40, derandomize=bool(os.environ.get("CI"))
 )
 settings.load_profile("pendu")
 
 
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in a job that a script put aside
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in a script's background job
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Twice the processors: half of the time of a test of a screen is spent waiting."""
+    """Return twice the number of processors, as tests of screens wait half of their time."""
     return 2 * (os.cpu_count() or 1)
 
 
@@ -25,5 +25,5 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--snapshot-update",
         action="store_true",
-        help="store pictures of the screen as they look now",
+        help="store snapshots as they are now",
     )

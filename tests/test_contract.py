@@ -1,4 +1,4 @@
-"""What people script against: every JSON field with its kind, and every exit code."""
+"""What scripts rely on: every JSON field with its type, and every exit code."""
 
 import json
 import shlex
@@ -49,12 +49,12 @@ SCHEMAS = {
     "recordings recover": "recordings-recover",
     "recordings prune": "recordings-prune",
 }
-"""Where the schema has not the name of the command."""
+"""Schemas that are not named after their command."""
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """A folder with a whole recording, one that was cut, and a method; it has a library, too."""
+    """A folder with recordings, one of them cut, energies, a method and a library."""
     whole = record(tmp_path / "whole.mcap", two_runs())
     (tmp_path / "cut.mcap").write_bytes(whole.read_bytes()[:-700])
     rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
@@ -70,21 +70,23 @@ def folder(tmp_path, monkeypatch):
 
 
 def kinds(value: Any, path: str = "") -> dict[str, set[str]]:
-    """Every path in a JSON value with the kinds of value that stand there."""
-    found: dict[str, set[str]] = {path: {type(value).__name__}} if path else {}
+    """Return the types of the values at every path in a JSON value."""
+    types: dict[str, set[str]] = {}
+    if path:
+        types[path] = {type(value).__name__}
     inner: list[tuple[str, Any]] = []
     if isinstance(value, dict):
-        inner = [(f"{path}.{key}".lstrip("."), each) for key, each in value.items()]
+        inner = [(f"{path}.{key}".lstrip("."), item) for key, item in value.items()]
     elif isinstance(value, list):
-        inner = [(f"{path}[]", each) for each in value]
-    for where, each in inner:
-        for name, kind in kinds(each, where).items():
-            found.setdefault(name, set()).update(kind)
-    return found
+        inner = [(f"{path}[]", item) for item in value]
+    for inner_path, item in inner:
+        for name, kind in kinds(item, inner_path).items():
+            types.setdefault(name, set()).update(kind)
+    return types
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_json_field_is_there_with_its_kind(name, request):
+def test_every_json_field_is_there_with_its_type(name, request):
     answer = pendu(*COMMANDS[name].split(), "--json").json
     assert answer["schema"] == f"pendu.{SCHEMAS.get(name, name.split()[0])}/1"
     seen = {path: " or ".join(sorted(kind)) for path, kind in sorted(kinds(answer).items())}

@@ -1,4 +1,4 @@
-"""What a user gets who installs the wheel."""
+"""The contents of the wheel."""
 
 import tomllib
 from pathlib import Path
@@ -44,7 +44,3 @@ def test_users_get_ranges_and_the_snapshots_get_exact_versions():
     assert not [requirement for requirement in PROJECT["dependencies"] if "==" in requirement]
     exact = {r.split("==")[0] for r in PROJECT["optional-dependencies"]["test"] if "==" in r}
     assert exact == {"textual", "rich", "plotext"}
-
-
-def test_no_lock_file_carries_the_addresses_of_one_machine():
-    assert not [path.name for path in ROOT.iterdir() if "lock" in path.name]

@@ -1,4 +1,4 @@
-"""Everything that the README and its pages say is run."""
+"""The README and its pages: their commands, code and tables are right."""
 
 import os
 import re
@@ -6,13 +6,11 @@ import shlex
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
-from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
 from tui.commands.export import columns_of
 from tui.screens.dialogs import bindings_of, key_lines
@@ -37,15 +35,6 @@ def block_with(language: str, word: str) -> str:
     return block
 
 
-def test_the_test_command_is_the_one_of_ci():
-    (extraction,) = re.findall(
-        r"grep .* '(.*)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    )
-    assert re.search(extraction, README)[0] == (
-        "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/pytest"
-    )
-
-
 @pytest.mark.parametrize(("page", "target"), LINKS)
 def test_what_is_linked_is_there(page, target):
     assert target.is_file()
@@ -66,7 +55,7 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
 
 
 def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.CompletedProcess:
-    """Run a command in a folder, with the program that is tested first on the path."""
+    """Run a command in a folder, with the tested program first on the path."""
     programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     env = {**os.environ, "PATH": programs, **environment}
     return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
@@ -74,7 +63,7 @@ def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.Co
 
 @pytest.fixture
 def shell(tmp_path):
-    """Run a line as a reader would, in a folder of its own."""
+    """Run a line as a reader would, in a folder of the test."""
 
     def run(line: str) -> str:
         library = str(tmp_path / "library")
@@ -126,7 +115,7 @@ IN_PYTEST = (
 
 @pytest.fixture
 def project(tmp_path):
-    """A project with a test file; return what its pytest prints."""
+    """Make a project with a test file, and return what its pytest prints."""
 
     def tested(test: str, plugins: str = "") -> str:
         (tmp_path / "test_mine.py").write_text(test, encoding="utf-8")
@@ -195,19 +184,6 @@ def test_the_recipes_name_columns_that_the_csv_has():
     assert set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes)) <= set(
         columns_of([])
     )
-
-
-@pytest.mark.parametrize("package", ["pandas", "duckdb"])
-def test_the_recipe_reads_the_csv(package, tmp_path, monkeypatch):
-    if find_spec(package) is None:
-        pytest.skip(f"{package} is not installed")
-    (recipe,) = (
-        line for line in block_with("python", "read_csv").splitlines() if line.startswith(package)
-    )
-    assert pendu("export", "drift", "-o", tmp_path / "crossover.csv").code == 0
-    monkeypatch.chdir(tmp_path)
-    answer = eval(recipe, {package: __import__(package)})
-    assert "explicit_euler" in str(answer)
 
 
 def test_its_keys_are_keys_of_the_lab():

@@ -1,4 +1,4 @@
-"""What runs of a million steps came to, on a grid of starts and h·w0; tests/bench/truths.py computed it."""
+"""The outcomes of runs of a million steps, by start and h·w0, from tests/bench/truths.py."""
 
 import math
 from collections.abc import Iterator
@@ -26,30 +26,30 @@ _Z = """
 Z = tuple(map(float, _Z.split()))
 
 ALLOWED: dict[str, set[tuple[str, ...]]] = {
-    # the courses that verdicts may take; "too early" may stand before or in place of any
+    # the verdicts that may follow each other; "too early" may come before or instead of any
     "b": {("bounded",)},
-    # chaos shows late, or not
+    # slow chaos, seen late or not at all
     "s": {("bounded",), ("bounded", "chaotic"), ("chaotic",), ("chaotic", "wanders")},
-    "c": {("chaotic",)},  # and fenced in
+    "c": {("chaotic",)},  # within bounds
     "w": {("chaotic",), ("chaotic", "wanders"), ("wanders",)},
     "g": {("grows",)},
     "d": {("loses",)},
     "k": {("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
     # in a band that holds the start
     "K": {("bounded",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
-    # moves by less than 1e-10, or hardly beside its wobble
+    # moves by less than 1e-10, or by little beside its oscillation
     "B": {("bounded",), ("loses",), ("grows",), ("caught",)},
 }
 
 
 def scene_at(start: str, z: float) -> Scene:
-    """The scene of a cell."""
+    """Return the scene of a cell."""
     theta, omega = STARTS[start]
     return Scene(theta=theta, omega=omega, h=z / Scene().w0)
 
 
 def truths() -> Iterator[tuple[Method, str, float, str]]:
-    """Method, start, h·w0 and the letter of each cell."""
+    """Yield method, start, h·w0 and letter of each cell."""
     by_key = {method.key: method for method in GENERAL}
     for line in FILE.read_text().splitlines():
         key, start, letters = line.split()
@@ -58,24 +58,27 @@ def truths() -> Iterator[tuple[Method, str, float, str]]:
 
 
 Course = list[tuple[str, int, float]]
-"""Verdicts in turn, with the step and the periods of each."""
+"""Verdicts in order, each with its step and time [periods]."""
 
 
 def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course:
-    """The verdicts on a method in turn, with the step and the periods of each."""
+    """Return the verdicts on a method."""
     period = scene.exact().period or math.tau / scene.w0
     lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops, judged=True)
     lockstep.advance(steps)
-    milestones = [each for each in lockstep.milestones if each.kind == "verdict"]
-    return [(each.verdict, each.step, each.step * scene.h / period) for each in milestones]
+    return [
+        (milestone.verdict, milestone.step, milestone.step * scene.h / period)
+        for milestone in lockstep.milestones
+        if milestone.kind == "verdict"
+    ]
 
 
 def watch(scene: Scene) -> int:
-    """How many steps a test watches a cell: 80 periods, and at least 6000 steps where h·w0 is not small."""
+    """Return the steps of a test of a cell: 80 periods, and at least 6000 unless h·w0 is small."""
     period = scene.exact().period or math.tau / scene.w0
     return max(round(80 * period / scene.h), 6000 if scene.z > 0.3 else 1500)
 
 
-def is_true(letter: str, given: Course) -> bool:
-    """Whether the verdicts are such as the truth allows, or none at all."""
-    return not given or tuple(verdict for verdict, *_ in given) in ALLOWED[letter]
+def is_true(letter: str, course: Course) -> bool:
+    """Return whether the truth allows these verdicts; none are always allowed."""
+    return not course or tuple(verdict for verdict, *_ in course) in ALLOWED[letter]

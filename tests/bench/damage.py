@@ -1,4 +1,4 @@
-"""Cut, flip bits in and punch holes into recordings: every reader notices or reads what was there."""
+"""Damage recordings: every reader notices the damage or reads what was recorded."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Draw the moving picture of the README: .github/lab.svg, the lab as it runs, without scripts.
+"""Draw the animation of the README, .github/lab.svg: the lab as it runs, without scripts.
 
 python tests/bench/film.py
 """
@@ -19,7 +19,7 @@ MAX_BYTES = 1_500_000
 
 
 def main() -> int:
-    """Write the film; exit code 1 if it is too large for a README."""
+    """Write the film; return 1 if it is too large for a README."""
     frames = [asyncio.run(still(DEFAULT_SCENE, time, SIZE)) for time in TIMES]
     film = film_of(frames)
     size = len(film.encode())
@@ -32,7 +32,7 @@ def main() -> int:
 
 
 def film_of(frames: list[str]) -> str:
-    """Return one SVG that shows SVG pictures of equal size one after the other, for ever."""
+    """Return an SVG that shows SVG pictures of equal size one after the other, in a loop."""
     duration = SECONDS_PER_FRAME * len(frames)
     share = 100 / len(frames)
     view_box = re.search(r'viewBox="([^"]*)"', frames[0])[1]
@@ -41,20 +41,17 @@ def film_of(frames: list[str]) -> str:
         f" {share:.4f}1%, 100% {{ visibility: hidden }} }}",
         f".frame {{ visibility: hidden; animation: film {duration}s step-end infinite }}",
     ]
-    shown = []
+    groups = []
     for index, frame in enumerate(frames):
         delay = SECONDS_PER_FRAME * index - duration  # s; below zero: all are moving at once
         unique = frame.replace("terminal-", f"f{index}-")
         style = f"animation-delay: {delay:.1f}s"
         if index == len(frames) - 1:
             style += "; visibility: visible"  # where nothing moves
-        shown.append(f'<g class="frame" style="{style}">{unique}</g>')
+        groups.append(f'<g class="frame" style="{style}">{unique}</g>')
     style = "<style>" + "\n".join(rules) + "</style>"
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box}">{style}\n'
-        + "\n".join(shown)
-        + "\n</svg>\n"
-    )
+    start = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view_box}">{style}'
+    return "\n".join([start, *groups, "</svg>\n"])
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tests.recordings.hostile import FILES, write
+from tests.recordings.hostile import FILES, write_file
 
 LIMITS = {"processor_seconds": 10.0, "memory_mb": 200, "largest_exit_code": 3}
 COMMANDS = (
@@ -19,28 +19,25 @@ COMMANDS = (
 )
 
 
-def write_file(path: Path, name: str, many: int) -> None:
-    write(path, FILES[name](many), chunk_size=1 << 28 if name == "a huge message" else 1 << 20)
-
-
 def measure(share: float) -> dict[str, Any]:
     worst: dict[str, Any] = dict.fromkeys(LIMITS, 0)
     with TemporaryDirectory() as folder:
         for name in FILES:
             path = Path(folder) / "hostile.mcap"
             arguments = (path, name, round(90_000 * share))
+            # In another process, as commands inherit the peak memory of this one.
             writer = get_context("spawn").Process(target=write_file, args=arguments)
-            writer.start()  # commands would inherit its memory
+            writer.start()
             writer.join()
             for command in COMMANDS:
                 program = [sys.executable, "-m", "tui", *command, str(path)]
                 quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
                 process = subprocess.Popen(program, cwd=folder, **quiet)
                 _, status, usage = os.wait4(process.pid, 0)
-                found = {
+                figures = {
                     "processor_seconds": round(usage.ru_utime + usage.ru_stime, 2),
                     "memory_mb": round(usage.ru_maxrss / 1000),
                     "largest_exit_code": abs(os.waitstatus_to_exitcode(status)),
                 }
-                worst = {key: max(worst[key], value) for key, value in found.items()}
+                worst = {key: max(worst[key], value) for key, value in figures.items()}
     return {"cases": len(FILES) * len(COMMANDS), **worst}

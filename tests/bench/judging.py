@@ -1,4 +1,4 @@
-"""The verdicts against runs of a million steps and against each other."""
+"""Compare the verdicts with runs of a million steps and with each other."""
 
 import subprocess
 import sys
@@ -19,8 +19,8 @@ from tests.truths import is_true, scene_at, truths, verdicts, watch
 LIMITS = {
     "wrong": 0,  # cells of the truth table
     "median_wait": 8.1,  # periods
-    "contradictions": 0,  # of `run` and the same energies without their method
-    "early_trends": 0,  # of symplectic runs of 10 and 30 s
+    "contradictions": 0,  # between `run` and the same energies alone
+    "early_trends": 0,  # in symplectic runs of 10 and 30 s
     "million_lines": 2.0,  # s
 }
 SECONDS = 120.0  # of each scene
@@ -28,20 +28,20 @@ SAMPLES = 4000
 
 
 def truth_table(share: float) -> dict[str, Any]:
-    """Return how many cells of tests/truths.py are judged wrong or not at all, and the waits."""
+    """Return which cells of tests/truths.py are judged wrong or not at all, and how late."""
     wrong = []
     waits = []
     undecided = 0
     cells = list(truths())[:: round(1 / share)]
     for method, start, z, letter in cells:
         scene = scene_at(start, z)
-        given = verdicts(method, scene, compiled, watch(scene))
-        if not given:
+        course = verdicts(method, scene, compiled, watch(scene))
+        if not course:
             undecided += 1
-        elif not is_true(letter, given):
-            wrong.append((method.key, start, z, letter, given))
+        elif not is_true(letter, course):
+            wrong.append((method.key, start, z, letter, course))
         elif z <= 0.9:
-            waits.append(given[0][2])
+            waits.append(course[0][2])
     return {
         "cells": len(cells),
         "wrong": len(wrong),
@@ -53,8 +53,8 @@ def truth_table(share: float) -> dict[str, Any]:
 
 
 def contradictions() -> list[tuple[str, str, str, str]]:
-    """Return where `run` and its energies alone get verdicts that differ and are not too early."""
-    found = []
+    """Return where the verdicts on a run and on its energies alone differ, "too early" apart."""
+    different = []
     for scene in SCENES.values():
         lockstep = Lockstep(scene, judged=True)
         steps = round(SECONDS / scene.h)
@@ -66,29 +66,29 @@ def contradictions() -> list[tuple[str, str, str, str]]:
         name = "energy" if scene.equations.energy_error.conserved else "energy_error"
         for index, judgement in enumerate(lockstep.judgements):
             readings = [sample.readings[index] for sample in samples]
-            readings = [each for each in readings if each.diverged_at is None]
+            readings = [reading for reading in readings if reading.diverged_at is None]
             times = np.abs([sample.t for sample in samples[: len(readings)]])
-            energies = np.array([getattr(each, name) for each in readings])
+            energies = np.array([getattr(reading, name) for reading in readings])
             failed = len(readings) < len(samples)
             alone = judge_record(times, energies, failed=failed).verdict
             both = (judgement.verdict, alone)
             if judgement.verdict != alone and "too early" not in both:
-                found.append((scene.name, scene.cast[index].key, *both))
-    return found
+                different.append((scene.name, scene.cast[index].key, *both))
+    return different
 
 
 def early_trends() -> int:
     """Return how many ordinary symplectic runs of 10 and 30 s have a trend."""
     cast = tuple(method for method in GENERAL if method.symplectic)
-    shown = 0
+    trends = 0
     for theta in np.linspace(0.2, 2.9, 16):
         for z in (0.03, 0.08, 0.16, 0.3):
             for seconds in (10.0, 30.0):
                 scene = Scene(theta=float(theta), h=z / Scene().w0, cast=cast)
                 lockstep = Lockstep(scene, judged=True)
                 lockstep.advance(round(seconds / scene.h))
-                shown += sum(judgement.slope is not None for judgement in lockstep.judgements)
-    return shown
+                trends += sum(judgement.slope is not None for judgement in lockstep.judgements)
+    return trends
 
 
 def million_lines() -> float:
@@ -106,11 +106,11 @@ def million_lines() -> float:
 
 
 def measure(share: float) -> dict[str, Any]:
-    where = contradictions()
+    contradicting = contradictions()
     return {
         **truth_table(share),
-        "contradictions": len(where),
-        "contradicting": where,
+        "contradictions": len(contradicting),
+        "contradicting": contradicting,
         "early_trends": early_trends(),
         "million_lines": million_lines(),
     }

@@ -1,4 +1,4 @@
-"""Kill labs while they record, at random moments: how much is lost."""
+"""Kill labs at random moments while they record, and measure what is lost."""
 
 import random
 from concurrent.futures import ThreadPoolExecutor

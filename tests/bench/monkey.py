@@ -1,4 +1,4 @@
-"""Random keys, clicks, drags, pastes, dialogs and sizes in labs of every scene."""
+"""Random keys, clicks, drags, pastes, dialogs and terminal sizes in labs of every scene."""
 
 import asyncio
 from collections import Counter
@@ -20,7 +20,7 @@ BATCH = 5  # events at once
 
 
 async def play(scene: Scene, library: Path, seed: int) -> bool:
-    """Play in a lab of a scene; return whether it still runs then."""
+    """Play in a lab of a scene; return whether it still runs afterwards."""
     async with on_stage(wild_stage(library, scene), SIZE) as theatre:
         theatre.app.error_console.quiet = True
         try:
@@ -32,7 +32,7 @@ async def play(scene: Scene, library: Path, seed: int) -> bool:
 
 
 def sitting(scene: Scene, seed: int) -> Counter[str]:
-    """Return what becomes of one lab and its recordings."""
+    """Return the outcomes of one lab and its recordings."""
     with TemporaryDirectory() as folder:
         library = Path(folder) / "library"
         library.mkdir()
@@ -55,7 +55,7 @@ def measure(share: float) -> dict[str, Any]:
     scenes = list(SCENES.values())
     counts = Counter(dict.fromkeys(LIMITS, 0))
     sittings = round(60 * share)
-    with patch.object(PenduApp, "exit", lambda self: None):  # the monkey finds `quit`, too
+    with patch.object(PenduApp, "exit", lambda self: None):  # the monkey also presses `quit`
         for number in range(sittings):
             counts.update(sitting(scenes[number % len(scenes)], seed=1 + number * SITTING))
     return {"events": sittings * SITTING, **counts}

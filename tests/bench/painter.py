@@ -1,11 +1,11 @@
 """Textual alone: an app that paints what the lab painted, from strips made beforehand.
 
-python -m tests.bench.painter COLUMNS ROWS [KEY]   film the lab, after a key, and show the film
-python -m tests.bench.painter                      an empty app
+python -m tests.bench.painter COLUMNS ROWS [KEY …]   film the lab, after keys, and show the film
+python -m tests.bench.painter                        show an empty app
 
-A film is what every pane of the lab looks like in each frame, borders included, and which of its
-rows change.  Here each pane is one widget straight on the screen: there is no cheaper way to paint
-as much with Textual.
+A film holds the rows of every pane of the lab in each frame, borders included.  Each pane is one
+widget directly on the screen, and only rows that change are painted: Textual cannot paint as much
+for less.
 """
 
 import asyncio
@@ -22,18 +22,18 @@ from textual.widgets import Static
 FPS = 30
 BEGIN = 5  # s of the lab before the film
 SECONDS = 10
-H = 0.01  # more than one step a frame, so that every frame moves
+H = 0.01  # s; several steps a frame, so that every frame differs
 
 
 class Pane(NamedTuple):
-    """Where a pane is, and its rows in each frame."""
+    """The place of a pane, and its rows in each frame."""
 
     region: Region
     frames: list[list[Strip]]
 
 
-async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
-    """Return what the lab shows."""
+async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
+    """Film the lab."""
     from engine.scenes import DEFAULT_SCENE
     from tui.playback.live import Live
     from tui.screens.app import PenduApp
@@ -47,7 +47,7 @@ async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
     async with app.run_test(size=size) as pilot:
         await pilot.pause()
         stage.frame_timer.stop()
-        await pilot.press(*([key] if key else []))
+        await pilot.press(*keys)
         for frame in range(1, (BEGIN + SECONDS) * FPS):
             now = frame / FPS
             stage.frame()
@@ -88,7 +88,7 @@ class Painting(Widget):
 
 
 class Painter(App[None]):
-    """Shows the film to and fro, with r from its start.  + and - change a word, as in the lab."""
+    """Shows the film forwards and backwards; r rewinds it, + and - change a word as in the lab."""
 
     ALLOW_SELECT = False
     CSS = "Screen { overflow: hidden; } #word { dock: bottom; height: 1; width: 10; }"
@@ -100,8 +100,9 @@ class Painter(App[None]):
     def __init__(self, panes: list[Pane]) -> None:
         super().__init__()
         self._paintings = [Painting(pane) for pane in panes]
-        there = range(len(panes[0].frames))
-        self._order = [*there, *there[-2:0:-1]]
+        forwards = list(range(len(panes[0].frames)))
+        backwards = forwards[::-1]
+        self._order = forwards + backwards[1:-1]
         self._shown = 0
 
     def compose(self) -> ComposeResult:
@@ -129,7 +130,7 @@ class Painter(App[None]):
 
 
 class Empty(App[None]):
-    """What Textual itself takes to come up."""
+    """Shows how long Textual itself takes to start."""
 
     BINDINGS: ClassVar[Any] = [("q", "quit")]
 
@@ -138,9 +139,8 @@ class Empty(App[None]):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:]:
-        columns, rows, *key = sys.argv[1:]
-        size = (int(columns), int(rows))
-        Painter(asyncio.run(film(size, key[0] if key else None))).run()
-    else:
+    if len(sys.argv) == 1:
         Empty().run()
+    else:
+        columns, rows, *keys = sys.argv[1:]
+        Painter(asyncio.run(film((int(columns), int(rows)), keys))).run()

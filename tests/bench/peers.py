@@ -1,10 +1,10 @@
 """Milliseconds to follow a swing for 100 s within 1e-3 to 1e-12 rad, beside other packages.
 
-Each solver gets the loosest setting (a tolerance, or a number of steps) whose largest theta error
-at 400 times is within the target, and with six finer settings as well: errors that cancel by
-chance are no accuracy.  It is then timed to the end state alone, all solvers in turns, the least of
-many runs; start-up (imports, compiling) is excluded.  A package that cannot be imported is skipped
-and named.  Takes two minutes.
+Each solver gets the coarsest setting (a tolerance, or a number of steps) whose largest theta error
+at 400 times is within the target, as are those of the six next finer settings: errors that cancel
+by chance do not count.  The time is that to the end state alone, the shortest of many runs, with
+all solvers in turns; start-up (imports, compiling) is excluded.  A package that cannot be imported
+is skipped and named.  Takes two minutes.
 """
 
 import math
@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib import import_module
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,19 +36,19 @@ TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 FINER = 6  # settings that must reach the target as well
 TOLERANCES = [10 ** (-power / 8) for power in range(8, 126)]
 STEPS = sorted({round(200 * 1.03**n) for n in range(330)})  # to 3.3 million
-TOO_LONG = 0.4  # s; a solver that takes longer is not asked for smaller errors
-ENOUGH = 0.5  # s spent on a run, after which it is left out
-IN_A_ROW = 3  # runs in each turn: the first one finds the caches full of another solver's
+MAX_SECONDS = 0.4  # a solver that takes longer gets no finer setting
+ENOUGH = 0.5  # s spent on a solver, after which it is left out
+IN_A_ROW = 3  # runs in each turn, as the first one finds the caches of another solver
 
 Run = Callable[[], Any]
 
 
 class Solver(NamedTuple):
-    """Of a setting: a run to the end, and the largest error in theta [rad] at some 400 times."""
+    """A solver with functions of a setting."""
 
     name: str
     to_the_end: Callable[[Any], Run]
-    error: Callable[[Any], float]
+    error: Callable[[Any], float]  # rad, the largest in theta at some 400 times
     settings: Sequence[float] = TOLERANCES  # from coarse to fine
 
 
@@ -74,7 +75,7 @@ def taylor_solvers() -> Iterator[Solver]:
 
 
 def method_solvers() -> Iterator[Solver]:
-    """The lab's methods, compiled; those of order 1 would take too long."""
+    """The lab's methods, compiled; order 1 takes too long."""
     for method in GENERAL:
         if method.order == 1 or method.varies:
             continue
@@ -96,7 +97,7 @@ def method_solvers() -> Iterator[Solver]:
 
 
 def scipy_solvers() -> Iterator[Solver]:
-    """solve_ivp with its quickest methods here; the right-hand side is Python's, as usual."""
+    """solve_ivp with its fastest methods here; the right-hand side is Python, as usual."""
     solve_ivp = import_module("scipy.integrate").solve_ivp
 
     def slope(t: float, y: Any) -> list[float]:
@@ -143,7 +144,7 @@ def diffrax_solvers() -> Iterator[Solver]:
 
 
 def heyoka_solvers() -> Iterator[Solver]:
-    """Taylor's method, its order chosen by the tolerance."""
+    """Taylor's method, whose order follows from the tolerance."""
     heyoka = import_module("heyoka")
     theta, omega = heyoka.make_vars("theta", "omega")
     equations = [(theta, omega), (omega, -W0_SQUARED * heyoka.sin(theta))]
@@ -178,7 +179,7 @@ SOLVERS = {
 
 
 def loosest(solver: Solver) -> Iterator[float | None]:
-    """Yield for each target the coarsest setting that reaches it, as do FINER more, or None."""
+    """Yield the coarsest setting that reaches each target, as do FINER more, or None."""
     errors: list[float] = []
     seconds = 0.0
     first = 0
@@ -186,7 +187,7 @@ def loosest(solver: Solver) -> Iterator[float | None]:
         at = first
         while at <= first + FINER:
             if at == len(errors):
-                if at == len(solver.settings) or seconds > TOO_LONG:
+                if at == len(solver.settings) or seconds > MAX_SECONDS:
                     break
                 began = time.perf_counter()
                 errors.append(solver.error(solver.settings[at]))
@@ -194,16 +195,21 @@ def loosest(solver: Solver) -> Iterator[float | None]:
             at += 1
             if errors[at - 1] > target:
                 first = at
-        yield solver.settings[first] if at > first + FINER else None
+        if at > first + FINER:
+            yield solver.settings[first]
+        else:
+            yield None
 
 
 def shortest(runs: dict[tuple[str, float], Run], rounds: int) -> dict[tuple[str, float], float]:
-    """Return the milliseconds of each run, all taken in turns, the least of many."""
+    """Return the milliseconds of each run, the shortest of many that take turns."""
     best = dict.fromkeys(runs, math.inf)
     spent: Counter[tuple[str, float]] = Counter()
     for _ in range(rounds):
         for name, run in runs.items():
-            for _ in range(IN_A_ROW if spent[name] < ENOUGH else 0):
+            if spent[name] >= ENOUGH:
+                continue
+            for _ in range(IN_A_ROW):
                 began = time.perf_counter()
                 run()
                 seconds = time.perf_counter() - began
@@ -217,16 +223,16 @@ def measure(share: float) -> dict[str, Any]:
     skipped = {}
     for package, families in SOLVERS.items():
         try:
-            for solver in (each for family in families for each in family()):
+            for solver in chain.from_iterable(family() for family in families):
                 solver.error(solver.settings[0])  # compiles
                 for target, setting in zip(TARGETS, loosest(solver), strict=True):
                     if setting is not None:
                         runs[solver.name, target] = solver.to_the_end(setting)
-        except (ImportError, OSError) as error:  # not there, or without the libraries it needs
+        except (ImportError, OSError) as error:  # missing, or without the libraries it needs
             skipped[package] = str(error)
-    found = shortest(runs, rounds=max(1, round(200 * share)))
+    times = shortest(runs, rounds=max(1, round(200 * share)))
     table: dict[str, dict[str, float]] = {}
-    for (name, target), milliseconds in found.items():
+    for (name, target), milliseconds in times.items():
         table.setdefault(name, {})[f"{target:g}"] = round(milliseconds, 4)
     heyoka = table.get("heyoka", {})
     behind = [target for target, ms in table["Taylor 20"].items() if ms > heyoka.get(target, 0.0)]

@@ -1,4 +1,4 @@
-"""What recording costs a frame, and what a day of it costs to open, to seek in and to replay."""
+"""Measure the cost of recording a frame, and of opening, seeking in and replaying a day."""
 
 import random
 import resource
@@ -21,10 +21,7 @@ SEEKS = 200
 
 
 def record(path: Path, hours: float) -> float:
-    """Record; return the processor time of a frame [s], flushes included.
-
-    The numbers of a minute are used again and again; only clocks and steps go on.
-    """
+    """Record the samples of one minute repeatedly; return the processor time of a frame [s]."""
     lockstep = Lockstep(DEFAULT_SCENE)
     minute = []
     for _ in range(60 * FRAMES):
@@ -43,7 +40,7 @@ def record(path: Path, hours: float) -> float:
 
 
 def replay_frame(recording: Recording, begin: float) -> float:
-    """Return the processor time of a frame [s] in ten seconds of a replay."""
+    """Return the processor time of a frame [s] over ten seconds of a replay."""
     replay = Replay(recording, clock=time.perf_counter)
     replay.tick(0.0)
     replay.seek(begin)
@@ -78,6 +75,6 @@ def measure(share: float) -> dict[str, Any]:
             "record_frame_ms": round(1000 * cost, 3),
             "open_seconds": round(opened, 3),
             "seek_seconds_median": round(median(seeks), 5),
-            "replay_frame_ms": [round(1000 * each, 3) for each in (near_start, near_end)],
+            "replay_frame_ms": [round(1000 * near_start, 3), round(1000 * near_end, 3)],
             "memory_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000,
         }

@@ -1,4 +1,4 @@
-"""Stop, continue and end labs at random moments, and close their terminals."""
+"""Stop, continue and end labs at random moments, or close their terminals."""
 
 import random
 import signal
@@ -18,7 +18,7 @@ STOPS = (signal.SIGSTOP, signal.SIGTSTP)
 
 def is_alive(lab: PtyLab) -> bool:
     """Return whether the lab still paints and reads its keys."""
-    for _ in range(3):  # a key may come while the terminal is taken, and be lost
+    for _ in range(3):  # a key that is typed while the lab resumes may be lost
         try:
             lab.type(" ")
             lab.wait_for("paused", 5.0)
@@ -31,7 +31,7 @@ def is_alive(lab: PtyLab) -> bool:
 
 
 def survives(count: int, *kinds: tuple[int, ...]) -> Counter[str]:
-    """Return what becomes of a lab in a storm of signals, at random moments."""
+    """Return the outcomes of a lab that gets many signals at random moments."""
     chance = random.Random(1)
     with TemporaryDirectory() as folder, PtyLab(PENDU_RECORDINGS=folder) as lab:
         lab.wait_for("REC ")
@@ -46,7 +46,7 @@ def survives(count: int, *kinds: tuple[int, ...]) -> Counter[str]:
 
 
 def ends(chance: random.Random, *, closed: bool) -> Counter[str]:
-    """Return what becomes of a lab that is asked to end, or loses its terminal, perhaps stopped."""
+    """Return the outcomes of a lab, perhaps stopped, that gets a signal or loses its terminal."""
     with TemporaryDirectory() as folder, PtyLab(PENDU_RECORDINGS=folder) as lab:
         lab.wait_for("REC ")
         lab.run(chance.uniform(0.0, 3.0))
@@ -62,21 +62,21 @@ def ends(chance: random.Random, *, closed: bool) -> Counter[str]:
 
 
 def result(lab: PtyLab, folder: Path) -> Counter[str]:
-    """Wait for the end and count what is left."""
+    """Wait for the end and count the outcomes."""
     began = lab.now
     try:
         code = lab.end(60.0)
     except TimeoutError:
         return Counter({"still_there": 1})
-    left = list(folder.iterdir())
-    finished = [path for path in left if path.suffix == ".mcap"]
+    files = list(folder.iterdir())
+    finished = [path for path in files if path.suffix == ".mcap"]
     return Counter(
         {
             f"exit_{code}": 1,
             "late": lab.now - began > MAX_END_TIME,
             "recordings": len(finished),
             "verified": sum(verify(path).identical for path in finished),
-            "unfinished": len(left) - len(finished),
+            "unfinished": len(files) - len(finished),
         }
     )
 

@@ -1,8 +1,8 @@
-"""The lab beside Textual alone painting as much.  Only ratios travel from machine to machine.
+"""Compare the lab with Textual alone painting as much; only their ratios hold on other machines.
 
-The real program runs on a pseudo-terminal, recording, with everything moving; beside it painter.py
-shows a film of the same seconds, so that other work of the machine slows both alike.  Keys are
-timed for one program at a time.  A frame is a burst of output that redraws a pendulum.
+The real program runs and records on a pseudo-terminal.  Beside it painter.py shows a film of the
+same seconds, so that other work of the machine slows both alike.  Keys are timed for one program at
+a time.  A frame is a burst of output that redraws a pendulum.
 """
 
 import re
@@ -31,29 +31,30 @@ KEYS = 30
 LAB = ("live", "--h", str(painter.H))
 PAINTER = [sys.executable, "-m", "tests.bench.painter"]
 VIEWS = ("\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~")  # F2 to F5
-CURSOR = re.compile(rb"\x1b\[(\d+);(\d+)H(?=\x1b\[[\d;]*m)")  # where something follows
+CURSOR = re.compile(rb"\x1b\[(\d+);(\d+)H(?=\x1b\[[\d;]*m)")  # where text follows
 PENDULUMS = 47  # columns from the left
 BRAILLE = re.compile(rb"\xe2[\xa0-\xa3][\x80-\xbf]")
 BURST = 0.004  # s
 
 
 def drain(*programs: PtyLab, seconds: float) -> None:
-    """Read what some programs send in a while."""
+    """Read what some programs send in so many seconds."""
     end = time.monotonic() + seconds
     by_terminal = {program.terminal: program for program in programs}
-    while (left := end - time.monotonic()) > 0:
-        for terminal in select.select(list(by_terminal), [], [], left)[0]:
+    while time.monotonic() < end:
+        for terminal in select.select(list(by_terminal), [], [], 0.01)[0]:
             by_terminal[terminal].read(0.0)
 
 
 def watched(*programs: PtyLab) -> list[dict[str, float]]:
-    """Return what each takes and sends in the same while."""
-    before = [(each.cpu_seconds(), each.now, len(each.output)) for each in programs]
+    """Return the figures of each program over the same seconds."""
+    starts = [(program.cpu_seconds(), program.now, len(program.output)) for program in programs]
     drain(*programs, seconds=painter.SECONDS)
-    return [figures(each, *start) for each, start in zip(programs, before, strict=True)]
+    return [figures(program, *start) for program, start in zip(programs, starts, strict=True)]
 
 
 def figures(program: PtyLab, cpu: float, began: float, sent: int) -> dict[str, float]:
+    """Return what a program has used and sent since a start."""
     elapsed = program.now - began
     frames = [began]
     end = 0
@@ -74,11 +75,11 @@ def figures(program: PtyLab, cpu: float, began: float, sent: int) -> dict[str, f
 
 
 def key_times(program: PtyLab, pause: float = 0.1) -> list[float]:
-    """Return how long it takes from a key to what it does on the screen [ms], sorted."""
+    """Return the times from a key to its effect on the screen [ms], sorted."""
     times = []
-    for number in range(KEYS):
-        program.run(pause + number / 300)  # anywhere in a frame
-        key, effect = ("-", "h 0.01 s") if number % 2 else ("+", "h 0.02 s")
+    keys = [("+", "h 0.02 s"), ("-", "h 0.01 s")] * (KEYS // 2)
+    for number, (key, effect) in enumerate(keys):
+        program.run(pause + number / 300)  # at any moment of a frame
         began = program.now
         program.type(key)
         times.append(1000 * (program.wait_for(effect) - began))
@@ -91,7 +92,7 @@ def end(program: PtyLab) -> None:
 
 
 def beside_painter(size: tuple[int, int], *key: str) -> dict[str, float]:
-    """Return the figures of the lab, perhaps after F3, and its ratio to Textual alone."""
+    """Return the figures of the lab, with a key in the view F3, and its ratio to Textual alone."""
     arguments = (*map(str, size), *key)
     with (
         TemporaryDirectory() as folder,
@@ -101,25 +102,26 @@ def beside_painter(size: tuple[int, int], *key: str) -> dict[str, float]:
         textual.run(2.0)
         with PtyLab(*LAB, size=size, PENDU_RECORDINGS=folder) as lab:
             lab.wait_for("REC 2 s")
-            lab.type(VIEWS[1] if key else "")
+            if key:
+                lab.type(VIEWS[1])
             drain(lab, textual, seconds=painter.BEGIN - 2.0)
-            textual.type("r")  # the film is of the seconds that the lab is at
-            found, alone = watched(lab, textual)
-            found["processor_ratio"] = found["percent"] / alone["percent"]
-            for program, result in ((lab, found), (textual, alone)):
-                program.run(0.5)  # what has piled up meanwhile
-                if not key:
-                    result["key_p95_ms"] = key_times(program)[int(0.95 * KEYS)]
-                end(program)
-    return found
+            textual.type("r")  # the film begins at this moment of the lab
+            of_lab, of_textual = watched(lab, textual)
+            of_lab["processor_ratio"] = of_lab["percent"] / of_textual["percent"]
+            lab.run(0.5)  # reads what has piled up meanwhile
+            if not key:
+                of_lab["key_p95_ms"] = key_times(lab)[int(0.95 * KEYS)]
+            end(lab)
+            end(textual)
+    return of_lab
 
 
 def mean_of(rounds: list[dict[str, float]]) -> dict[str, float]:
-    """Return the mean of some rounds; of times the median: neighbours may have taken a few."""
+    """Return the mean of some rounds, and the median of times, of which a few may be outliers."""
     result = {}
     for name in rounds[0]:
         average = median if name.endswith("_ms") else mean
-        result[name] = round(average(each[name] for each in rounds), 2)
+        result[name] = round(average(figures[name] for figures in rounds), 2)
     return result
 
 
@@ -127,7 +129,7 @@ def first_pendulum_ratio(starts: int) -> float:
     """Return the time to the first pendulum over that to an empty app's first paint."""
     pendulums = []
     empty = []
-    bytecode = {"PYTHONDONTWRITEBYTECODE": ""}  # as installed: the first start may write it
+    bytecode = {"PYTHONDONTWRITEBYTECODE": ""}  # let the first start write it, as users' does
     for _ in range(starts):
         with PtyLab(*LAB, "--no-record", **bytecode) as program:
             pendulums.append(program.wait_for_match(BRAILLE))

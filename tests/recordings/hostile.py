@@ -28,6 +28,14 @@ FOREIGN = "/somebody/else"
 ESCAPES = "\x1b[2J\x1b]0;x\x07 [bold]"
 
 
+def write_file(path: Path, name: str, many: int) -> None:
+    """Write one of FILES."""
+    chunk_size = 1 << 20
+    if name == "a huge message":
+        chunk_size = 1 << 28
+    write(path, FILES[name](many), chunk_size)
+
+
 def write(path: Path, entries: Iterator[list[Part]], chunk_size: int = 1 << 20) -> None:
     """Write entries as a finished file."""
     with path.open("wb") as stream:
