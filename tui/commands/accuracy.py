@@ -3,7 +3,7 @@
 import argparse
 
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import count, positive
+from tui.cli.options import count, positive, values
 from tui.cli.report import add_report_options, publish, warn
 from tui.cli.scene import add_scene_options, general_scene_of
 from tui.cli.workers import add_worker_options
@@ -30,7 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     every = "chart all methods for any force; with --cost seconds, also series and closed form"
     add("--all", action="store_true", help=every)
     durations = "simulated time in s (ten small swings); the chart shows the last of several"
-    add("--time", metavar="S[,S...]", type=times, help=durations)
+    add("--time", metavar="S[,S...]", type=values(positive), help=durations)
     ladder = "N step sizes from A to B in s, log-spaced (12, with z = h·w0 from 0.6 to 0.0015)"
     add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
     kinds = "largest angle error [rad], largest energy error or last angle error (%(default)s)"
@@ -46,10 +46,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_worker_options(parser)
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
-
-
-def times(text: str) -> list[float]:
-    return sorted({positive(part) for part in text.split(",")})
 
 
 def h_values(text: str) -> tuple[float, float, int]:

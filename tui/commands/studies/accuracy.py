@@ -1,4 +1,4 @@
-"""What the accuracy command measures and recommends, and its report."""
+"""The measurements, recommendations and report of the accuracy command."""
 
 import argparse
 import time

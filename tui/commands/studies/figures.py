@@ -1,4 +1,4 @@
-"""Figures by Matplotlib, one column wide; the same input gives the same bytes."""
+"""Matplotlib figures, one column wide; the same input gives the same bytes."""
 
 import math
 from argparse import Namespace
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".svg", ".pdf", ".png")
 CM = 1 / 2.54  # inches
-MAX_PARTS = 400  # of a run; of each the largest error is drawn
+MAX_PARTS = 400  # of a run, each drawn as its largest error
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
 STYLE = {
     "font.size": 7,
@@ -40,7 +40,7 @@ STYLE = {
     "legend.handlelength": 2.4,
     "figure.constrained_layout.use": True,
     "savefig.dpi": 600,
-    "svg.fonttype": "path",  # letters as outlines: the reader need not have the font
+    "svg.fonttype": "path",  # outlines, which need no font
     "svg.hashsalt": "pendu-tui",
     "pdf.fonttype": 42,  # TrueType, which journals ask for
 }
@@ -48,7 +48,7 @@ NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Sof
 
 
 def lines_of(picture: "Picture", palette: Palette | None) -> "list[Text]":
-    """Return a picture for the terminal; without a palette only styles colour it."""
+    """Return a picture's lines for the terminal; without a palette, inks have no colour."""
     from rich.text import Text
 
     lines = []
@@ -65,9 +65,9 @@ def lines_of(picture: "Picture", palette: Palette | None) -> "list[Text]":
 
 
 def check_output(options: Namespace) -> bool:
-    """Return whether the output is to be a figure.
+    """Return whether the output is a figure.
 
-    Raises DiskError if the name is taken, UserError if no figure can be made.
+    Raises DiskError if the name is taken, UserError without Matplotlib.
     """
     path = options.output
     if path is None:
@@ -82,7 +82,7 @@ def check_output(options: Namespace) -> bool:
 
 @contextmanager
 def _figure(options: Namespace, height: float = 6.0) -> Iterator[Any]:
-    """Yield a Matplotlib figure of a height [cm], which is written to the output afterwards."""
+    """Yield a Matplotlib figure of this height [cm], and write it to the output afterwards."""
     from matplotlib import style
     from matplotlib.figure import Figure
 
@@ -97,7 +97,7 @@ def _figure(options: Namespace, height: float = 6.0) -> Iterator[Any]:
 
 
 def _styles(cast: Cast) -> list[dict[str, Any]]:
-    """Return colour, line style and label of each method; styles differ without colour, too."""
+    """Return colour, label and line style of each method, which differ without colour, too."""
     colours = map(PALETTES["light"].colour, inks(cast))
     return [
         {"color": colour, "linestyle": line, "label": method.label}
@@ -106,11 +106,13 @@ def _styles(cast: Cast) -> list[dict[str, Any]]:
 
 
 def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> None:
-    """Draw the largest energy error in each half swing of a run, or in longer parts of it."""
+    """Draw the largest energy error of each half swing, or of longer parts of a long run."""
     import numpy as np
 
     t = np.array([sample.t for sample in samples])
-    errors = np.array([[one.energy_error for one in sample.readings] for sample in samples]).T
+    errors = np.array(
+        [[reading.energy_error for reading in sample.readings] for sample in samples]
+    ).T
     swing = scene.exact().period or math.tau / scene.w0
     parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
     first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
@@ -126,11 +128,14 @@ def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> N
 def draw_accuracy(options: Namespace, cast: Cast, points: Sequence["Point"]) -> None:
     from engine.accuracy.front import cost_of
 
-    what = {"theta": "largest error of θ / rad", "final": "error of θ at the end / rad"}
+    errors = {
+        "theta": "largest error of θ / rad",
+        "energy": "largest |ΔE / E₀|",
+        "final": "error of θ at the end / rad",
+    }
     costs = {"evaluations": "force evaluations", "seconds": "time of computation / s"}
     with _figure(options) as figure:
-        label = what.get(options.error, "largest |ΔE / E₀|")
-        axes = figure.add_subplot(xlabel=costs[options.cost], ylabel=label)
+        axes = figure.add_subplot(xlabel=costs[options.cost], ylabel=errors[options.error])
         axes.set(xscale="log", yscale="log")
         for method, style in zip(cast, _styles(cast), strict=True):
             line = sorted(
@@ -156,9 +161,9 @@ def draw_map(options: Namespace, grid: "Grid", cells: "Cells") -> None:
         panels = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False).ravel()
         for panel in panels[len(grid.methods) :]:
             panel.set_axis_off()
-        for place, method in enumerate(grid.methods):
-            panel = panels[place]
-            errors = np.where(is_lost(cells[:, place]), np.nan, cells["error"][:, place])
+        for index, method in enumerate(grid.methods):
+            panel = panels[index]
+            errors = np.where(is_lost(cells[:, index]), np.nan, cells["error"][:, index])
             with np.errstate(all="ignore"):
                 digits = np.log10(errors).T
             image = panel.imshow(digits, extent=extent, vmin=-6, vmax=0, **look)

@@ -5,7 +5,6 @@ Each row begins with all numbers of its scene and the time, so that --resume can
 file belongs to its arguments.
 """
 
-import csv
 import io
 import math
 import os
@@ -44,6 +43,7 @@ from tui.cli.report import (
     publish,
     scene_line,
     warn,
+    write_records,
 )
 from tui.cli.scene import SceneList
 from tui.cli.time_limit import limited_steps
@@ -266,13 +266,12 @@ def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
 
 
 def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
-    text = io.StringIO()
-    records = for_csv(rows)
-    writer = csv.DictWriter(text, records[0], lineterminator="\n")
-    if with_head:
-        writer.writeheader()
-    writer.writerows(records)
-    return text.getvalue().encode()
+    out = io.StringIO()
+    write_records(for_csv(rows), out)
+    text = out.getvalue()
+    if not with_head:
+        text = text.partition("\n")[2]
+    return text.encode()
 
 
 def partial_of(path: Path) -> Path:
@@ -362,7 +361,7 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
         rest = islice(_tasks(scenes, options), done, None)
         try:
             with workers_of(options) as workers, progress(f"{runs:,} runs") as show:
-                for task, rows in workers.map(_computed, rest):
+                for rows in workers.map(Task.rows, rest):
                     if file:
                         file.write(_text_of(rows, with_head=not done))
                         file.flush()
@@ -371,7 +370,7 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
                     done += 1
                     show(done, runs)
                     if gate:
-                        checks.append(check_of(_place(scenes, task), rows, gate))
+                        checks.append(check_of(_place(scenes, rows[0]), rows, gate))
         except (KeyboardInterrupt, UserError, OwnMethodError) as error:
             ended = explained(error)
         if file and done == runs:
@@ -392,12 +391,8 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
     return ended.code
 
 
-def _computed(task: Task) -> tuple[Task, list[Row]]:
-    return task, task.rows()
-
-
-def _place(scenes: SceneList, task: Task) -> str:
-    return ", ".join(f"{name} {task.scene.numbers[name]:g}" for name in scenes.axes)
+def _place(scenes: SceneList, row: Row) -> str:
+    return ", ".join(f"{name} {row[_column(name)]:g}" for name in scenes.axes)
 
 
 def _list_report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:
