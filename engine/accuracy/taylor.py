@@ -34,7 +34,7 @@ def expand(w0_squared: float, theta: float, omega: float, w: Any, u: Any) -> Non
             for j in range(middle):
                 square += w[j] * w[k - j]
             u[k] = square
-        left = 0.0  # two sums run in parallel, as each addition waits for the previous one
+        left = 0.0  # two sums, because an addition waits for the previous one of its sum
         right = 0.0
         if k % 2 == 0:
             left = w[middle] * u[middle]

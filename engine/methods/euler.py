@@ -25,8 +25,13 @@ def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Ph
     With friction, small swings gain energy from h = gamma/w0² on.
     """
     while True:
-        phase = tuple(value + h * rate for value, rate in zip(phase, rates(phase), strict=True))
+        phase = euler_step(phase, h, rates(phase))
         yield phase
+
+
+def euler_step(phase: Phase, h: float, rates: Phase) -> Phase:
+    """Return the phase after a step of h [s] at these rates."""
+    return tuple(value + h * rate for value, rate in zip(phase, rates, strict=True))
 
 
 def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from engine.methods.euler import euler_step
 from engine.methods.method import HAIRER, Method
 from engine.models import FIRST_ORDER
 from engine.models.model import Force, Phase, Rates
@@ -57,16 +58,12 @@ def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
     """The classical Runge-Kutta method on a first-order system."""
     while True:
         k1 = rates(phase)
-        k2 = rates(_moved(phase, h / 2, k1))
-        k3 = rates(_moved(phase, h / 2, k2))
-        k4 = rates(_moved(phase, h, k3))
+        k2 = rates(euler_step(phase, h / 2, k1))
+        k3 = rates(euler_step(phase, h / 2, k2))
+        k4 = rates(euler_step(phase, h, k3))
         slopes = zip(k1, k2, k3, k4, strict=True)
-        phase = _moved(phase, h / 6, tuple(a + 2 * b + 2 * c + d for a, b, c, d in slopes))
+        phase = euler_step(phase, h / 6, tuple(a + 2 * b + 2 * c + d for a, b, c, d in slopes))
         yield phase
-
-
-def _moved(phase: Phase, h: float, rates: Phase) -> Phase:
-    return tuple(value + h * rate for value, rate in zip(phase, rates, strict=True))
 
 
 RK4 = Method(

@@ -50,7 +50,7 @@ class Parameter(NamedTuple):
     unit: str
     about: str
     min: float  # inclusive
-    max: float  # inclusive; a larger value is a typing error
+    max: float  # inclusive; a larger value is a typo
     default: float = 0.0
     max_over_w0: float = math.inf
 

@@ -35,7 +35,7 @@ def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -
     return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
 
 
-@np.errstate(all="ignore")  # a method that diverges ends beyond the doubles
+@np.errstate(all="ignore")  # diverging methods overflow
 def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) -> Points:
     """Return n starts and their phases after each step of h [s]: two arrays (steps + 1, n)."""
     theta, omega = (np.empty((steps + 1, len(part))) for part in starts)
@@ -99,8 +99,8 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     slack = 0.0
     if model.turns:
         slack = max(-math.log(max(abs(model.level(*start)), 1e-16)), 0.0)
-    parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + slack
-    chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
+    separated = neighbours.log > least_lyapunov(steps) * max(steps, 1) + slack
+    chaotic = method.symplectic and separated  # neighbours on spirals separate, too
     rotation = None
     fraction = None
     island = False

@@ -20,12 +20,9 @@ from engine.run import judgement as limits
 from engine.run.bands import MAX_BINS
 from engine.run.judgement import Judgement, Progress
 
-# Correlation times over the length of the record: the longest is a random walk within it, with the
-# others the record has a level.
+# correlation times over the record's length: noise with the first walks, others have a level
 _TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])
-_WHITE = np.array(
-    [0.0, 3, 100]
-)  # variances of the white noise, the correlated noise's kicks having 1
+_WHITE = np.array([0.0, 3, 100])  # variances of white noise, over those of the other's increments
 _RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # k of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that end within the record
@@ -123,7 +120,7 @@ def _noises(count: int) -> tuple[Any, Any, Any]:
     cosines = np.cos(angles[:, None] * (np.arange(count) + 0.5)) * math.sqrt(2 / count)
     spectra = [np.ones(count - 1)]
     for time in _TIMES:
-        # of noise that forgets its past at this rate, as it is kicked from block to block
+        # a first-order autoregression
         correlated = 1 / np.abs(1 - math.exp(-1 / (time * count)) * np.exp(1j * angles[1:])) ** 2
         spectra += [correlated + white for white in _WHITE]
     # the first cosine is constant: it belongs to the level

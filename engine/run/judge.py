@@ -45,7 +45,7 @@ class Judge:
     """The judge of one method from a start on."""
 
     def __init__(self, h: float, period: float, method: Method, model: Model) -> None:
-        """`h` [s] is the method's step, `period` [s] that of the exact motion or 2 pi/w0."""
+        """`h` [s] is the method's step; `period` [s] as in `stride`."""
         self.judgement = Judgement()
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
@@ -57,7 +57,7 @@ class Judge:
         self._conserved = model.energy_error.conserved  # else errors are ln(E/E_true)
         self._epsilon = method.epsilon
         self._min_energy = (limits.MIN_AMPLITUDE * method.epsilon * model.w0) ** 2  # s⁻²
-        # The band of an error that beats with the steps may leave the start and come back.
+        # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
         self._may_beat = method.symplectic or fastest_turn < limits.MIN_STEPS_A_TURN * self._h
         self._may_escape = not model.turns
@@ -165,7 +165,7 @@ class Judge:
             return Judgement()
         bins = self._bands.bins
         recent = bins
-        if len(bins) >= MAX_BINS / 2:  # before, growth that slows down shall follow no line
+        if len(bins) >= MAX_BINS / 2:  # with fewer, all count: growth that slows down has no slope
             recent = self._bands.recent(0.5)
         logarithms = [
             Bin(step, self._logarithm(low), self._logarithm(high)) for step, low, high in recent
@@ -316,7 +316,7 @@ class Judges:
     """
 
     def __init__(self, cast: Cast, model: Model, period: float) -> None:
-        """`period` [s] is the exact motion's, or 2 pi/w0 if it has none."""
+        """`period` [s] is that of `stride`."""
         self.milestones: list[Milestone] = []
         self._cast = cast
         self._model = model

@@ -10,7 +10,7 @@ from engine.methods import USUAL_CAST, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.models.model import ExactMotion, Model
 
-LIMITS = {  # inclusive; a value beyond is a typing error
+LIMITS = {  # inclusive; a value beyond is a typo
     "theta": (-1e9, 1e9),
     "omega": (-1e9, 1e9),
     "length": (1e-6, 1e6),

@@ -1,9 +1,8 @@
 """Where methods fail: the limits of small swings, and what becomes of whole ones."""
 
 BAND = 0.5
-"""How far, as a fraction, energy may go above the highest and below the lowest that the method's
-own bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble).
-"""
+"""The fraction by which energy may leave its range on the linear oscillator, which is
+engine.stability.linear.wobble."""
 
 LOST = f"""\
 A swing is lost if it goes over the top, if it is chaotic and 10 % wider than on the linear

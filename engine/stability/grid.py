@@ -85,11 +85,3 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
         for done, (z, (index, method)) in enumerate(places, 1):
             part = replace(grid, z=grid.z[z], methods=(method,), steps=steps)
             yield Piece(z, index, part.cells()[:, 0], steps, done / len(places))
-
-
-def default_grid(cast: Cast = USUAL_CAST) -> Grid:
-    """Return 200 steps z up to 3, or 3.5 if a method is stable at 3, and 100 amplitudes to pi."""
-    stable_at_3 = any((method.linear_limit or 0) >= 3 for method in cast)
-    top = 3.5 if stable_at_3 else 3.0
-    thetas = (np.arange(100) + 0.5) * np.pi / 100
-    return Grid(thetas, (np.arange(200) + 0.5) * top / 200, 10_000, cast)

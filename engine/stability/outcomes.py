@@ -51,11 +51,11 @@ def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Fl
     up = ((1 + BAND) * highest - 1) * start
     down = (1 - (1 - BAND) * lowest) * start
     if method.symplectic:
-        up[:] = down[:] = math.inf  # it comes back
+        up[:] = down[:] = math.inf  # its energy comes back
     return up, down, widest * theta
 
 
-@np.errstate(all="ignore")  # a swing that is lost may go on to infinity
+@np.errstate(all="ignore")  # lost swings may overflow
 def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
     """Return the outcome of each of many swings within `steps` steps; `fast`: compiled by Numba.
 
@@ -81,10 +81,10 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
             over = np.abs(phase[0]) > watched.top
             above = watched.off > up
             lost = over | above | (watched.off < -down)
-            gone = index[lost]
-            cells["steps"][gone] = begun + done - 1
-            cells["error"][gone] = watched.worst[lost] / watched.start[lost]
-            cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
+            now = index[lost]
+            cells["steps"][now] = begun + done - 1
+            cells["error"][now] = watched.worst[lost] / watched.start[lost]
+            cells["fate"][now] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
             parked |= lost
             for limit in (watched.band, watched.top, up, down):
                 limit[lost] = math.inf

@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.methods import Method
 from engine.scenes import Scene
-from engine.stability.grid import Grid, default_grid
+from engine.stability.grid import Grid
 from engine.stability.outcomes import Cells, Failure, first_failure
 
 THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
@@ -62,10 +62,17 @@ def ladder_of(
 def map_of(
     scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
 ) -> Grid:
-    """Return the grid of a map, with the default amplitudes [rad] and z where none are given."""
-    grid = default_grid(scene.cast)
-    theta = np.array(thetas or grid.theta)
-    return Grid(theta, np.array(zs or grid.z), steps, scene.cast)
+    """Return the grid of a map, by default of 100 amplitudes [rad] up to pi and 200 z up to 3.
+
+    If a method of the cast is stable at 3, as BM4 is, z goes up to 3.5.
+    """
+    if not thetas:
+        thetas = ((np.arange(100) + 0.5) * math.pi / 100).tolist()
+    if not zs:
+        stable_at_3 = any((method.linear_limit or 0) >= 3 for method in scene.cast)
+        largest = 3.5 if stable_at_3 else 3.0
+        zs = ((np.arange(200) + 0.5) * largest / 200).tolist()
+    return Grid(np.array(thetas), np.array(zs), steps, scene.cast)
 
 
 def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:

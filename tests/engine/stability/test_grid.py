@@ -5,15 +5,18 @@ import pytest
 
 from engine.methods import GENERAL, USUAL_CAST
 from engine.run.compiled import available
+from engine.scenes import Scene
 from engine.stability import grid as stability_map
-from engine.stability.grid import Grid, default_grid, pieces
+from engine.stability.grid import Grid, pieces
 from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
+from engine.stability.study import map_of
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_way = pytest.mark.parametrize(
     "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
 )
 GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2:])
+MAP = map_of(Scene(), None, None, 10_000)
 
 
 def test_cells_lie_by_z_method_and_amplitude_and_are_unknown_until_they_are_computed():
@@ -37,21 +40,19 @@ def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip, fast, mo
 
 @needs_numba
 def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_one_is_not():
-    for grid, fast in ((default_grid(), True), (GRID, False), (replace(GRID, fast=True), True)):
+    for grid, fast in ((MAP, True), (GRID, False), (replace(GRID, fast=True), True)):
         assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
 
 
 def test_a_map_computed_in_pieces_is_not_compiled():
-    grid = default_grid()
-    assert grid.z[-1] + grid.z[0] == pytest.approx(3)
-    piece = next(pieces(grid, [50]))
-    plain = replace(grid, z=grid.z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
+    piece = next(pieces(MAP, [50]))
+    plain = replace(MAP, z=MAP.z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
     assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
 
 
 @pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
-def test_the_default_grid_reaches_beyond_every_limit(cast):
-    grid = default_grid(cast)
+def test_the_default_map_reaches_beyond_every_limit(cast):
+    grid = map_of(Scene(cast=cast), None, None, 100)
     assert grid.shape == (200, len(cast), 100)
     limits = [method.linear_limit for method in cast if method.linear_limit < np.inf]
     assert max(limits) < grid.z[-1] < 3.5
