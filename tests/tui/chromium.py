@@ -1,4 +1,4 @@
-"""A headless Chromium under test, by way of the websocket of its developer tools."""
+"""A headless Chromium, controlled through the websocket of its developer tools."""
 
 import asyncio
 import base64
@@ -19,7 +19,7 @@ PROGRAM = next(filter(None, map(shutil.which, NAMES)), None)
 NEEDED = pytest.mark.skipif(PROGRAM is None, reason="Chromium is not there: apt install chromium")
 OPTIONS = (
     "--headless=new",
-    "--no-sandbox",  # which root has not
+    "--no-sandbox",  # which does not work for root
     "--disable-gpu",
     "--no-first-run",
     "--disable-background-networking",
@@ -29,7 +29,7 @@ OPTIONS = (
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",  # nothing comes from elsewhere
 )
 PATIENCE = 60.0  # s, on a busy machine
-# How many pixels of a screenshot have each of some colours, within what smoothing a letter's edge leaves.
+# Counts the pixels of a screenshot near each of some colours.
 _COUNT = """(async () => {
   const image = new Image(); image.src = "data:image/png;base64,%s"; await image.decode();
   const canvas = document.createElement("canvas"); canvas.width = image.width; canvas.height = image.height;
@@ -48,8 +48,10 @@ class Page:
     """A tab of the browser."""
 
     def __init__(self, browser: "Chromium", target: str, session: str) -> None:
-        self.browser, self._target, self._session = browser, target, session
-        self.received: list[bytes] = []  # by its websocket
+        self.browser = browser
+        self._target = target
+        self._session = session
+        self.received: list[bytes] = []  # through its websocket
         self.sent: list[str] = []
         self.thrown: list[str] = []  # errors of its scripts
 
@@ -57,27 +59,22 @@ class Page:
         return await self.browser.call(method, self._session, **parameters)
 
     async def evaluate(self, expression: str) -> Any:
-        told = await self.call(
+        answer = await self.call(
             "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
         )
-        assert "exceptionDetails" not in told, told
-        return told["result"].get("value")
+        assert "exceptionDetails" not in answer, answer
+        return answer["result"].get("value")
 
-    async def until(self, right: Any) -> None:
+    async def until(self, condition: Any) -> None:
         async with asyncio.timeout(PATIENCE):
-            while not right():
+            while not condition():
                 await asyncio.sleep(0.05)
 
     async def press(self, key: str) -> None:
         """Press a key that is a character."""
-        for kind, text in (("keyDown", {"text": key}), ("keyUp", {})):
-            await self.call(
-                "Input.dispatchKeyEvent",
-                type=kind,
-                key=key,
-                windowsVirtualKeyCode=ord(key.upper()),
-                **text,
-            )
+        event = {"key": key, "windowsVirtualKeyCode": ord(key.upper())}
+        await self.call("Input.dispatchKeyEvent", type="keyDown", text=key, **event)
+        await self.call("Input.dispatchKeyEvent", type="keyUp", **event)
 
     async def click(self, x: float, y: float) -> None:
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
@@ -90,10 +87,10 @@ class Page:
         await self.call("Emulation.setDeviceMetricsOverride", **size)
 
     async def pixels(self, colours: list[str]) -> list[int]:
-        """How many pixels have each of the colours "#rrggbb"."""
+        """Return how many pixels have each of the colours "#rrggbb"."""
         shot = (await self.call("Page.captureScreenshot"))["data"]
-        wanted = json.dumps([list(bytes.fromhex(colour[1:])) for colour in colours])
-        return await self.evaluate(_COUNT % (shot, wanted))
+        rgb = json.dumps([list(bytes.fromhex(colour[1:])) for colour in colours])
+        return await self.evaluate(_COUNT % (shot, rgb))
 
     async def close(self) -> None:
         await self.browser.call("Target.closeTarget", targetId=self._target)
@@ -103,44 +100,45 @@ class Chromium:
     """A running browser."""
 
     def __init__(self, socket: Any) -> None:
-        self._socket, self._numbers = socket, itertools.count(1)
+        self._socket = socket
+        self._numbers = itertools.count(1)
         self._answers: dict[int, asyncio.Future[Any]] = {}
         self._pages: dict[str, Page] = {}
 
     async def listen(self) -> None:
         async for message in self._socket:
-            told = json.loads(message.data)
-            if "id" in told:
-                self._answers.pop(told["id"]).set_result(told)
-            elif (page := self._pages.get(told.get("sessionId", ""))) is not None:
-                if told["method"] == "Network.webSocketFrameReceived":
-                    response = told["params"]["response"]
-                    page.received.append(
-                        base64.b64decode(response["payloadData"])
-                        if response["opcode"] == 2
-                        else b""
-                    )
-                elif told["method"] == "Network.webSocketFrameSent":
-                    page.sent.append(told["params"]["response"]["payloadData"])
-                elif told["method"] == "Runtime.exceptionThrown":
-                    page.thrown.append(str(told["params"]["exceptionDetails"]))
+            event = json.loads(message.data)
+            if "id" in event:
+                self._answers.pop(event["id"]).set_result(event)
+            elif (page := self._pages.get(event.get("sessionId", ""))) is not None:
+                self._note(page, event["method"], event["params"])
+
+    def _note(self, page: Page, method: str, parameters: dict[str, Any]) -> None:
+        match method:
+            case "Network.webSocketFrameReceived":
+                response = parameters["response"]
+                if response["opcode"] == 2:  # binary
+                    page.received.append(base64.b64decode(response["payloadData"]))
+            case "Network.webSocketFrameSent":
+                page.sent.append(parameters["response"]["payloadData"])
+            case "Runtime.exceptionThrown":
+                page.thrown.append(str(parameters["exceptionDetails"]))
 
     async def call(self, method: str, session: str | None = None, **parameters: Any) -> Any:
         number = next(self._numbers)
-        answer = self._answers[number] = asyncio.get_running_loop().create_future()
-        whose = {} if session is None else {"sessionId": session}
-        await self._socket.send_json(
-            {"id": number, "method": method, "params": parameters, **whose}
-        )
-        told = await asyncio.wait_for(answer, PATIENCE)
-        assert "error" not in told, told
-        return told["result"]
+        future = self._answers[number] = asyncio.get_running_loop().create_future()
+        request = {"id": number, "method": method, "params": parameters}
+        if session is not None:
+            request["sessionId"] = session
+        await self._socket.send_json(request)
+        answer = await asyncio.wait_for(future, PATIENCE)
+        assert "error" not in answer, answer
+        return answer["result"]
 
     async def open(self, url: str, width: int = 1000, height: int = 700) -> Page:
         target = (await self.call("Target.createTarget", url="about:blank"))["targetId"]
-        session = (await self.call("Target.attachToTarget", targetId=target, flatten=True))[
-            "sessionId"
-        ]
+        attached = await self.call("Target.attachToTarget", targetId=target, flatten=True)
+        session = attached["sessionId"]
         page = self._pages[session] = Page(self, target, session)
         for domain in ("Page", "Network", "Runtime"):
             await page.call(f"{domain}.enable")
@@ -151,7 +149,7 @@ class Chromium:
 
 @asynccontextmanager
 async def chromium(folder: Any):
-    """A browser whose profile is in the folder."""
+    """Run a browser with its profile in the folder."""
     command = [PROGRAM, *OPTIONS, f"--user-data-dir={folder}"]
     process = subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True

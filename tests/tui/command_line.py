@@ -1,4 +1,4 @@
-"""Run the command line within the test's process and keep what it printed."""
+"""Run the command line in the test's process and capture its output."""
 
 import io
 import json
@@ -21,7 +21,7 @@ class Outcome:
         return json.loads(self.out, parse_constant=_no_constant)
 
     def refused(self, code: int, *words: str) -> bool:
-        """Whether it ended with this code and one sentence on stderr that has all these words."""
+        """Check that it ended with this code and with one sentence on stderr with these words."""
         assert self.code == code, (self.code, self.err)
         assert self.err.count("\n") == 1, self.err
         assert self.err.startswith("pendu-tui: ")
@@ -32,16 +32,18 @@ class Outcome:
 
 
 def pendu(*arguments: object) -> Outcome:
-    out, err = (
-        io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True) for _ in range(2)
-    )
-    with redirect_stdout(out), redirect_stderr(err):
+    out = io.BytesIO()
+    err = io.BytesIO()
+    with (
+        redirect_stdout(io.TextIOWrapper(out, encoding="utf-8", write_through=True)),
+        redirect_stderr(io.TextIOWrapper(err, encoding="utf-8", write_through=True)),
+    ):
         code = main([str(argument) for argument in arguments])
-    return Outcome(code, *(stream.buffer.getvalue().decode() for stream in (out, err)))
+        return Outcome(code, out.getvalue().decode(), err.getvalue().decode())
 
 
 def own_method(folder: Path) -> str:
-    """A file with symplectic Euler in it as somebody's own method, for --method."""
+    """Write symplectic Euler to a file, and return the argument of --method."""
     lines = [
         "def mine(force, phase, h):",
         "    theta, omega = phase",

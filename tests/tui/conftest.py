@@ -22,19 +22,20 @@ _computed: dict[bytes, list[object]] = {}
 async def computed_here(
     function: Callable[..., Iterator[object]], *arguments: object
 ) -> AsyncIterator[object]:
-    """As tui.views.background.computed, but in a thread, and each thing once.
+    """Compute as tui.views.background.computed does, but in a thread, and keep the results.
 
-    Another process takes seconds to import everything again, and many tests look at the same map.
+    Another process takes seconds to import everything, and many tests need the same map.
     """
     task = pickle.dumps((function, arguments))
     for item in _computed.get(task, ()):
         yield item
     if task not in _computed:
-        items, found = function(*arguments), []
+        items = function(*arguments)
+        computed = []
         while (item := await asyncio.to_thread(next, items, None)) is not None:
-            found.append(item)
+            computed.append(item)
             yield item
-        _computed[task] = found
+        _computed[task] = computed
 
 
 @pytest.fixture(autouse=True)
@@ -52,7 +53,7 @@ def snapshot(request: pytest.FixtureRequest) -> Hold:
 
 @pytest.fixture
 def text_snapshot(request: pytest.FixtureRequest) -> Hold:
-    """The same for the text of an SVG picture and its colours: a changed word is a changed line."""
+    """Compare the text and the colours of an SVG picture with those stored."""
     update = request.config.getoption("--snapshot-update")
 
     def hold(name: str, svg: str) -> None:
@@ -82,7 +83,7 @@ def compare(
 
 
 def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
-    """Each cell's character and look, and each background, however they were strung together."""
+    """Return the character and the style of each cell, and the backgrounds."""
     looks = dict(re.findall(r"\.terminal-(r\d+) { (.*) }", svg))
     cells: dict[tuple[str, int], tuple[str, str]] = {}
     behind = r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"'
@@ -101,12 +102,12 @@ def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
 
 
 def lines_of(svg: str) -> list[str]:
-    """The words of a picture, without their places."""
+    """Return the words of a picture, without their places."""
     return [text.replace("&#160;", " ").rstrip() for text in re.findall(r">([^<>\n]+)</text>", svg)]
 
 
 def text_of(svg: str) -> str:
-    """The characters of an SVG of the screen, line by line, without trailing blanks."""
+    """Return the text of an SVG of the screen, without trailing blanks."""
     lines: dict[int, str] = {}
     for x, line, text in TEXT.findall(svg):
         before = lines.get(int(line), "").ljust(round(float(x) / CELL))

@@ -1,4 +1,4 @@
-"""What a picture shows, cell by cell."""
+"""The contents of a picture, cell by cell."""
 
 from tui.drawing.picture import Picture
 
@@ -15,7 +15,7 @@ def cells(picture: Picture) -> dict[tuple[int, int], tuple[str, object]]:
 
 def places(picture: Picture, ink: object) -> set[tuple[int, int]]:
     """Return the (column, row) of all that is in an ink."""
-    return {(column, row) for (row, column), (_, each) in cells(picture).items() if each == ink}
+    return {(column, row) for (row, column), (_, used) in cells(picture).items() if used == ink}
 
 
 def inks(picture: Picture) -> set[object]:

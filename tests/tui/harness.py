@@ -1,4 +1,4 @@
-"""A lab or a replay under test, whose clock stands until `run` moves it: without a screen, or on one."""
+"""Labs and replays under test, with or without a screen; their clock moves only in `run`."""
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
@@ -25,14 +25,15 @@ from tui.screens.still import settled
 from tui.terminal.options import FPS
 from tui.views import VIEWS
 
-PATIENCE = 120  # s; a process that ended would be waited for in vain
+PATIENCE = 120  # s
 
 
 class Clocked:
     """A source and its clock."""
 
     def __init__(self, source: Source) -> None:
-        self.source, self.now = source, 0.0
+        self.source = source
+        self.now = 0.0
         source.tick(0.0)
 
     def run(self, seconds: float) -> Sample:
@@ -61,7 +62,7 @@ class Lab(Clocked):
 
 
 def after(scene: Scene, seconds: float) -> Live:
-    """A lab that has run for so long."""
+    """Return a lab that has run for some seconds."""
     lab = Lab(scene)
     lab.run(seconds)
     return lab.live
@@ -128,7 +129,7 @@ class Theatre:
         await self.pilot.press(*keys)
 
     def text(self, widget: type[CellWidget] | str) -> str:
-        """What the first such widget on the screen shows."""
+        """Return the text of the first such widget on the screen."""
         return self.stage.query(widget).first(CellWidget).text
 
     async def settled(self) -> None:
@@ -136,7 +137,7 @@ class Theatre:
 
 
 def key_of(view: str) -> str:
-    """The key that shows a view, as Textual calls it."""
+    """Return the key that shows a view, as Textual calls it."""
     return f"f{2 + list(VIEWS).index(view)}"
 
 
@@ -167,14 +168,14 @@ def player(path: Path, size: tuple[int, int] = (120, 40)) -> Any:
 
 
 async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
-    """Wait for something that is computed in the background."""
+    """Wait for something computed in the background."""
     async with asyncio.timeout(PATIENCE):
         while not condition():
             await pilot.pause(0.05)
 
 
 async def uncomputed(*_: object) -> AsyncIterator[object]:
-    """Replaces tui.views.background.computed where a test does not look at the results."""
+    """Replace tui.views.background.computed where a test needs no results."""
     return
     yield
 
@@ -187,7 +188,7 @@ async def view_of(
     complete: Callable[[Any], bool],
     size: tuple[int, int],
 ) -> AsyncIterator[tuple[Pilot[Any], Any]]:
-    """The view of a screen that a key shows, and its pane of this kind once that is complete."""
+    """Show a view by its key; yield the pilot and a pane of the view once it is complete."""
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.press(key)

@@ -1,6 +1,6 @@
-"""A pytest plugin: another processor.
+"""A pytest plugin that emulates another processor, whose functions differ in the last bit.
 
-pytest -p tests.tui.last_bits; it must come before all that imports from math.
+pytest -p tests.tui.last_bits loads it before anything imports from math.
 """
 
 import math
@@ -14,8 +14,9 @@ def off_by_one(function: Callable[..., float]) -> Callable[..., float]:
 
     def other(*arguments: float) -> float:
         value = function(*arguments)
-        way = math.inf if hash(arguments) % 2 else -math.inf
-        return value if value in (0, 1, -1) else math.nextafter(value, way)
+        if value in (0, 1, -1):
+            return value
+        return math.nextafter(value, math.inf if hash(arguments) % 2 else -math.inf)
 
     return other
 

@@ -1,4 +1,4 @@
-"""A monkey at the keyboard and the mouse: random, and the same for the same seed."""
+"""Random input of keyboard and mouse, the same for the same seed."""
 
 import itertools
 import random
@@ -26,18 +26,18 @@ LARGEST = 300, 90
 VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
 MOVES = [f"\x1b[{key}" for key in ("A", "B", "C", "D", "H", "F", "5~", "6~")]
 KEYS = [*"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t", *MOVES]
-CALMING = "<<00++rp   "  # else the lab would stand still, or take long to verify
+CALMING = "<<00++rp   "  # else the lab would often be paused, or take long to verify
 TYPED = "0123456789.-edg\x7f"
-EPISODE = 60  # presses until what lies over the lab is closed
+EPISODE = 60  # presses until dialogs are closed
 ESC, PALETTE = "\x1b", "\x10"
 OVERLAYS = ("?", "i", "d", "E", PALETTE)
 GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"
-LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
-STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next, on a stage
+LOOK = 0.004  # s by which the work clock advances when it is read, so that a frame's budget ends
+STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next
 
 
 def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
-    """A key or something with the mouse, as a terminal of this size sends it."""
+    """Return the input of a key or the mouse, as a terminal of this size sends it."""
 
     def mouse(button: int, end: str) -> str:
         column = chance.randint(1, size[0])
@@ -65,8 +65,9 @@ def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
 
 
 def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
-    """Presses, dialogs, the palette and what it offers, pasted garbage, text, and other sizes."""
-    chance, size = random.Random(seed), SIZE
+    """Yield keys, mouse input, dialogs, palette commands, pasted garbage, text and sizes."""
+    chance = random.Random(seed)
+    size = SIZE
     for done in range(number):
         if done % EPISODE == 0:
             yield from (ESC, ESC)
@@ -92,16 +93,23 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
 async def play_on_stage(
     theatre: Theatre, what: Iterable[str | tuple[int, int]], seed: int, batch: int = 1
 ) -> None:
-    """Let the monkey play where nothing depends on how fast the machine is, if the lab may rest after each press."""
-    app, parser, chance = theatre.app, XTermParser(), random.Random(-seed)
+    """Send input, and let the app settle and the clock advance after each `batch`.
+
+    With a batch of 1 nothing depends on the speed of the machine.
+    """
+    app = theatre.app
+    parser = XTermParser()
+    chance = random.Random(-seed)
     driver = app._driver
     assert driver is not None
-    for number, did in enumerate(what):
-        if isinstance(did, tuple):
-            driver._size = did
-            app.post_message(Resize(Size(*did), Size(*did)))
+    for number, item in enumerate(what):
+        if isinstance(item, tuple):
+            driver._size = item
+            app.post_message(Resize(Size(*item), Size(*item)))
+        elif item == ESC:
+            driver.process_message(Key("escape", None))
         else:
-            for message in [Key("escape", None)] if did == ESC else parser.feed(did):
+            for message in parser.feed(item):
                 driver.process_message(message)
         if number % batch:
             continue
@@ -116,7 +124,7 @@ async def play_on_stage(
 
 @contextmanager
 def small_studies(library: Path) -> Iterator[None]:
-    """F4 and F5 compute little, and here; recordings and pictures go to the library."""
+    """Let F4 and F5 compute little and in this process; save recordings and pictures in a library."""
     few = ladder(5.0, 0.2, 0.05, 2)
     with ExitStack() as stack:
         stack.enter_context(patch.dict("os.environ", PENDU_RECORDINGS=str(library)))
@@ -130,7 +138,7 @@ def small_studies(library: Path) -> Iterator[None]:
 
 
 async def still(theatre: Theatre) -> None:
-    """Wait for what was asked for, in other threads, too; but not for charts."""
+    """Wait until messages and workers are done; charts may be unfinished."""
     await theatre.pilot.pause(0)
     while not all(worker.is_finished for worker in theatre.app.workers):
         await theatre.pilot.pause(0.001)
@@ -139,7 +147,7 @@ async def still(theatre: Theatre) -> None:
 def wild_stage(
     library: Path, scene: Scene = DEFAULT_SCENE
 ) -> Callable[[Callable[[], float]], LiveScreen]:
-    """Makes a lab that is recorded in a library."""
+    """Return a function that makes a lab recorded in a library."""
 
     def make(clock: Callable[[], float]) -> LiveScreen:
         live = Live(scene, clock=itertools.count(0.0, LOOK).__next__)

@@ -1,4 +1,4 @@
-"""The real program on a pseudo-terminal: type, read what it sends, wait for it."""
+"""The real program on a pseudo-terminal: type to it, read its output, wait for text."""
 
 import fcntl
 import os
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 
 class PtyLab:
-    """A running `pendu-tui` with its terminal, perhaps behind a line of `rate` bytes a second."""
+    """A running `pendu-tui` with its terminal, perhaps on a line of `rate` bytes a second."""
 
     def __init__(
         self,
@@ -41,17 +41,16 @@ class PtyLab:
             terminal = {
                 "TERM": "xterm-256color",
                 "COLORTERM": "truecolor",
-                "COLORFGBG": "15;0",  # so that nobody asks for the background
+                "COLORFGBG": "15;0",  # so that the program does not query the background
                 "PYTHONUTF8": "1",
             }
             for name in ("COLUMNS", "LINES"):
                 os.environ.pop(name, None)
             os.environ.update(terminal | environment)
             os.execvp(program[0], [*program, *arguments])
-        self._arrival = 0.0  # of the last packet, s since the start
+        self._arrival = 0.0  # s since the start, of the last packet
         self.output = bytearray()
-        self.reads: list[tuple[float, int]] = []
-        """When how many bytes came, in s since the start."""
+        self.reads: list[tuple[float, int]] = []  # s since the start, bytes
         self.code: int | None = None
 
     def __enter__(self) -> Self:
@@ -68,38 +67,38 @@ class PtyLab:
         return time.monotonic() - self.began
 
     def read(self, seconds: float) -> bytes:
-        """What comes within `seconds`, at most one piece; empty if nothing does or the program is gone."""
+        """Read once, after at most `seconds`; return b"" if nothing came or the program ended."""
         ready, _, _ = select.select([self.terminal], [], [], max(seconds, 0))
+        if not ready:
+            return b""
         try:
-            piece = b""
-            if ready:
-                piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET)
-        except OSError:  # Linux: nobody has the other end open any more
+            piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET)
+        except OSError:  # Linux: the other end is closed
             time.sleep(0.01)
             return b""
-        if piece:
-            if self.rate is not None:
-                self._arrival = max(self.now, self._arrival) + len(piece) / self.rate
-                time.sleep(max(0.0, self._arrival - self.now))
-            self.output += piece
-            self.reads.append((self.now, len(piece)))
+        if self.rate is not None:
+            self._arrival = max(self.now, self._arrival) + len(piece) / self.rate
+            time.sleep(max(0.0, self._arrival - self.now))
+        self.output += piece
+        self.reads.append((self.now, len(piece)))
         return piece
 
     def run(self, seconds: float) -> bytes:
-        end, start = self.now + seconds, len(self.output)
+        end = self.now + seconds
+        start = len(self.output)
         while self.now < end:
             self.read(end - self.now)
         return bytes(self.output[start:])
 
     def wait_for(self, text: str, seconds: float = 20.0) -> float:
-        """Read until a text comes; returns when it came, in s since the start."""
+        """Read until a text comes; return the time [s since the start]."""
         known = max(0, len(self.output) - len(text))
         return self.wait_for_match(re.compile(re.escape(text.encode())), seconds, known)
 
     def wait_for_match(
         self, pattern: re.Pattern[bytes], seconds: float = 20.0, known: int = 0
     ) -> float:
-        """Read until a pattern is in what has come after `known` bytes."""
+        """Read until a pattern matches the output after `known` bytes; return the time."""
         end = self.now + seconds
         while not pattern.search(self.output, known):
             if self.now > end:
@@ -119,7 +118,7 @@ class PtyLab:
             self.terminal = -1
 
     def end(self, seconds: float = 20.0) -> int:
-        """Read until the program has ended; returns its exit code, negative for a signal."""
+        """Read until the program has ended; return its exit code, negative for a signal."""
         end = self.now + seconds
         while self.code is None:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
@@ -136,6 +135,6 @@ class PtyLab:
         return self.code
 
     def cpu_seconds(self) -> float:
-        """Processor time used so far."""
+        """Return the processor time used so far."""
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
