@@ -1,4 +1,4 @@
-"""The six names of `from engine import ...`, as people with code of their own use them."""
+"""The six names of `from engine import ...`."""
 
 import math
 import pkgutil
@@ -36,7 +36,7 @@ def test_no_module_hides_a_name_of_the_library():
         assert callable(getattr(engine, name))
 
 
-def test_recommend_takes_the_target_by_its_safety_and_any_general_method():
+def test_recommend_divides_the_target_by_the_safety():
     best, *others = recommend(1e-2, theta=2.0, time=5, safety=2)
     assert best.point.theta_error <= 5e-3
     assert best.times == 1 < others[0].times
@@ -67,7 +67,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
 
 
-def test_results_print_in_a_few_lines_and_a_method_that_did_not_run_gets_a_sentence():
+def test_results_print_briefly_and_refuse_other_methods_with_a_sentence():
     run = simulate(time=60, methods="rk4,verlet")
     for results in (run, limits(methods="rk4,verlet", steps=5)):
         assert results["verlet"] is results["velocity_verlet"]

@@ -1,4 +1,4 @@
-"""A scene is validated where it is made, and what it tells people to watch is measured."""
+"""Scenes are validated, and what they tell people to watch is measured."""
 
 import math
 from dataclasses import replace
@@ -24,7 +24,7 @@ def test_a_value_beyond_its_limits_is_refused_in_a_sentence(field):
 
 
 @pytest.mark.parametrize("h", [0.0, -0.05, math.nan, math.inf, -math.inf, 1e9, 1e-12])
-def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h):
+def test_a_useless_step_size_is_refused_and_a_good_one_is_named(h):
     with pytest.raises(SceneError, match=r"^h = .* is not a usable step; .* for example 0\.05\.$"):
         Scene(h=h)
 
@@ -220,7 +220,7 @@ def test_turned_round_verlet_comes_back_but_not_in_chaos(name, seconds, least, m
     assert least <= math.hypot(verlet.theta - scene.theta, verlet.omega / scene.w0) < most
 
 
-def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second():
+def test_spin_symplectic_euler_and_verlet_have_the_same_angle():
     """Half a kick apart they are one method; at the bottom, where this starts, the kick is 0."""
     samples = watch("spin", 60)
     for _, euler, verlet, _ in (sample.readings for sample in samples):
@@ -228,7 +228,7 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second():
     assert abs(euler.omega - verlet.omega) > 1e-3
 
 
-def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its_energy():
+def test_euler_caught_is_held_near_110_times_its_energy_by_half_a_turn_a_step():
     scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"], judged=True)
     turns, energies = [], []
     while lockstep.t < 10 * scene.speed:  # seconds of watching
@@ -259,7 +259,7 @@ def test_the_limit_scenes_stand_on_either_side_of_their_limit(name, limit):
 
 
 @pytest.mark.parametrize("share", [(math.sqrt(5) - 1) / 2, 5 / 8])
-def test_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h(share):
+def test_a_rational_part_of_h_avoids_the_resonance_like_an_irrational_one(share):
     lockstep = Lockstep(SCENES["resonance"].altered(h=share * SCENES["resonance"].h))
     lockstep.advance(10_000)
     verlet = lockstep.sample().readings[0]

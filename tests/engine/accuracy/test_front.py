@@ -35,7 +35,7 @@ def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
 
 
-def test_the_order_decides_which_method_is_cheapest_and_by_which_factor():
+def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
     found = front(LINES, "theta", "evaluations")
     assert [cut.target for cut in found] == pytest.approx([10.0**-n for n in range(1, 13)])
     for one in found:

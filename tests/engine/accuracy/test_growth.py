@@ -30,9 +30,7 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
     ],
     ids=lambda value: str(getattr(value, "key", "")),
 )
-def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_squared(
-    scene, method, power
-):
+def test_symplectic_errors_grow_as_t_and_rk4s_as_t_squared(scene, method, power):
     found = growth(scene, method)
     if power is None:
         assert found.power is None

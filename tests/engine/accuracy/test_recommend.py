@@ -1,4 +1,4 @@
-"""What is recommended was found by search and holds when it is run again, compared at every step."""
+"""Recommended runs hold when they are repeated and compared at every step."""
 
 import math
 from dataclasses import replace
@@ -50,7 +50,7 @@ def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     assert largest <= target
 
 
-def test_a_target_near_the_rounding_floor_is_reached_where_refining_still_helps():
+def test_a_target_near_the_rounding_floor_is_reached():
     point = recommended(DRIFT, 20.0, "theta", 2e-13)
     assert point.method is R
     assert point.theta_error <= 2e-13
@@ -84,7 +84,7 @@ def test_each_method_has_its_own_h_and_its_cost_in_that_of_the_cheapest():
         assert times <= MAX_TIMES
 
 
-def test_a_method_that_is_given_up_needs_about_what_its_order_promises():
+def test_a_method_that_is_given_up_needs_about_what_its_order_predicts():
     (attempt,) = reach(Study(replace(DRIFT, cast=(V,)), 10.0, LOOPS), "theta", 1e-8, 50_000)
     about = float(attempt.why_not.removeprefix("needs about ").removesuffix(" evaluations"))
     needed = recommended(replace(DRIFT, cast=(V,)), 10.0, "theta", 1e-8).force_evaluations

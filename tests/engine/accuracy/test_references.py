@@ -22,7 +22,7 @@ REGIMES = {
 
 
 @pytest.mark.slow
-def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding():
+def test_tighter_tolerances_take_more_steps_down_to_rounding():
     points = list(taylor_points(SWING, 100.0, time.perf_counter))
     assert len(points) == 17
     assert points[0].flaws.theta == "lost"
@@ -35,7 +35,7 @@ def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding():
 
 
 @pytest.mark.parametrize("regime", REGIMES)
-def test_the_compiled_closed_form_is_that_of_plain_python_but_for_the_last_digit(regime):
+def test_the_compiled_closed_form_differs_in_the_last_digit_at_most(regime):
     import numba
 
     scene, times = REGIMES[regime], np.linspace(0, 20, 401).tolist()

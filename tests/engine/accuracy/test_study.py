@@ -46,9 +46,7 @@ def test_some_starts_read_a_higher_order_than_the_methods(name, time, method, me
 
 
 @given(st.floats(0.1, 1e4), st.floats(1e-3, 1), st.floats(1e-3, 1), st.integers(2, 30))
-def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_time(
-    time, coarsest, finest, count
-):
+def test_a_ladder_goes_from_the_first_h_to_the_last(time, coarsest, finest, count):
     h_max, h_min = coarsest * time, coarsest * finest * time
     rungs = ladder(time, h_max, h_min, count)
     assert rungs == sorted(set(rungs))
@@ -57,7 +55,7 @@ def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_ti
     assert (rungs[0], rungs[-1]) == pytest.approx((time / h_max, time / h_min), abs=0.51)
 
 
-def test_a_study_has_a_point_for_every_rung_and_method_and_costs_are_counted(points):
+def test_a_study_has_a_point_with_its_cost_for_every_rung_and_method(points):
     assert [(p.steps, p.method) for p in points] == list(itertools.product(STEPS, USUAL_CAST))
     for point in points:
         assert point.h * point.steps == pytest.approx(20.0)
@@ -109,7 +107,7 @@ def test_a_failed_run_is_kept_with_its_flaw(points):
 
 @pytest.mark.parametrize("time", [2.0, 20.0])
 @pytest.mark.parametrize("name", ["drift", "gentle", "large-swing", "near-separatrix", "spin"])
-def test_the_rounding_floor_lies_above_the_rounding_errors_but_not_far_above(name, time):
+def test_the_rounding_floor_lies_not_far_above_rounding_errors(name, time):
     study, steps = Study(SCENES[name], time, LOOPS), 2**17
     point, floors = study.run(R, steps), rounding_floor(SCENES[name], time)
     energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in floors)

@@ -45,7 +45,7 @@ def test_over_100_s_a_tolerance_buys_its_error_for_few_steps(scene, tolerance, m
     assert taken == pytest.approx(steps, rel=0.1)
 
 
-def test_the_energy_of_twenty_starts_walks_at_random_and_does_not_drift():
+def test_the_energy_walks_at_random_and_does_not_drift():
     ends = []
     for n in range(20):
         theta, omega = 0.2 + 0.14 * n, 0.3 * (n % 3)

@@ -1,4 +1,4 @@
-"""Every field of METHODS is a claim; here each is measured, on the nonlinear pendulum."""
+"""Measure every field of METHODS on the nonlinear pendulum."""
 
 import cmath
 import math
@@ -98,7 +98,7 @@ def test_backward_euler_loses_energy_and_heun_and_the_midpoint_rule_gain_some(me
 
 
 @given(z=st.floats(0.001, 5.0))
-def test_of_small_swings_a_step_keeps_or_multiplies_the_energy_as_the_cards_say(z):
+def test_the_energy_of_small_swings_changes_as_the_cards_say(z):
     gain = 1 + z**4 / 4
     for method, factor in ((HEUN, gain), (EXPLICIT_MIDPOINT, gain), (IMPLICIT_MIDPOINT, 1)):
         theta, omega = method.step(lambda angle: -angle, (0.6, 0.8), z)

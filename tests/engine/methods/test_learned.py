@@ -1,4 +1,4 @@
-"""Two models learned from the same measurements: one conserves a function, the other nothing."""
+"""Methods learned from the same measurements keep different structure."""
 
 import math
 from itertools import islice
@@ -67,7 +67,7 @@ def largest_energy_errors(method, start):
         (2.0, (0.15, 0.0033, 0.17, 0.0032)),
     ],
 )
-def test_the_energy_errors_are_the_cards_and_bounded_only_where_structure_is_kept(start, figures):
+def test_energy_errors_are_those_of_the_cards_and_bounded_by_structure(start, figures):
     errors = {method: largest_energy_errors(method, start) for method in FAMILY}
     assert [late for _, late in errors.values()] == pytest.approx(figures, rel=0.1)
     for method in (RK4_LEARNED_HAMILTONIAN, LEARNED_SYMPLECTIC_MAP):

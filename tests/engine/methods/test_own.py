@@ -1,4 +1,4 @@
-"""A user's own method: what it may be, what is said of one that is wrong, and what becomes of it while it runs."""
+"""A user's own method: what is accepted, what is refused with a sentence, and how it runs."""
 
 import hashlib
 import pickle
@@ -75,7 +75,7 @@ def test_verlet_written_again_is_measured_to_be_verlet():
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
 
 
-def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there():
+def test_it_has_the_same_bits_in_another_process():
     grid = Grid(np.array([0.5, 2.0]), np.array([0.3, 1.9]), 50, (loaded(VERLET), VELOCITY_VERLET))
     with ProcessPoolExecutor(1, get_context("spawn")) as executor:
         cells = np.concatenate(list(executor.map(Grid.cells, grid.strips())))
@@ -83,7 +83,7 @@ def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there():
     assert (cells == grid.cells()).all()
 
 
-def test_it_is_never_compiled_for_it_may_hold_anything():
+def test_it_is_never_compiled():
     pytest.importorskip("numba")
     mine, model = loaded(VERLET), Pendulum(9.81)
     assert isinstance(compiled(mine, model), PlainLoops)
@@ -132,11 +132,11 @@ def test_a_wrong_method_gets_one_sentence_that_says_where(wrong):
 
 @example("A#\x1b", "{}")
 @given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
-def test_whatever_the_text_is_there_is_a_sentence(text, around):
+def test_any_text_gets_a_sentence(text, around):
     assert refusal(around.replace("{}", text))
 
 
-def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short():
+def test_the_sentence_about_a_wrong_method_is_short():
     shown = "class Odd:\n    def __repr__(self): raise ValueError\n"
     assert "yields a Odd;" in refusal(shown + euler(yields="Odd()"))
     assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n\\x1b')"))) < 400
@@ -155,7 +155,7 @@ def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
         lockstep.advance(30_000)
 
 
-def test_where_its_numbers_end_it_has_diverged_as_any_method_does():
+def test_it_diverges_as_any_method_does():
     lockstep = Lockstep(SCENES["linear"].with_cast((loaded(euler()),)))
     lockstep.advance(10_000)
     (reading,) = lockstep.sample().readings

@@ -1,4 +1,4 @@
-"""The methods that belong to a scene: METHODS' claims of them, and their cards' notes."""
+"""Measure the methods that belong to one scene: fields of METHODS and notes on cards."""
 
 import math
 from fractions import Fraction
@@ -131,7 +131,7 @@ def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method, off)
     assert determinant / math.exp(-friction * h) - 1 == pytest.approx(off, rel=0.1, abs=1e-14)
 
 
-def test_conformal_verlet_is_cheapest_at_one_percent_and_rk4_from_a_thousandth_on():
+def test_conformal_verlet_is_cheaper_at_one_percent_and_rk4_at_a_thousandth():
     verlet, rk4 = (
         [log_energy_error(method, n) for n in (1440, 5760)] for method in (CONFORMAL_VERLET, RK4)
     )
@@ -163,7 +163,7 @@ def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments):
     assert abs(total.compensation) <= math.ulp(1e6) / 2
 
 
-def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well():
+def test_imex_euler_is_stable_at_any_stiffness_and_stops_the_swing_too():
     stiffest = Spring(9.81, 1e14)
     z, w = PlainLoops(IMEX_EULER, stiffest).propagate(stiffest.start(1.0, 0.0), 0.02, 1500)
     assert z == pytest.approx(-1j, abs=0.02)

@@ -1,4 +1,4 @@
-"""Splittings: what their cards say."""
+"""Measure what the cards of the splittings say."""
 
 import math
 from functools import cache

@@ -97,7 +97,7 @@ def test_another_model_runs_with_its_variables_and_its_parameter(pendu):
     assert rows[1]["square"] == pytest.approx(math.exp(-4), rel=1e-3)
 
 
-def test_another_model_is_recorded_and_verified_and_has_a_picture_of_the_lab(pendu):
+def test_another_model_is_recorded_verified_and_drawn(pendu):
     pendu("run", "--scene", "scene.toml", "--time", "2", "--record", "a.mcap")
     assert "identical" in pendu("verify", "a.mcap")
     pendu("export", "a.mcap", "-o", "a.csv")

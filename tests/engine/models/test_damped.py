@@ -58,7 +58,7 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     assert math.isfinite(DampedPendulum(9.81, 20.0).reference(2.0, 0.0).error(10.0, -1000.0))
 
 
-def test_it_swings_when_it_cannot_go_over_the_top_turns_when_it_may_and_has_no_period():
+def test_energy_decides_the_regime_and_there_is_no_period():
     model = DampedPendulum(9.81, 0.05)
     regimes = {start: model.exact(*start) for start in ((2.0, 0.0), (0.0, 8.0), (0.0, 0.0))}
     assert [exact.regime for exact in regimes.values()] == ["libration", "rotation", "equilibrium"]

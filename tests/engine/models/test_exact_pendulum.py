@@ -1,4 +1,4 @@
-"""The closed form against mpmath at 50 digits, which is right and slow, and against the laws of the motion."""
+"""The closed form against mpmath at 50 digits and against the laws of motion."""
 
 import math
 

@@ -105,7 +105,7 @@ def structure(phase):
     return tensor
 
 
-def test_a_lockstep_watches_the_probability_at_every_step_however_it_is_cut():
+def test_a_lockstep_watches_the_probability_at_every_step():
     alone, cut = Lockstep(SCENES["mean-field"]), Lockstep(SCENES["mean-field"])
     alone.advance(1200)
     for _ in range(400):

@@ -27,7 +27,7 @@ def test_only_symplectic_methods_have_one():
 
 
 @pytest.mark.parametrize("method", with_shadow, ids=lambda method: method.key)
-def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy_with_h4(method):
+def test_the_energy_wobbles_by_the_order_and_the_modified_energy_by_h4(method):
     (plain, modified), (finer, finer_modified) = (wobbles(method, h) for h in (0.05, 0.025))
     assert modified < plain / 100
     # the sampled extremes of a wobble are a few per cent off the true ones

@@ -39,6 +39,6 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
     assert Pendulum(9.81).level(math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
 
 
-def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix():
+def test_errors_are_relative_to_the_start_or_to_the_separatrix():
     assert Pendulum(9.81).reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
     assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, 2 * 9.81)

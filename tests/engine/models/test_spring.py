@@ -16,7 +16,7 @@ SPRING = Spring(9.81, 2500.0)
 places = st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3)
 
 
-def test_at_the_start_the_spring_is_stretched_by_4_percent_more_than_gravity_does():
+def test_the_start_is_stretched_by_4_percent_beyond_equilibrium():
     z, w = SPRING.start(1.0, 0.0)
     assert z == pytest.approx(0.8769138657516443 - 0.5630599180095599j, abs=1e-15)
     assert w == 0
@@ -51,7 +51,7 @@ def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy():
         assert energy(SPRING.place(1.0, 0.0, t)) == pytest.approx(energy(start), rel=1e-11)
 
 
-def test_the_true_motion_keeps_the_energy_of_the_spring_within_2_5_percent():
+def test_the_true_motion_keeps_the_springs_energy_within_2_5_percent():
     half_a_minute = [SPRING.place(1.0, 0.0, n / 50) for n in range(1500)]
     energies = np.array([SPRING.spring_energy(phase) for phase in half_a_minute])
     assert 1.02 < max(energies / energies[0]) < 1.025
@@ -74,6 +74,6 @@ def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing():
         Scene(model="spring", cast=())
 
 
-def test_where_the_spring_is_too_fast_to_be_followed_the_true_motion_is_not_known():
+def test_the_true_motion_of_too_fast_a_spring_is_not_known():
     assert math.isfinite(Spring(9.81, 1e6).exact(1.0, 0.0).at(0.1).theta)
     assert all(map(math.isnan, Spring(9.81, 1e14).exact(1.0, 0.0).at(30.0)))

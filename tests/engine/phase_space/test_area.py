@@ -1,4 +1,4 @@
-"""Area kept and lost along a run, and a ring of neighbours that keeps up with one."""
+"""The change of area along a run, and a ring of neighbours that follows a run."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from engine.scenes import SCENES, Scene
 DRIFT = SCENES["drift"]
 
 
-def test_symplectic_methods_keep_area_over_two_thousand_steps_and_rk4_loses_it_very_slowly():
+def test_symplectic_methods_keep_area_and_rk4_loses_it_slowly():
     neighbourhood = Neighbourhood(DRIFT, radius=0.05)
     neighbourhood.advance(100, Stepping(DRIFT.h))
     assert neighbourhood.area_ratios[0] > 2  # explicit Euler's, while it swings
@@ -53,7 +53,7 @@ def expected(*stretches, scene=DRIFT):
     return np.array(ring.rings)
 
 
-def test_neighbours_take_the_steps_of_the_run_whenever_and_however_often_they_follow():
+def test_neighbours_take_the_steps_of_the_run_whenever_they_follow():
     run, early = RewindableRun(DRIFT, 1), Neighbours(0.1)
     for steps, h in ((7, 0.02), (5, -0.02)):
         run.forward(steps)

@@ -1,4 +1,4 @@
-"""The method's own map: sections against direct iteration, rotation numbers against theory, chaos where it is known."""
+"""Sections against direct iteration, rotation numbers against theory, and known chaos."""
 
 import math
 from fractions import Fraction
@@ -96,7 +96,7 @@ def test_a_curve_beside_a_resonance_is_no_island():
         assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
 
 
-def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island_over_the_top():
+def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
     spun = kind(SYMPLECTIC, 0.1, 0.5, omega=math.pi / 0.5)  # omega h = pi
     assert (spun.spins, spun.fraction, spun.island) == (True, Fraction(1, 2), True)
 
@@ -116,7 +116,7 @@ def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, z):
 
 
 @pytest.mark.parametrize("steps", [300, 4000])
-def test_a_regular_orbits_lyapunov_number_is_below_what_so_many_steps_can_tell(steps):
+def test_a_lyapunov_number_separates_regular_from_chaotic_orbits(steps):
     regular = max(kind(VERLET, 0.5, 1.41, steps).lyapunov, kind(VERLET, 2.0, 0.05, steps).lyapunov)
     assert 0 < regular < least_lyapunov(steps) < kind(VERLET, 2.0, 1.4, steps).lyapunov
 

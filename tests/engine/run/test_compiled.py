@@ -1,4 +1,4 @@
-"""Compiled loops: the plain ones' bits, or the plain ones themselves."""
+"""Compiled loops have the bits of plain ones, or are plain ones."""
 
 import math
 from resource import RUSAGE_SELF, getrusage
@@ -20,7 +20,7 @@ each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: meth
 
 @needs_numba
 @each_method
-def test_many_steps_compiled_have_the_plain_ones_bits_and_leave_no_memory_behind(method):
+def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
     fast, slow = compiled.compiled(method, PENDULUM), PlainLoops(method, PENDULUM)
     assert fast is not slow
     start = ((2.5, 0.3), 0.05, 20_000)
@@ -61,9 +61,7 @@ def test_a_method_that_overflows_ends_at_the_same_step_compiled_and_plain():
 
 @each_method
 @pytest.mark.parametrize("ahead", [0, 10_000])
-def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(
-    method, ahead, monkeypatch
-):
+def test_loops_have_the_same_bits_before_and_after_they_are_compiled(method, ahead, monkeypatch):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
     loops, plain = (
         compiled.TieredLoops(method, PENDULUM, expected_steps=ahead),
@@ -95,7 +93,7 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     assert used == compiled_steps
 
 
-def test_neither_a_few_steps_nor_asking_for_numba_nor_the_reference_lines_import_it():
+def test_few_steps_and_asking_for_numba_do_not_import_it():
     work = """
 import engine.accuracy.references
 from engine.run.compiled import TieredLoops, available
@@ -107,7 +105,7 @@ TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
 
 
 @needs_numba
-def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used(monkeypatch):
+def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
     class OtherSine:
         """Numba where one sine in two thousand is a bit off."""
 

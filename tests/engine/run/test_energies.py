@@ -1,4 +1,4 @@
-"""Energies whose truth is known by how they are made; tests/bench/foreign.py has thousands."""
+"""Records whose verdict is known from how they are made; tests/bench/foreign.py has thousands."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_uneven_sampling_changes_no_trend():
 
 
 @pytest.mark.parametrize("times", [200, 50, 20])
-def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(times):
+def test_a_true_slope_lies_within_its_uncertainty_as_often_as_promised(times):
     found = [
         judge_record(T[::4], 1000 + noise_of(times, seed, 500) + 0.01 * T[::4])
         for seed in range(40)

@@ -1,4 +1,4 @@
-"""Many swings at once: NumPy's are single swings to the bit, compiled ones nearly, and none knows of the others."""
+"""Many swings at once are those of single swings."""
 
 import math
 from itertools import islice
@@ -65,7 +65,7 @@ def test_a_swing_without_limits_does_not_stop_the_others(fast):
 
 
 @pytest.mark.parametrize(("method", "fast"), WAYS, ids=lambda value: getattr(value, "key", value))
-def test_each_swing_is_the_methods_and_its_largest_error_and_angle_are_kept(method, fast):
+def test_each_swing_is_the_methods_and_its_extremes_are_kept(method, fast):
     seen, points = watched(), path(method, 0.2, 10, fast)
     expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.2), 10)
     assert points == pytest.approx(np.array([*expected]), rel=0, abs=1e-13)  # rounding

@@ -1,4 +1,4 @@
-"""The lockstep as a machine: the same bits however it is driven, time that is never summed, nothing lost."""
+"""The lockstep has the same bits however it is driven, never sums time, and misses no extreme."""
 
 import math
 from dataclasses import replace
@@ -42,7 +42,7 @@ def one_by_one(scene, n):
 
 
 @given(scene=scenes, cuts=cuts)
-def test_the_steps_may_be_cut_and_sampled_anyhow_the_bits_are_the_same(scene, cuts):
+def test_bits_do_not_depend_on_how_the_steps_are_cut_and_sampled(scene, cuts):
     whole, pieces, watched = Lockstep(scene), Lockstep(scene), Lockstep(scene)
     whole.advance(sum(cuts))
     for n in cuts:
@@ -55,7 +55,7 @@ def test_the_steps_may_be_cut_and_sampled_anyhow_the_bits_are_the_same(scene, cu
 
 
 @given(scene=scenes, n=st.integers(0, 200))
-def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene, n):
+def test_each_method_has_the_bits_of_the_textbook_loop(scene, n):
     lockstep = Lockstep(scene)
     lockstep.advance(n)
     force = Pendulum(scene.w0_squared).force()
@@ -138,7 +138,7 @@ def falling_into_nan(force, phase, h):
 
 @pytest.mark.parametrize("phases", [exploding, falling_into_nan])
 @given(cuts=cuts)
-def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go_on(phases, cuts):
+def test_a_method_that_diverges_keeps_its_last_finite_phase_and_others_go_on(phases, cuts):
     scene, bad = SCENES["drift"], replace(USUAL_CAST[0], key="bad", phases=phases)
     lockstep, others = Lockstep(replace(scene, cast=(bad, *USUAL_CAST))), Lockstep(scene)
     for cut in (*cuts, 100):

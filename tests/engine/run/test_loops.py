@@ -1,4 +1,4 @@
-"""The loops take the phases of a method, their energies and extremes, and end where its numbers end."""
+"""The loops take the phases of a method until its numbers overflow."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Lockstep and judges on scenes whose model or methods are not as general as the pendulum's."""
+"""Lockstep and judges with models and methods that are not general."""
 
 import math
 
@@ -39,7 +39,7 @@ def test_the_same_bits_however_the_steps_are_cut(scene, cuts):
 
 
 @each_scene
-def test_readings_are_finite_floats_and_hold_every_variable_backwards_and_at_equal_cost_too(scene):
+def test_readings_are_finite_and_complete_backwards_and_at_equal_cost_too(scene):
     lockstep, variables = Lockstep(scene), [each.name for each in scene.equations.variables]
     equal = Stepping(scene.h, True, scene.cast)
     for stepping, n in (
@@ -78,7 +78,7 @@ def test_the_scenes_have_their_verdicts(name, seconds, expected):
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 @each_scene
-def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene):
+def test_methods_that_are_not_general_have_plain_loops(scene):
     for method in scene.cast:
         general = method.general and not scene.equations.without_force
         assert isinstance(compiled(method, scene.equations), PlainLoops) == (not general)
@@ -119,7 +119,7 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model):
                 Scene(model=model, cast=(method,), parameters=own)
 
 
-def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say():
+def test_a_bob_that_escapes_is_called_growing_within_half_a_second():
     ((step, key, verdict),) = verdicts(SCENES["stiff-limit"], 20)
     assert (key, verdict) == ("velocity_verlet", "grows")
     assert step <= 10

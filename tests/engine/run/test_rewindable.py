@@ -1,4 +1,4 @@
-"""A course goes back and forth to the bit: every state equals the one of a lockstep that only went on."""
+"""Every state of a run that goes back and forth equals that of a lockstep that goes forwards."""
 
 import itertools
 
@@ -36,7 +36,7 @@ def move(course, n):
 
 @settings(max_examples=12)
 @given(st.lists(st.integers(-1500, 2500), min_size=1, max_size=6), H_VALUES)
-def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(moves, h):
+def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(700)
     course.set_stepping(Stepping(h))
@@ -58,7 +58,7 @@ def test_a_run_is_in_its_past_until_it_reaches_its_furthest_step():
     assert past == [False, True, False]
 
 
-def test_a_change_made_where_one_steps_back_to_is_still_to_come():
+def test_a_change_at_the_step_gone_back_to_is_still_ahead():
     course = RewindableRun(DEFAULT_SCENE)
     course.forward(10)
     course.set_stepping(Stepping(0.1))
@@ -87,7 +87,7 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
     assert course.sample().run == 2
 
 
-def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
+def test_extremes_after_going_back_count_from_the_furthest_step():
     ahead, returning = RewindableRun(DEFAULT_SCENE), RewindableRun(DEFAULT_SCENE)
     for course in (ahead, returning):
         course.forward(500)
@@ -99,7 +99,7 @@ def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
     assert returning.sample() == ahead.sample()
 
 
-def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
+def test_copies_are_few_and_closer_the_more_recent_they_are():
     course = RewindableRun(SCENES["gentle"], 1)
     for _ in range(80):
         course.forward(COPY_EVERY)

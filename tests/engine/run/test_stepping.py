@@ -1,4 +1,4 @@
-"""How a run steps: h along 1, 2, 5, time both ways, and equal cost, where all meet at the same times."""
+"""How a run steps: h along 1, 2, 5, both directions of time, and equal cost."""
 
 import math
 from dataclasses import replace
@@ -29,7 +29,7 @@ def test_h_goes_along_1_2_5():
 
 
 @given(STEPPINGS)
-def test_every_stepping_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_and_down_return(
+def test_the_next_step_size_up_or_down_keeps_its_sign_and_is_undone(
     stepping,
 ):
     larger, smaller = stepping.next(up=True), stepping.next(up=False)
@@ -40,7 +40,7 @@ def test_every_stepping_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_
 
 
 @given(STEPPINGS)
-def test_equal_cost_on_and_off_and_time_both_ways_keep_the_smallest_step(stepping):
+def test_switching_equal_cost_or_the_direction_keeps_the_smallest_step(stepping):
     assert stepping.toggled().smallest == stepping.reversed().smallest == stepping.smallest
     assert stepping.toggled().toggled() == stepping.reversed().reversed() == stepping
 

@@ -1,4 +1,4 @@
-"""The verdict against runs of a million steps: tests/truths.py has the grid, tests/bench/judging.py judges all."""
+"""Verdicts against runs of a million steps on the grid of tests/truths.py."""
 
 import math
 import random
@@ -63,7 +63,7 @@ def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(theta: float, h
 @pytest.mark.parametrize(
     ("index", "theta", "h"), [(1, 0.3, 0.654514), (1, 2.3, 0.351203), (2, 2.3, 0.351203)]
 )
-def test_an_orbit_in_a_chaotic_sea_is_called_chaotic_with_its_lyapunov_number(
+def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number(
     index: int, theta: float, h: float
 ) -> None:
     scene = Scene(theta=theta, h=h)
@@ -75,7 +75,7 @@ def test_an_orbit_in_a_chaotic_sea_is_called_chaotic_with_its_lyapunov_number(
     assert 0.01 < lyapunov * h < 2  # per step
 
 
-def test_rk4_at_200_rad_per_s_is_not_called_bounded_while_its_slope_is_significant() -> None:
+def test_rk4_at_200_rad_per_s_is_not_called_bounded() -> None:
     scene = Scene(theta=0.0, omega=200.0, h=0.001)
     assert "bounded" not in course(R, scene, 30_000)
 

@@ -19,7 +19,7 @@ GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2
 MAP = map_of(Scene(), None, None, 10_000)
 
 
-def test_cells_lie_by_z_method_and_amplitude_and_are_unknown_until_they_are_computed():
+def test_the_axes_of_cells_are_z_method_and_amplitude():
     cells = GRID.cells()
     assert cells.shape == GRID.shape == (13, 2, 7)
     alone = outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200)
@@ -39,7 +39,7 @@ def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip, fast, mo
 
 
 @needs_numba
-def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_one_is_not():
+def test_all_strips_of_a_large_map_are_compiled_and_none_of_a_small_one():
     for grid, fast in ((MAP, True), (GRID, False), (replace(GRID, fast=True), True)):
         assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
 
