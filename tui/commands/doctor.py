@@ -81,19 +81,19 @@ def size(columns: int, rows: int) -> tuple[str, str]:
 
 
 def colour(environment: Mapping[str, str]) -> tuple[str, str]:
-    number = colours(environment)
-    found = str(number)
+    count = colours(environment)
+    text = str(count)
     advice = "if your terminal supports true colour, set COLORTERM=truecolor"
     if environment.get("NO_COLOR"):
-        found = "NO_COLOR"
+        text = "NO_COLOR"
         advice = "off, as requested; methods keep their digits and letters"
-    elif not number:
-        found = "none"
+    elif not count:
+        text = "none"
         advice = "set TERM correctly, e.g. xterm-256color"
-    elif number > 256:
-        found = "16 million"
+    elif count > 256:
+        text = "16 million"
         advice = ""
-    return f"TERM={environment.get('TERM', '')}, {found}", advice
+    return f"TERM={environment.get('TERM', '')}, {text}", advice
 
 
 def folder(path: Path) -> tuple[str, str]:

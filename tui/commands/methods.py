@@ -93,17 +93,15 @@ def _row(method: Method, order: float | None) -> Row:
     claims = fields_of(method, *CLAIMS)
     if isinstance(method, OwnMethod):
         claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
-    measured = dict.fromkeys(MEASURED)
-    if method.general:  # tests measure the others, each in its own scene
-        values = (
-            order,
-            measure.linear_limit(method.phases),
-            measure.is_symplectic(method.phases),
-            measure.is_reversible(method.phases),
-            measure.evaluations(method.phases)[0],
-        )
-        measured = dict(zip(MEASURED, values, strict=True))
-    return claims | measured
+    if not method.general:  # tests measure these, each in its own scene
+        return claims | dict.fromkeys(MEASURED)
+    return claims | {
+        "measured_order": order,
+        "measured_linear_limit": measure.linear_limit(method.phases),
+        "measured_symplectic": measure.is_symplectic(method.phases),
+        "measured_reversible": measure.is_reversible(method.phases),
+        "measured_force_evaluations": measure.evaluations(method.phases)[0],
+    }
 
 
 def _by_family(rows: list[Row]) -> Iterator[Any]:

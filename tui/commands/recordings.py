@@ -168,15 +168,15 @@ def _recover(options: argparse.Namespace) -> Report:
     path = resolve(options.file)
     check_free(options.output, options.force)
     with progress(printable(path.name)) as show:
-        found = recover(path, options.output, show, options.force)
-    notes = [f"{printable(found['out'])}: {counted(found['samples_kept'], 'sample')} saved."]
-    if found["reason"]:
-        notes.append(f"Problem: {found['reason']}.")
-    if found["entries_lost"]:
-        notes.append(f"Lost: {found['entries_lost']} samples and events.")
-    if found["runs_lost"]:
-        notes.append(f"Runs not saved because their start is missing: {found['runs_lost']}.")
-    return Report(name="recordings-recover", fields=found, notes=notes)
+        result = recover(path, options.output, show, options.force)
+    notes = [f"{printable(result['out'])}: {counted(result['samples_kept'], 'sample')} saved."]
+    if result["reason"]:
+        notes.append(f"Problem: {result['reason']}.")
+    if result["entries_lost"]:
+        notes.append(f"Lost: {result['entries_lost']} samples and events.")
+    if result["runs_lost"]:
+        notes.append(f"Runs not saved because their start is missing: {result['runs_lost']}.")
+    return Report(name="recordings-recover", fields=result, notes=notes)
 
 
 def _prune(options: argparse.Namespace) -> Report:
@@ -185,7 +185,7 @@ def _prune(options: argparse.Namespace) -> Report:
     if options.keep is None:
         raise UserError("specify how many to keep: --keep 20 for the newest 20.")
     old = library.listing()[options.keep :]
-    deleted = list(filter(delete, old)) if options.yes else []
+    deleted = [item for item in old if options.yes and delete(item)]
     freed = file_size(sum(item.bytes for item in deleted))
     notes = [f"deleted {counted(len(deleted), 'recording')}, {freed}"]
     if options.yes and len(deleted) < len(old):

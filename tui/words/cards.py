@@ -110,5 +110,5 @@ def scene_card(scene: Scene, now: str = "") -> str:
 
 def _card(title: str, lines: Mapping[str, str | None]) -> str:
     wrapper = textwrap.TextWrapper(WIDTH, subsequent_indent=" " * 16, break_on_hyphens=False)
-    texts = [wrapper.fill(f"  {head:<14}{text}") for head, text in lines.items() if text]
+    texts = [wrapper.fill(f"  {head:<13} {text}") for head, text in lines.items() if text]
     return "\n".join([title, *texts])

@@ -1,1 +1,1 @@
-"""What the studies among the commands compute, report and draw."""
+"""Computations, reports and figures of the larger commands."""

@@ -48,8 +48,8 @@ from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from tui.words.accuracy import factor_words, few, front_words, length
 
-MAX_STEPS = 10**10  # of the finest rung: half an hour, compiled
-CHART_SIZE = (100, 24)  # columns at most, rows
+MAX_STEPS = 10**10  # at the smallest h: half an hour, compiled
+CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows
 NUMBERS = (
     *("h", "steps", "force_evaluations", "seconds", "spread"),
     *("theta_error", "energy_error", "final_error"),
@@ -82,7 +82,7 @@ class Results:
         self.orders: list[Order] = []
         self.advice: list[Advice] = []  # one for each duration
         self.references: References | None = None
-        self.series: Sequence[Point] = ()  # of Taylor
+        self.series: Sequence[Point] = ()  # Taylor's
 
     @property
     def front(self) -> list[Cheapest]:

@@ -209,7 +209,7 @@ def columns_of(scene: Scene, *trend: Column) -> list[Column]:
     return [
         method_column(scene.cast),
         Column("verdict", verdict_of),
-        *(Column(each.label, each.name, ".4g") for each in scene.equations.quantities()),
+        *(Column(value.label, value.name, ".4g") for value in scene.equations.quantities()),
         Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
         Column("largest", "max_energy_error", ".2e"),
         *trend,
@@ -341,7 +341,7 @@ def _check(options: Namespace, is_figure: bool) -> None:
     if options.record:
         raise UserError("--record is for one run; leave it out, or give each number one value.")
     if is_figure:
-        raise UserError("a figure is of one run; write a .csv, or give each number one value.")
+        raise UserError("a figure shows one run; write a .csv, or give each number one value.")
     is_csv = options.output and options.output.suffix.lower() == ".csv"
     if options.resume and not is_csv:
         raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")

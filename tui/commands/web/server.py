@@ -1,4 +1,4 @@
-"""textual-serve, behind checks of who asks."""
+"""textual-serve with limits and access checks."""
 
 import asyncio
 import ipaddress
