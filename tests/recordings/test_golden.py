@@ -76,19 +76,13 @@ def test_each_golden_recording_shows_what_its_text_says():
     assert changes == [(pytest.approx(at), h) for at, h in ((3, 0.1), (6, 0.025), (9, 0.05))]
 
 
-def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path):
-    path = tmp_path / "drift.csv"
-    assert pendu("export", "drift", "-o", path).code == 0
+def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number():
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         expected = [
             [clock, sample.run, sample.step, sample.t, method.key, *values_of(reading).values()]
             for clock, sample in samples_of(recording)
             for method, reading in zip(USUAL_CAST, sample.readings, strict=True)
         ]
-    head, *rows = csv.reader(path.open())
-    assert tuple(head) == columns_of(["pendulum"])
-    for row, values in zip(rows, expected, strict=True):
-        assert row[4:5] == values[4:5]
-        assert [*map(float, row[:4])] == values[:4]
-        texts = ["NaN" if value is None else repr(value) for value in values[5 : len(row)]]
-        assert row[5:] == texts
+    columns, *rows = csv.reader(pendu("export", "drift").out.splitlines())
+    assert tuple(columns) == columns_of(["pendulum"])
+    assert rows == [[str(value).replace("None", "NaN") for value in row] for row in expected]

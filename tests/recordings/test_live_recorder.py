@@ -3,9 +3,6 @@
 import subprocess
 import sys
 
-import pytest
-
-from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.headless import simulate
 from recordings.recorder import LiveRecorder
@@ -24,11 +21,6 @@ def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_p
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
         assert len(recording.events) == 30
-
-
-def test_a_first_file_that_cannot_be_written_raises_at_once(tmp_path):
-    with pytest.raises(DiskError, match="no folder"):
-        LiveRecorder(tmp_path / "no" / "lab.mcap")
 
 
 LIMITED = """

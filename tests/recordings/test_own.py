@@ -1,4 +1,4 @@
-"""A user's own method in a recording: its text is kept, its hash vouches for it, and nothing of it is ever executed."""
+"""A user's own method in a recording: its source is kept with a hash, and never executed."""
 
 import hashlib
 import json
