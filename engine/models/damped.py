@@ -6,7 +6,7 @@ Energy only decreases: dE/dt = -gamma omega².  Area shrinks alike everywhere, b
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from engine.models.model import (
     EnergyError,
@@ -39,24 +39,22 @@ class DampedPendulum(Pendulum):
 
     friction: float  # gamma [s⁻¹]
 
-    key: ClassVar[str] = "damped"
-    equation: ClassVar[str] = "theta'' = -w0² sin theta - gamma omega"
-    parameters: ClassVar[tuple[Parameter, ...]] = (
+    key = "damped"
+    equation = "theta'' = -w0² sin theta - gamma omega"
+    parameters = (
         # beyond, the pendulum creeps, and its reference takes too many steps
         Parameter("friction", "s⁻¹", "friction", 0.0, 100.0, max_over_w0=100),
     )
-    second_order: ClassVar[bool] = False
-    has_separatrix: ClassVar[bool] = False
-    energy_error: ClassVar[EnergyError] = EnergyError(
+    second_order = False
+    has_separatrix = False
+    energy_error = EnergyError(
         conserved=False,
         symbol="ln E/Et",
         name="ln(E/E_true)",
         about="the logarithm of the energy over that of the exact motion, which loses energy, too",
     )
-    caption: ClassVar[str] = "curves of equal energy; damped motion crosses them inwards"
-    without_force: ClassVar[str] = (
-        "Maps and studies are for a pendulum that keeps its energy; friction takes it."
-    )
+    caption = "curves of equal energy; damped motion crosses them inwards"
+    without_force = "Maps and studies are for a pendulum that keeps its energy; friction takes it."
 
     def rates(self, sin: Sine = math.sin) -> Rates:
         force, friction = self.parts(sin)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
 
@@ -13,9 +13,9 @@ class LinearOscillator(Model):
 
     w0_squared: float  # s⁻²
 
-    key: ClassVar[str] = "linear"
-    equation: ClassVar[str] = "theta'' = -w0² theta"
-    turns: ClassVar[bool] = False
+    key = "linear"
+    equation = "theta'' = -w0² theta"
+    turns = False
 
     def force(self, sin: Sine = math.sin) -> Force:
         w0_squared = self.w0_squared

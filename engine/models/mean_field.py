@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import Any, ClassVar
+from typing import Any
 
 from engine.models.model import (
     Energy,
@@ -40,9 +40,9 @@ class MeanField(Model):
     coupling: float  # kappa [s⁻²]: energy of the two levels, per unit m·L²
     level_frequency: float  # nu [s⁻¹]: how fast the Bloch vector turns
 
-    key: ClassVar[str] = "mean_field"
-    equation: ClassVar[str] = "theta'' = -w0² sin theta - kappa b'·s, s' = nu b × s"
-    parameters: ClassVar[tuple[Parameter, ...]] = (
+    key = "mean_field"
+    equation = "theta'' = -w0² sin theta - kappa b'·s, s' = nu b × s"
+    parameters = (
         Parameter("coupling", "s⁻²", "of the bob to its two levels", -1e6, 1e6, default=2.0),
         Parameter(
             "level_frequency",
@@ -54,10 +54,10 @@ class MeanField(Model):
             max_over_w0=1_000,  # beyond, its reference takes too many steps
         ),
     )
-    turns: ClassVar[bool] = True
-    second_order: ClassVar[bool] = False
-    counted_parts: ClassVar[tuple[str, ...]] = ("kick",)
-    variables: ClassVar[tuple[Variable, ...]] = (
+    turns = True
+    second_order = False
+    counted_parts = ("kick",)
+    variables = (
         Variable("sx", about="of the Bloch vector"),
         Variable("sy", about="of the Bloch vector"),
         Variable("sz", about="of the Bloch vector"),
@@ -68,7 +68,7 @@ class MeanField(Model):
             is_state=False,
         ),
     )
-    extra_columns: ClassVar[tuple[ExtraColumn, ...]] = (
+    extra_columns = (
         ExtraColumn(
             "|s|",
             "probability",
@@ -76,12 +76,10 @@ class MeanField(Model):
             lambda extra: 1 + extra["probability_error"],
         ),
     )
-    frequency_symbol: ClassVar[str] = "nu"
-    caption: ClassVar[str] = "a projection: angle and angular velocity, without the two levels"
-    without_force: ClassVar[str] = (
-        "Maps and studies are for one angle; the mean field has a Bloch vector as well."
-    )
-    without_ring: ClassVar[str] = (
+    frequency_symbol = "nu"
+    caption = "a projection: angle and angular velocity, without the two levels"
+    without_force = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
+    without_ring = (
         "A projection of five dimensions to two: no curves and no ring of neighbouring starts."
     )
 

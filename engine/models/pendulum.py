@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from engine.models.exact_pendulum import exact_pendulum
 from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine
@@ -14,10 +14,10 @@ class Pendulum(Model):
 
     w0_squared: float  # g/L [s⁻²]
 
-    key: ClassVar[str] = "pendulum"
-    equation: ClassVar[str] = "theta'' = -w0² sin theta"
-    turns: ClassVar[bool] = True
-    has_separatrix: ClassVar[bool] = True
+    key = "pendulum"
+    equation = "theta'' = -w0² sin theta"
+    turns = True
+    has_separatrix = True
 
     def force(self, sin: Sine = math.sin) -> Force:
         """theta -> -w0² sin theta [rad/s²]."""

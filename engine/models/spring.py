@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from operator import itemgetter
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 from engine.models.model import (
     Energy,
@@ -49,13 +49,11 @@ class Spring(Model):
     w0_squared: float  # g/L [s⁻²], L being the length at rest
     stiffness: float  # k, the spring constant over the mass [s⁻²]
 
-    key: ClassVar[str] = "spring"
-    equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
-    turns: ClassVar[bool] = False  # the angle follows from the position, so it is within ±pi
-    parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),
-    )
-    variables: ClassVar[tuple[Variable, ...]] = (
+    key = "spring"
+    equation = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
+    turns = False  # the angle follows from the position, so it is within ±pi
+    parameters = (Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),)
+    variables = (
         Variable("x", about="over the length at rest"),
         Variable("y", about="likewise, upwards from the pivot"),
         Variable("vx", "s⁻¹"),
@@ -68,7 +66,7 @@ class Spring(Model):
             relative=True,
         ),
     )
-    extra_columns: ClassVar[tuple[ExtraColumn, ...]] = (
+    extra_columns = (
         ExtraColumn("length", "length", "the length of the rod over its length at rest", _length),
         ExtraColumn(
             "spring",
@@ -77,14 +75,12 @@ class Spring(Model):
             itemgetter("spring_energy"),
         ),
     )
-    counted_parts: ClassVar[tuple[str, ...]] = ("fast", "solve")
-    rigid: ClassVar[bool] = False
-    frequency_symbol: ClassVar[str] = "omega_s"
-    caption: ClassVar[str] = "a projection: angle and angular velocity of the swing"
-    without_force: ClassVar[str] = (
-        "Maps and studies are for one angle; the bob on a spring has two coordinates."
-    )
-    without_ring: ClassVar[str] = (
+    counted_parts = ("fast", "solve")
+    rigid = False
+    frequency_symbol = "omega_s"
+    caption = "a projection: angle and angular velocity of the swing"
+    without_force = "Maps and studies are for one angle; the bob on a spring has two coordinates."
+    without_ring = (
         "Angle and angular velocity of the swing: a projection of four dimensions, without curves "
         "or ring."
     )

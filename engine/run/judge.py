@@ -22,14 +22,7 @@ from engine.methods import Cast, Method
 from engine.models.model import Model
 from engine.run import judgement as limits
 from engine.run.bands import MAX_BINS, Bands, Bin, fit_line, hull, one_way_share, typical_width
-from engine.run.judgement import (
-    Judgement,
-    LookPoint,
-    Milestone,
-    MilestoneKind,
-    Progress,
-    Verdict,
-)
+from engine.run.judgement import Judgement, LookPoint, Milestone, MilestoneKind, Progress, Verdict
 from engine.run.tangent import Stretching, at_bottom
 
 

@@ -12,15 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import simulate
-from engine.methods import (
-    EXPLICIT_EULER,
-    GENERAL,
-    METHODS,
-    RK4,
-    implicit,
-    matching,
-    measure,
-)
+from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, implicit, matching, measure
 from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
 from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6

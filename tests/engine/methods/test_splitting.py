@@ -7,12 +7,7 @@ from itertools import islice
 import pytest
 
 from engine.methods import METHODS, VELOCITY_VERLET, method_of
-from engine.methods.splitting import (
-    FAMILY,
-    FOREST_RUTH,
-    composition,
-    splitting,
-)
+from engine.methods.splitting import FAMILY, FOREST_RUTH, composition, splitting
 from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping

@@ -15,7 +15,6 @@ MODEL = """
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
 
 from engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State, Variable
 
@@ -25,16 +24,16 @@ class Decaying(Model):
     w0_squared: float
     decay: float
 
-    key: ClassVar[str] = "decaying"
-    equation: ClassVar[str] = "theta'' = -w0² theta, u' = -decay u"
-    parameters: ClassVar = (Parameter("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
-    turns: ClassVar[bool] = False
-    second_order: ClassVar[bool] = False
-    variables: ClassVar = (Variable("u", about="decays"), Variable("square", label="u²", is_state=False))
-    extra_columns: ClassVar = (ExtraColumn("u²", "square", "the square of u", lambda extra: extra["square"]),)
-    caption: ClassVar[str] = "a projection, without u"
-    without_force: ClassVar[str] = "Maps and studies are for one angle; this model has u as well."
-    without_ring: ClassVar[str] = "No ring in three dimensions."
+    key = "decaying"
+    equation = "theta'' = -w0² theta, u' = -decay u"
+    parameters = (Parameter("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
+    turns = False
+    second_order = False
+    variables = (Variable("u", about="decays"), Variable("square", label="u²", is_state=False))
+    extra_columns = (ExtraColumn("u²", "square", "the square of u", lambda extra: extra["square"]),)
+    caption = "a projection, without u"
+    without_force = "Maps and studies are for one angle; this model has u as well."
+    without_ring = "No ring in three dimensions."
 
     def start(self, theta, omega):
         return theta, omega, 1.0
