@@ -1,15 +1,18 @@
-"""Events: actions in the lab, and milestones that it noticed."""
+"""Events: actions in the lab, milestones that it noticed, and the arithmetic of a run."""
 
+import hashlib
 import math
+import struct
 from collections.abc import Iterable, Iterator
+from functools import cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from engine.methods import Method, method_of
 from engine.models import MODELS
 from engine.models.model import Force, Phase
+from engine.run import NUMERICS
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
-from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError
 
 if TYPE_CHECKING:
@@ -20,6 +23,40 @@ EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop"
 MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred
 NOT_INPUTS = ("start", "stop", "noticed")
 """Kinds of events that are no action of a user in a run."""
+
+
+class Arithmetic(NamedTuple):
+    """The version of the numerics, and fingerprints of the library functions, that made a run.
+
+    The simulation calls no other functions; + - * / give the same bits everywhere.
+    """
+
+    numerics: int
+    sin: str
+    sqrt: str
+
+    def other_functions(self) -> tuple[str, ...]:
+        """Return the names of the functions that this machine computes differently."""
+        names = ("sin", "sqrt")
+        return tuple(name for name in names if getattr(self, name) != fingerprint(name))
+
+
+@cache
+def fingerprint(function: str) -> str:
+    """Return a checksum of this machine's sin or sqrt at 4096 places from 1e-8 to 1e8.
+
+    Another libm, or the same one on another processor, rounds one sine in 1400 the other way.
+    """
+    places = [(-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096)]
+    if function == "sqrt":
+        places = list(map(abs, places))
+    values = map(getattr(math, function), places)
+    return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
+
+
+def arithmetic_here() -> Arithmetic:
+    """Return the arithmetic of this version on this machine."""
+    return Arithmetic(NUMERICS, fingerprint("sin"), fingerprint("sqrt"))
 
 
 class Event(NamedTuple):

@@ -14,9 +14,16 @@ from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.run.judgement import VERDICTS, Milestone, MilestoneKind
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import MAX_METHODS, Scene, SceneError
-from recordings.arithmetic import Arithmetic, arithmetic_here
 from recordings.errors import RecordingError, printable
-from recordings.events import Event, EventKind, method_named, name_of, noticed
+from recordings.events import (
+    Arithmetic,
+    Event,
+    EventKind,
+    arithmetic_here,
+    method_named,
+    name_of,
+    noticed,
+)
 from recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
 
 FORMAT_VERSION = "3"

@@ -18,9 +18,8 @@ from engine.run.judgement import Milestone
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, SceneError
-from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError, named
-from recordings.events import MAX_EVENTS, NOT_INPUTS, Entry, Event
+from recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
 from recordings.format import CLOCK_OFFSET, EVENTS, decode_event, decode_reading, topics_of
 from recordings.library import open_file
 from recordings.reader import Contents, ShowProgress, read_chunk, read_contents

@@ -15,9 +15,8 @@ from engine.models import MODELS
 from engine.run.judgement import Milestone, Verdict
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import LIMITS, Scene
-from recordings.arithmetic import fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
-from recordings.events import Event, noticed
+from recordings.events import Event, fingerprint, noticed
 from recordings.fields import EVENT_SCHEMA, EXTRA, differences, sample_schema, without_extremes
 from recordings.format import decode_event, decode_reading, encode_event, encode_readings
 from tests.recordings.examples import SCENE, start

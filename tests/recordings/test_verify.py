@@ -10,9 +10,8 @@ from engine.run import loops
 from engine.run.compiled import CompiledLoops
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES
-from recordings.arithmetic import arithmetic_here
 from recordings.errors import RecordingError
-from recordings.events import Entry, Event
+from recordings.events import Entry, Event, arithmetic_here
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.verification import TOLERANCE, verify
@@ -116,7 +115,7 @@ def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, kept, more, 
 def of_another_machine(monkeypatch):
     """Change the fingerprint of this machine's sin."""
     here = arithmetic_here()._replace(sin="another")
-    monkeypatch.setattr("recordings.arithmetic.fingerprint", lambda name: getattr(here, name))
+    monkeypatch.setattr("recordings.events.fingerprint", lambda name: getattr(here, name))
 
 
 def foreign_loops(monkeypatch, every):
