@@ -174,24 +174,12 @@ class _Record:
         self._settled_at = float(settled_at[fits.index(self._settled) - len(moving)])
 
     def _fits(self, curves: list[Any]) -> list[_Fit]:
-        """Fit each curve together with the base, for every noise: arrays (noises, curves)."""
-        cosines, noise_times, whitening = _noises(self._count)
-        basis, triangles = np.linalg.qr(whitening[:, :, None] * (cosines @ self._base))
-        columns = cosines @ np.column_stack([*curves, self._means])
-        # products of whitened columns with the means and themselves, less the base's part of them
-        explained = (whitening[:, :, None] * basis).transpose(0, 2, 1) @ columns
-        products = whitening**2 @ (columns * columns[:, -1:])
-        products -= (explained * explained[:, :, -1:]).sum(axis=1)
-        lengths = whitening**2 @ columns**2 - (explained**2).sum(axis=1)
-        lengths = np.maximum(lengths[:, :-1], 1e-15)
-        amplitudes = products[:, :-1] / lengths
-        squares = np.maximum(products[:, -1:] - amplitudes**2 * lengths, 0)  # of the residuals
-        # the mean of values that are rounded apart errs by a tenth of what one value does
-        squares += self._count * self._rounding**2 / 12 / 100
-        determinants = 2 * np.log(whitening).sum(axis=1, keepdims=True)
+        """Fit each curve together with the base, averaged over the noises by their likelihood."""
+        _, noise_times, whitening = _noises(self._count)
+        amplitudes, lengths, squares, base = self._least_squares(curves)
+        determinants = 2 * np.log(whitening).sum(axis=1, keepdims=True)  # ln, of precision matrices
         likelihoods = (determinants - (self._count - 1) * np.log(squares)) / 2
-        diagonals = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
-        design = 2 * np.log(diagonals).sum(axis=1, keepdims=True) + np.log(lengths)
+        design = base + np.log(lengths)
         freedom = self._count - 1 - self._base.shape[1]
         restricted = (determinants - design - freedom * np.log(squares)) / 2
         weights = np.exp(restricted - restricted.max(axis=0))
@@ -207,6 +195,27 @@ class _Record:
         )
         return [_Fit(*map(float, values)) for values in by_curve]
 
+    def _least_squares(self, curves: list[Any]) -> tuple[Any, Any, Any, Any]:
+        """Fit each curve together with the base in every noise: arrays (noises, curves).
+
+        Returns the curves' amplitudes, their squared lengths without what the base explains, the
+        sums of squared residuals, and ln of the determinant of the base's normal matrix.
+        """
+        cosines, _, whitening = _noises(self._count)
+        basis, triangles = np.linalg.qr(whitening[:, :, None] * (cosines @ self._base))
+        columns = cosines @ np.column_stack([*curves, self._means])
+        explained = (whitening[:, :, None] * basis).transpose(0, 2, 1) @ columns  # by the base
+        products = whitening**2 @ (columns * columns[:, -1:])  # with the means
+        products -= (explained * explained[:, :, -1:]).sum(axis=1)
+        lengths = whitening**2 @ columns**2 - (explained**2).sum(axis=1)
+        lengths = np.maximum(lengths[:, :-1], 1e-15)
+        amplitudes = products[:, :-1] / lengths
+        squares = np.maximum(products[:, -1:] - amplitudes**2 * lengths, 0)
+        # rounding has the variance r²/12; the mean of a block errs by a tenth of what a value does
+        squares += self._count * self._rounding**2 / 12 / 100
+        diagonals = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
+        return amplitudes, lengths, squares, 2 * np.log(diagonals).sum(axis=1, keepdims=True)
+
     def _add_wave(self) -> None:
         """Add a cosine and a sine to the base if they stand out from every noise."""
         without = self._fits([self._times])[0].likelihood
@@ -216,6 +225,7 @@ class _Record:
         base = self._base
         self._base = np.column_stack([base, np.cos(angles), np.sin(angles)])
         gain = self._fits([self._times])[0].likelihood - without
+        # the Bayesian information criterion asks 1.5 ln n for three parameters
         if gain < 1.5 * math.log(self._count) + limits.WAVE_GAIN:
             self._base = base
         else:
