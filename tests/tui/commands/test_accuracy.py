@@ -1,7 +1,6 @@
 """`pendu-tui accuracy`: a table, a recommendation, JSON and CSV with all digits."""
 
 import csv
-import io
 from itertools import count
 
 import pytest
@@ -77,9 +76,9 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
     points = pendu(*QUICK, "--json").json["points"]
     file = tmp_path / "points.csv"
     assert pendu(*QUICK, "-o", file).code == 0
-    read = list(csv.DictReader(io.StringIO(file.read_text(encoding="utf-8"))))
-    assert [float(row["theta_error"]) for row in read] == [point["theta_error"] for point in points]
-    assert list(read[0]) == list(points[0])
+    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    assert [float(row["theta_error"]) for row in rows] == [point["theta_error"] for point in points]
+    assert list(rows[0]) == list(points[0])
 
 
 @pytest.mark.parametrize(
@@ -118,9 +117,9 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
         return measured(study, *arguments)
 
     monkeypatch.setattr(Study, "run", interrupted)
-    told = pendu(*QUICK, "--json")
-    assert (told.code, told.err) == (130, "pendu-tui: interrupted; partial results are kept.\n")
-    assert (told.json["interrupted"], len(told.json["points"])) == (True, 5)
+    outcome = pendu(*QUICK, "--json")
+    assert (outcome.code, outcome.err.count("interrupted; partial results")) == (130, 1)
+    assert (outcome.json["interrupted"], len(outcome.json["points"])) == (True, 5)
 
 
 @pytest.mark.slow

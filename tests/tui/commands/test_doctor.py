@@ -32,10 +32,10 @@ def test_the_advice_on_size_follows_the_layouts():
     ],
 )
 def test_colours_are_read_from_the_environment(environment, found, advice):
-    told, how = colour(environment)
-    assert found in told
-    assert advice in how
-    assert bool(how) == bool(advice)
+    text, told_advice = colour(environment)
+    assert found in text
+    assert advice in told_advice
+    assert bool(told_advice) == bool(advice)
 
 
 def test_a_missing_folder_is_fine_unless_it_is_below_a_file(tmp_path):

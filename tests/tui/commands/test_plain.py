@@ -9,21 +9,15 @@ import pytest
 
 from recordings.library import listing
 from recordings.verification import verify
-from tests.tui.pty_lab import PENDU, ROOT
+from tests.tui.pty_lab import PENDU
 
 pytestmark = pytest.mark.slow
 
 
 def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
-    return subprocess.Popen(
-        [*PENDU, *arguments],
-        cwd=ROOT,
-        env={**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    env = {**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"}
+    pipe = subprocess.PIPE
+    return subprocess.Popen([*PENDU, *arguments], env=env, stdout=pipe, stderr=pipe, text=True)
 
 
 def recorded_whole(folder: Path) -> Path:

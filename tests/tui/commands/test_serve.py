@@ -57,7 +57,8 @@ class Tab:
 
 class Server:
     def __init__(self, process, address) -> None:
-        self.process, self.address = process, address
+        self.process = process
+        self.address = address
 
     @asynccontextmanager
     async def tab(self, size=(100, 30)):
@@ -81,13 +82,10 @@ class Server:
 
 @contextmanager
 def serving(*arguments: str, **environment: str):
-    process = subprocess.Popen(
-        [*PENDU, "serve", "--port", "0", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, **environment},
-    )
+    command = [*PENDU, "serve", "--port", "0", *arguments]
+    env = {**os.environ, **environment}
+    pipe = subprocess.PIPE
+    process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=env)
     try:
         line = process.stdout.readline()
         assert line.startswith("http://"), process.stderr.read()

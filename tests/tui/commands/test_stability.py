@@ -56,10 +56,10 @@ def test_the_map_as_json_and_as_file_repeats_the_engine(tmp_path):
         z = map_["z"].tolist()
     answer = pendu(*SMALL, "--json", "--map").json["map"]
     assert (answer["theta"], answer["z"]) == ([0.5, 2.0], z)
-    assert [found["method"] for found in answer["methods"]] == KEYS
-    for index, found in enumerate(answer["methods"]):
-        assert found["steps_survived"] == expected["steps"][:, index].tolist()
-        assert found["fate"] == np.array(FATES)[expected["fate"][:, index]].tolist()
+    for index, cells in enumerate(answer["methods"]):
+        assert cells["method"] == KEYS[index]
+        assert cells["steps_survived"] == expected["steps"][:, index].tolist()
+        assert cells["fate"] == np.array(FATES)[expected["fate"][:, index]].tolist()
 
 
 @pytest.mark.parametrize(("more", "lines"), [((), 4 * 2), (("--map",), 4 * 12 * 2)])

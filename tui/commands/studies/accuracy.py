@@ -54,11 +54,6 @@ NUMBERS = (
     *("h", "steps", "force_evaluations", "seconds", "spread"),
     *("theta_error", "energy_error", "final_error"),
 )
-HEADS = {
-    "theta": "largest theta error",
-    "energy": "largest energy error",
-    "final": "last theta error",
-}
 TRUTH = "the exact motion, against which errors are taken"
 
 
@@ -258,9 +253,8 @@ def _notes(results: Results) -> Iterator[Any]:
             yield results.references.absent
         yield f"Closed form, the floor: {length(results.references.closed_form)}"
     yield ""
-    series = accuracy_series(
-        results.points, kind, cost, results.scene.cast, references=results.references
-    )
+    cast = results.scene.cast
+    series = accuracy_series(results.points, kind, cost, cast, references=results.references)
     columns, rows = CHART_SIZE
     chart = accuracy_chart(series, kind, cost, min(console(columns).width, columns), rows)
     yield from lines_of(chart, PALETTES["dark"])
@@ -303,7 +297,7 @@ def _advice_notes(results: Results, advice: Advice) -> Iterator[Any]:
         Column("z", "z", ".3g"),
         Column("steps a swing", "steps_per_swing", few),
         Column("evaluations", "force_evaluations", "d"),
-        Column(HEADS[kind], "error", ".1e"),
+        Column(f"{kind} error", "error", ".1e"),
         Column("times the cheapest", _times),
     ]
     if any(row["seconds"] is not None for row in rows):
