@@ -289,18 +289,18 @@ def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict
 
     The drift has no order unless it is significant at each step size.
     """
-    orders = {"fluctuation_order": _power(steps, [fields["fluctuation"] for fields in results])}
-    orders["drift_order"] = None
-    if all(fields["verdict"] in ("grows", "loses") for fields in results):
-        orders["drift_order"] = _power(steps, [fields["absolute_trend"] for fields in results])
-    return orders
+    fluctuations = [fields["fluctuation"] for fields in results]
+    drifts = [
+        fields["absolute_trend"] for fields in results if fields["verdict"] in ("grows", "loses")
+    ]
+    return {"fluctuation_order": _power(steps, fluctuations), "drift_order": _power(steps, drifts)}
 
 
 def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | None:
-    """Return the slope of log |value| over log step, or None if a value is 0 or None."""
-    if not all(values):
-        return None
+    """Return the slope of log |value| over log step, or None if a value is missing or 0."""
     logs = [math.log(abs(value)) for value in values if value]
+    if len(logs) < len(steps):
+        return None
     return linear_regression([math.log(step) for step in steps], logs).slope
 
 

@@ -67,7 +67,6 @@ def _list(options: argparse.Namespace) -> Report:
 
     rows = [_facts(item) for item in library.listing()]
     folder = library.folder()
-    none = f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."
     notes = [
         f"recording now: {printable(str(path.with_suffix('')))}"
         for path in library.leftovers(being_made=True)
@@ -76,6 +75,8 @@ def _list(options: argparse.Namespace) -> Report:
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
         for path in library.leftovers()
     ]
+    if not (rows or notes):
+        notes = [f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."]
     columns = (
         Column("recording, newest first", "file"),
         Column("finished", "modified", _date),
@@ -85,7 +86,6 @@ def _list(options: argparse.Namespace) -> Report:
     )
     return Report(
         name="recordings",
-        title="" if rows or notes else none,
         columns=columns if rows else (),
         rows=rows,
         fields={"folder": str(folder), "recordings": rows},

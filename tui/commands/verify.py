@@ -99,7 +99,7 @@ def _sentence(row: dict[str, Any]) -> str:
         text += f"; {row['reason']}"
     if row["other_functions"]:
         others = " and ".join(f"{name}()" for name in row["other_functions"])
-        text += f"; within tolerance only, because {others} differs on this machine"
+        text += f"; within tolerance only: this machine computes {others} differently"
     if row["numerics"] != NUMERICS:
         text += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
     verdict = "damaged"
