@@ -314,13 +314,11 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
     return chosen
 
 
-def _cast(given: Methods) -> Cast:
-    names = given
-    if isinstance(given, str):
-        names = given.split(",")
+def _cast(methods: Methods) -> Cast:
+    names = methods.split(",") if isinstance(methods, str) else methods
     if not isinstance(names, Iterable):
         raise ValueError(
-            f"methods = {given!r} is not a list of methods; use for example 'rk4,verlet'."
+            f"methods = {methods!r} is not a list of methods; use for example 'rk4,verlet'."
         )
     cast = tuple(dict.fromkeys(map(_method, names)))
     if not cast:

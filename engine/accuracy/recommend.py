@@ -157,17 +157,18 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         return Attempt(method, None, _no_h(most))
     best = None
     in_vain = 0  # times that rounding kept the error from falling
-    while (point := study.run(method, steps)).error(kind) > target:
+    point = study.run(method, steps)
+    while point.error(kind) > target:
+        flaw = point.flaw(kind)
         if best is None or point.error(kind) < best.error(kind):
             best = point
             in_vain = 0
-        else:
-            in_vain += point.flaw(kind) == "rounding"
+        elif flaw == "rounding":
+            in_vain += 1
         if in_vain == 2 or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
             return Attempt(method, point, _not_within(point))
-        flaw = point.flaw(kind)
         factor = 4.0
         if flaw == "rounding":
             factor = 2.0
@@ -179,6 +180,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             factor = min(max(needed, 1.1), factor)
         too_few = steps
         steps = min(most_steps, math.ceil(steps * factor))
+        point = study.run(method, steps)
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))
         if study.run(method, middle).error(kind) <= target:
@@ -204,7 +206,8 @@ def _confirmed(
 
 
 def _no_h(most: int) -> str:
-    return f"no usable h within {most} evaluation{'s' * (most != 1)}"
+    unit = "evaluation" if most == 1 else "evaluations"
+    return f"no usable h within {most} {unit}"
 
 
 def _not_within(point: Point) -> str:

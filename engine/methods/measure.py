@@ -19,8 +19,8 @@ from engine.models.pendulum import Pendulum
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
 LARGE_H = 0.2  # s; with small steps a high order hides a change of area, or a miss of the start
-WIDEST_Z = 16
-RUNGS = 2048  # for each 1 in z: two thirds of the narrowest gap, BM6's
+WIDEST_Z = 16  # of the search for a limit
+RUNGS = 2048  # in each 1 of z: they are two thirds of the narrowest gap apart, BM6's
 NO_LIMIT_BELOW = 0.1  # z, below which some unstable methods grow by less than rounding
 LINEAR_ROUNDING = 3e-13  # of a linear step; the limit moves by up to a thousand times as much
 

@@ -99,4 +99,4 @@ class Method:
 
     def evaluations(self, steps: int) -> int:
         """Return how often a run of so many steps evaluates the force, or about that."""
-        return steps * self.force_evaluations + self.first_same_as_last
+        return steps * self.force_evaluations + int(self.first_same_as_last)

@@ -61,7 +61,8 @@ def composition(*weights: float) -> Phases:
 
 def mirrored(half: tuple[float, ...], odd: bool) -> tuple[float, ...]:
     """Return coefficients and then the same backwards; if `odd`, without repeating the last."""
-    return (*half, *half[::-1][odd:])
+    repeated = half[:-1] if odd else half
+    return (*half, *reversed(repeated))
 
 
 def _method(**fields: Any) -> Method:
