@@ -1,5 +1,6 @@
 """Diff: what was done differently in two recordings, and where their numbers diverge."""
 
+from collections import Counter
 from collections.abc import Iterator
 from heapq import merge
 from itertools import groupby
@@ -22,14 +23,14 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
     equal times.
     """
     samples = 0
-    only_in = {"a": 0, "b": 0}
+    only_in: Counter[str] = Counter()
     first: dict[str, Any] | None = None
     errors: dict[str, dict[str, float]] = {}
     both = merge(_timed(a, "a"), _timed(b, "b"), key=itemgetter(0))
     for _, group in groupby(both, itemgetter(0)):
         at_once = {side: sample for _, side, sample in group}
         if len(at_once) == 1:
-            only_in[min(at_once)] += 1
+            only_in.update(at_once.keys())
             continue
         samples += 1
         in_a = at_once["a"]
@@ -47,9 +48,16 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
                     first = {"run": in_a.run, "t": in_a.t}
                     first |= {"step_a": in_a.step, "step_b": in_b.step}
                     first |= {"method": method, "field": name, "a": p, "b": q}
-    found: dict[str, Any] = {"done": list(_done(a, b)), "first": first}
-    found |= {f"only_in_{side}": count for side, count in only_in.items()}
-    return {"identical": not any(found.values()), **found, "samples": samples, "errors": errors}
+    done = list(_done(a, b))
+    return {
+        "identical": not (done or first or only_in),
+        "done": done,
+        "first": first,
+        "only_in_a": only_in["a"],
+        "only_in_b": only_in["b"],
+        "samples": samples,
+        "errors": errors,
+    }
 
 
 def _done(a: Recording, b: Recording) -> Iterator[tuple[str, str, str]]:

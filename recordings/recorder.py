@@ -70,7 +70,6 @@ class Recorder:
         self.path = path
         self.part = part_of(path)
         self.seconds = 0.0  # recorded so far
-        self.bytes = 0  # written so far
         self.samples = 0
         self._wall = wall
         self._overwrite = overwrite
@@ -81,6 +80,7 @@ class Recorder:
         self._entries = 0
         self._log_time = CLOCK_OFFSET
         self._paused = False
+        self._is_empty = True  # until something was flushed
         self._flushed_at = 0.0  # s of the recording clock
         self._unflushed = 0  # bytes
         if is_stream(path):
@@ -142,7 +142,7 @@ class Recorder:
             self._writer.flush()  # type: ignore[no-untyped-call]
             if not self._is_ours():
                 raise DiskError("the file was replaced", self.path)
-        self.bytes = self._file.tell()
+        self._is_empty = False
         self._flushed_at = self.seconds
         self._unflushed = 0
 
@@ -168,7 +168,6 @@ class Recorder:
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._file.flush()
             os.fsync(self._file.fileno())
-            self.bytes = self._file.tell()
         try:
             publish(self.part, self.path, self._overwrite)  # while the lock is held
         except NameTakenError as error:
@@ -183,7 +182,7 @@ class Recorder:
         if self._file.closed:
             return
         with suppress(OSError):
-            if self._is_ours() and (delete or not self.bytes):
+            if self._is_ours() and (delete or self._is_empty):
                 self.part.unlink()
         with suppress(OSError):
             self._file.close()

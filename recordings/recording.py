@@ -123,7 +123,7 @@ class Recording:
         return last.sequence + 1 - self.entries_lost - self._others
 
     def at(self, clock: float) -> SamplePlace | None:
-        """Return the last sample at or before that time, or else the first, if any."""
+        """Return the last sample at or before that time, or else the first one."""
         later = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start"))
         chunk = max(0, later - 1)
         entry = bisect_right(self._decode(chunk), round(clock, 9), key=attrgetter("clock"))
@@ -150,14 +150,15 @@ class Recording:
                     return SamplePlace(chunk, entry)
                 entry += direction
             chunk += direction
-            entry = -1 if direction > 0 else sys.maxsize
+            entry = -1 if direction > 0 else sys.maxsize  # before the first, or after the last
         return None
 
     def entries(self, start: float = 0.0, end: float = inf) -> Iterator[Entry]:
         """Yield samples, events and gaps from `start` to `end` [s], both included, in order."""
-        start, end = round(start, 9), round(min(end, self.length), 9)  # as files round
-        begin = bisect_left(self._places, _as_recorded(start), key=attrgetter("end"))
-        for chunk in range(begin, len(self._places)):
+        start = round(start, 9)  # as files round
+        end = round(min(end, self.length), 9)
+        first_chunk = bisect_left(self._places, _as_recorded(start), key=attrgetter("end"))
+        for chunk in range(first_chunk, len(self._places)):
             if self._places[chunk].start > _as_recorded(end):
                 return
             for entry in self._decode(chunk):

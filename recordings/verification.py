@@ -21,9 +21,6 @@ from recordings.fields import EXTREMES, differences
 from recordings.reader import ShowProgress
 from recordings.recording import Recording, Run
 
-Only = Collection[str] | None
-"""Keys of the methods to compare; None: all."""
-
 TOLERANCE = 1e-6  # relative, above 1; another sin moves regular swings by 1e-8 in 1500 steps
 STEPS_AT_ONCE = 50_000  # a fifth of a second, the longest wait of an interrupt
 MAX_STEPS = 1_000_000  # of a file, about three seconds, or
@@ -62,9 +59,9 @@ def verify(
     path: Path,
     progress: ShowProgress | None = None,
     max_steps: int | None = None,
-    only: Only = None,
+    only: Collection[str] | None = None,
 ) -> Verification:
-    """Verify a recording up to the first damage.
+    """Verify a recording up to the first damage, all methods or `only` those of these keys.
 
     Raises RecordingError if it has no samples, or more than `max_steps` steps.
     """
@@ -90,7 +87,12 @@ def verify(
     return result
 
 
-def _rerun(run: Run, values: Iterable[Event | Sample], result: Verification, only: Only) -> None:
+def _rerun(
+    run: Run,
+    values: Iterable[Event | Sample],
+    result: Verification,
+    only: Collection[str] | None,
+) -> None:
     """Simulate a run again, and compare its samples."""
     cast = run.scene.cast
     check_present(run.scene, only)
@@ -111,17 +113,17 @@ def _rerun(run: Run, values: Iterable[Event | Sample], result: Verification, onl
             result.samples += 1
             computed = lockstep.sample()
             if result.first_difference is None:
-                is_exact = not result.other_functions
-                differing = _differences(run, value, computed, is_exact=is_exact, only=only)
+                differing = _differences(run, value, computed, only)
                 result.first_difference = next(differing, None)
         elif value.h is not None:
             lockstep.set_stepping(Stepping(value.h, value.equal_cost, cast))
 
 
 def _differences(
-    run: Run, recorded: Sample, computed: Sample, *, is_exact: bool, only: Only
+    run: Run, recorded: Sample, computed: Sample, only: Collection[str] | None
 ) -> Iterator[Difference]:
     """Yield what differs in a sample."""
+    is_exact = not run.arithmetic.other_functions()
     place = (recorded.run, recorded.step, recorded.t)
     if recorded.t != computed.t:
         yield Difference(*place, "", "t", recorded.t, computed.t)

@@ -1,8 +1,8 @@
-"""`judge` on series of known truth: wrong verdicts and too many `too early` of each kind.
+"""`judge` on series of known truth: how often its verdict is wrong, or `too early` without need.
 
-A kind is made with 100 to 6000 samples, at a random scale and zero of energy and time.  `too
-early` is never wrong; it is counted where the effect has five standard deviations or more and the
-record at least 50 independent samples.
+Each kind of series is made with 100 to 6000 samples, random scales and random zeros of energy.
+`too early` is never wrong; it is counted where the effect has at least five standard deviations and
+the record at least 50 independent samples.
 """
 
 import math
@@ -17,11 +17,11 @@ from engine.run.energies import judge_record
 LIMITS = {"wrong_percent": 1.0, "too_early_percent": 5.0}
 SIZES = (100, 200, 500, 2000, 6000)
 SEED = 1
-CLEAR = math.inf  # an effect, or samples, that no verdict may miss
+CLEAR = math.inf  # enough of an effect, or of samples, for a verdict
 
 
 class Series(NamedTuple):
-    """A series with its truth."""
+    """A series and the verdicts that are right."""
 
     kind: str
     energies: Any
@@ -31,7 +31,7 @@ class Series(NamedTuple):
 
 
 def correlated(count: int, times: float, random: np.random.Generator) -> Any:
-    """Return stationary noise of deviation 1, so many correlation times long."""
+    """Return stationary noise of standard deviation 1, so many correlation times long."""
     keep = math.exp(-times / count)
     kicks = random.standard_normal(count) * math.sqrt(1 - keep * keep)
     kicks[0] = random.standard_normal()
@@ -54,7 +54,7 @@ class Maker:
         self.way = {"grows" if self.sign > 0 else "loses"}
 
     def between(self, low: float, high: float) -> float:
-        """Return a number between two, evenly in its logarithm."""
+        """Return a random number, with a uniform logarithm."""
         return math.exp(self.random.uniform(math.log(low), math.log(high)))
 
     def white(self) -> Any:
@@ -161,7 +161,7 @@ class Maker:
         yield Series("drift of 4 to 30 digits", np.round(drift + noise), self.way)
 
     def colours(self) -> Iterator[Series]:
-        """Make what the judge's own descriptions do not describe: other noises, waves and roundings."""
+        """Yield what the judge does not model: other noises, waves and roundings."""
         bounded = {"bounded"}
         for times in (200, 20):
             noise, at_zero = oscillating(self.count, times, self.random)
@@ -199,7 +199,7 @@ class Maker:
 
 
 def oscillating(count: int, times: float, random: np.random.Generator) -> tuple[Any, float]:
-    """Return noise that rings, so many decay times long, and its spectrum at frequency 0."""
+    """Return oscillating noise, so many decay times long, and its spectrum at frequency 0."""
     decay = math.exp(-times / count)
     angle = random.uniform(0.1, 3) * min(1.0, times / count * 3)
     first = 2 * decay * math.cos(angle)
@@ -213,7 +213,7 @@ def oscillating(count: int, times: float, random: np.random.Generator) -> tuple[
 
 
 def single(energies: Any) -> Any:
-    """Return energies rounded to float32, as doubles about 0, so that no digit is lost."""
+    """Return energies rounded to float32, as doubles near 0, so that no digit is lost."""
     rounded = energies.astype(np.float32).astype(float)
     return rounded - rounded[0]
 
@@ -221,7 +221,7 @@ def single(energies: Any) -> Any:
 def measure(share: float) -> dict[str, Any]:
     random = np.random.default_rng(SEED)
     kinds: defaultdict[str, Counter[str]] = defaultdict(Counter)
-    given: Counter[str] = Counter()
+    verdicts: Counter[str] = Counter()
     false: Counter[str] = Counter()
     clear = 0
     early = 0
@@ -239,19 +239,19 @@ def measure(share: float) -> dict[str, Any]:
             wrong = not is_early and verdict not in series.truth
             kinds[series.kind][verdict] += 1
             kinds[series.kind]["wrong"] += wrong
-            given[verdict] += 1
+            verdicts[verdict] += 1
             false[verdict] += wrong
             if series.sigmas >= 5 and series.independent >= 50:
                 clear += 1
                 early += is_early
     return {
-        "series": given.total(),
-        "wrong_percent": round(100 * false.total() / given.total(), 2),
+        "series": verdicts.total(),
+        "wrong_percent": round(100 * false.total() / verdicts.total(), 2),
         "too_early_percent": round(100 * early / clear, 2),
         "false_percent": {
-            verdict: round(100 * false[verdict] / number, 2) for verdict, number in given.items()
+            verdict: round(100 * false[verdict] / count, 2) for verdict, count in verdicts.items()
         },
         "kinds": {
-            kind: {name: n for name, n in found.items() if n} for kind, found in kinds.items()
+            kind: {name: n for name, n in counts.items() if n} for kind, counts in kinds.items()
         },
     }

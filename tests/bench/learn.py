@@ -4,12 +4,12 @@ python -m tests.bench.learn writes engine/methods/learned_numbers.py.
 
 600 states of a pendulum with w0² = 9.81 s⁻², below 0.9 of the separatrix's energy, are measured with
 their derivatives, with noise of 2 % of each one's root mean square.  Field and Hamiltonian are sums
-of the same 60 random features tanh(a theta + b omega/w0 + c), fitted by one least-squares problem
-each: the field has two sums, one for theta' and one for omega', the Hamiltonian one, whose slopes
-are the field.  No network, no optimiser.
+of the same 60 random features tanh(a theta + b omega/w0 + c), each fitted by one least-squares
+problem.  The field has two sums, for theta' and omega'; the Hamiltonian has one, whose derivatives
+are the field.
 
-The maps learn a step of w0 t = TAU.  A state and its derivative, measured, are taken as the middle
-of such a step.  The plain map moves (theta, omega/w0) by TAU times two sums of the 60 features of
+The maps learn a step of w0 t = TAU, with a measured state and its derivative as the middle of the
+step.  The plain map moves (theta, omega/w0) by TAU times two sums of the 60 features of
 its start.  The symplectic one is a SympNet of three gradient modules (Jin et al., Neural Networks
 132 (2020) 166): half a kick by a function of theta, a drift by one of omega/w0, half a kick.  Its
 coefficients are found by Gauss-Newton steps.
@@ -27,7 +27,7 @@ SEED = 1
 TAU = 0.1  # w0 t of a learned map
 UNITS = 20  # of each function of the symplectic map
 GAUSS_NEWTON_STEPS = 4
-RIDGE = 1e-3  # relative: keeps the coefficients small, so that few digits are enough
+RIDGE = 1e-3  # relative; keeps the coefficients small, so that few digits suffice
 NUMBERS = Path(__file__).parents[2] / "engine/methods/learned_numbers.py"
 ABOUT = {
     "FEATURES": "a, b and c of each feature tanh(a theta + b omega/w0 + c).",
@@ -49,7 +49,7 @@ def measurements(random, count, noise):
 
 
 def fitted(matrix, target):
-    """Return least squares with a little ridge, in the columns' own scale."""
+    """Return the least-squares coefficients, with a ridge relative to each column's norm."""
     scale = np.sqrt((matrix**2).sum(0))
     ridge = np.vstack((matrix / scale, RIDGE * np.eye(matrix.shape[1])))
     padded = np.concatenate((target, np.zeros(matrix.shape[1])))
@@ -57,7 +57,7 @@ def fitted(matrix, target):
 
 
 def features_and_measurements(random):
-    """Return (a, b) and c of the features, and what is measured."""
+    """Return (a, b) and c of the features, the states and their derivatives."""
     weights = np.round(random.normal(0, 1, (FEATURES, 2)), 3)
     biases = np.round(random.uniform(-2, 2, FEATURES), 3)
     return weights, biases, *measurements(random, POINTS, NOISE)
@@ -97,8 +97,8 @@ def learned_maps(seed):
     for _ in range(GAUSS_NEWTON_STEPS):
         columns = [moved(coefficients + 1e-30j * unit).imag / 1e-30 for unit in units]
         jacobian = np.stack(columns, 1)
-        left = target - moved(coefficients)
-        coefficients = fitted(jacobian, left + jacobian @ coefficients)
+        residual = target - moved(coefficients)
+        coefficients = fitted(jacobian, residual + jacobian @ coefficients)
     return plain, np.stack((slopes, offsets, coefficients.reshape(2, UNITS)), 1)
 
 

@@ -1,8 +1,8 @@
-"""Compute what becomes of each method on a grid of starts and steps: tests/engine/run/truths.txt.  Needs Numba.
+"""Compute the fate of each method by start and h·w0, tests/engine/run/truths.txt.  Needs Numba.
 
-Every cell is a run of a million steps or so, looked at with hindsight and none of the verdict's own reasoning: the
-lowest and highest energy error of each window of steps that doubles the run, and, for the symplectic methods,
-the logarithm of how far two neighbouring starts have parted, in windows that double, too.  Some minutes.
+Each cell is a run of a million steps, judged by its whole course and without the reasoning of the
+verdicts: by the lowest and highest energy error in windows that double the run, and for symplectic
+methods by the logarithm of the distance between neighbouring orbits.  Takes some minutes.
 """
 
 import cmath
@@ -33,8 +33,11 @@ def complex_acceleration(theta):  # type: ignore[no-untyped-def]
 
 
 def runner(method: Method):  # type: ignore[no-untyped-def]
-    """A loop over the windows that fills in (low, high, log of the stretching, lowest omega, highest omega)."""
-    phases, w0 = numba.njit(method.phases), math.sqrt(9.81)
+    """Return a loop that fills in a row for each window: the lowest and highest energy error, the
+    logarithm of the stretching, and the lowest and highest omega.
+    """
+    phases = numba.njit(method.phases)
+    w0 = math.sqrt(9.81)
 
     @numba.njit
     def step(force, phase, h):  # type: ignore[no-untyped-def]
@@ -56,37 +59,40 @@ def runner(method: Method):  # type: ignore[no-untyped-def]
     advance = with_a_neighbour if method.symplectic else alone
 
     @numba.njit(nogil=True)
-    def run(theta, omega, h, windows, found):  # type: ignore[no-untyped-def]
+    def run(theta, omega, h, windows, rows):  # type: ignore[no-untyped-def]
         start = omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2
-        along, across, stretching, done = 1.0, 0.0, 0.0, 0
+        along = 1.0
+        across = 0.0
+        stretching = 0.0
+        done = 0
         for index, end in enumerate(windows):
-            low, high, slowest, fastest = math.inf, -math.inf, math.inf, -math.inf
+            low, high = math.inf, -math.inf
+            slowest, fastest = math.inf, -math.inf
             for n in range(done, end):
                 theta, omega, along, across = advance(theta, omega, along, across, h)
                 if n % 8 == 7:
                     length = math.sqrt(along * along + (across / w0) ** 2)
-                    along, across, stretching = (
-                        along / length,
-                        across / length,
-                        stretching + math.log(length),
-                    )
+                    along /= length
+                    across /= length
+                    stretching += math.log(length)
                 error = (omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2 - start) / start
                 if not abs(error) < 1e280:
                     return
-                low, high = min(low, error), max(high, error)
-                slowest, fastest = min(slowest, omega), max(fastest, omega)
-            found[index, 0], found[index, 1], found[index, 2] = low, high, stretching
-            found[index, 3], found[index, 4] = slowest, fastest
+                low = min(low, error)
+                high = max(high, error)
+                slowest = min(slowest, omega)
+                fastest = max(fastest, omega)
+            rows[index] = low, high, stretching, slowest, fastest
             done = end
 
     return run
 
 
-def letter(method: Method, h: float, found: np.ndarray) -> str:
-    """What a run came to; tests.truths.ALLOWED says what the letters mean."""
-    if not np.isfinite(found).all():
+def letter(method: Method, h: float, rows: np.ndarray) -> str:
+    """Return the letter of a run, a key of tests.truths.ALLOWED."""
+    if not np.isfinite(rows).all():
         return "g"
-    low, high, stretching, slowest, fastest = found.T
+    low, high, stretching, slowest, fastest = rows.T
     if method.symplectic:
         if stretching[-1] < 16:  # neighbours part in proportion to time: ln 10⁶ = 14
             return "b"
@@ -94,7 +100,8 @@ def letter(method: Method, h: float, found: np.ndarray) -> str:
             return "s"
         return "w" if (fastest.max() - slowest.min()) * h > math.tau else "c"
     thrown = h * math.sqrt(9.81) > 1.5  # then the orbits of explicit Euler jump by many turns
-    middle, width = (low + high) / 2, max(high[16:].max() - low[16:].min(), 1e-13)
+    middle = (low + high) / 2
+    width = max(high[16:].max() - low[16:].min(), 1e-13)
     if np.abs(middle).max() < 1e-10:
         return "B"
     if middle[17] < -1 + 1e-6:
@@ -113,23 +120,22 @@ def letter(method: Method, h: float, found: np.ndarray) -> str:
     return "w" if np.ptp(middle[8:]) > np.median((high - low)[8:]) / 4 else "B"
 
 
+def cell(method: Method, run: Callable[..., None], start: str, z: float) -> str:
+    """Return the letter of a cell."""
+    scene = scene_at(start, z)
+    rows = np.full((len(WINDOWS), 5), np.nan)
+    run(scene.theta, scene.omega, scene.h, np.array(WINDOWS), rows)
+    return letter(method, scene.h, rows)
+
+
 def main() -> None:
     """Run the grid and write the file, a line for each method and start."""
     lines = []
     with ThreadPoolExecutor() as executor:
         for method in USUAL_CAST:
             run = runner(method)
-
-            def cell(
-                start: str, z: float, method: Method = method, run: Callable[..., None] = run
-            ) -> str:
-                scene = scene_at(start, z)
-                found = np.full((len(WINDOWS), 5), np.nan)
-                run(scene.theta, scene.omega, scene.h, np.array(WINDOWS), found)
-                return letter(method, scene.h, found)
-
             for start in STARTS:
-                letters = "".join(executor.map(partial(cell, start), Z))
+                letters = "".join(executor.map(partial(cell, method, run, start), Z))
                 assert set(letters) <= set(ALLOWED)
                 lines.append(f"{method.key} {start} {letters}")
                 print(lines[-1], file=sys.stderr)
