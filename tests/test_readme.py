@@ -40,10 +40,6 @@ def test_what_is_linked_is_there(page, target):
     assert target.is_file()
 
 
-def test_the_first_page_has_at_most_200_lines():
-    assert len(PAGES[0].read_text(encoding="utf-8").splitlines()) <= 200
-
-
 @pytest.mark.parametrize("command", re.findall(r"`(pendu-tui(?: [^`]*)?)`", README))
 def test_every_command_that_is_mentioned_exists_with_its_options(command):
     words = [word for word in shlex.split(command)[1:] if word != "FOLDER"]

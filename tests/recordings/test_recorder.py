@@ -1,6 +1,8 @@
-"""The recorder: valid files, written in time, even if the disk fails."""
+"""The recorder: valid files, written in time; the lab goes on if the disk fails."""
 
 import json
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -16,7 +18,7 @@ from recordings.events import Entry, Event
 from recordings.format import EVENTS
 from recordings.headless import simulate
 from recordings.library import part_of
-from recordings.recorder import FLUSH_EVERY, Recorder
+from recordings.recorder import FLUSH_EVERY, LiveRecorder, Recorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
@@ -191,3 +193,35 @@ def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path, recorder):
     assert (tmp_path / "live.mcap").read_text() == "precious"
     assert verify(tmp_path / "live-2.mcap").complete
     assert {path.name for path in tmp_path.iterdir()} == {"live.mcap", "live-2.mcap"}
+
+
+def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_path, monkeypatch):
+    for module in ("recorder", "recording"):
+        monkeypatch.setattr(f"recordings.{module}.MAX_EVENTS", 30)
+    recorder = LiveRecorder(tmp_path / "lab.mcap")
+    for sample in simulate(SCENE, 4.0, recorder):
+        recorder.event(Event("mark", 1, sample.step, sample.t), sample.t)
+    assert "is full" in recorder.failed
+    with Recording.open(recorder.path, check=True) as recording:
+        assert recording.complete
+        assert len(recording.events) == 30
+
+
+LIMITED = """
+import resource, sys
+from tests.recordings.test_recorder import *
+recorder = LiveRecorder(Path(sys.argv[1]))
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
+samples = list(simulate(SCENE, 8.0, recorder))
+print(len(samples), recorder.failed)
+recorder.close()
+"""
+
+
+def test_a_real_file_size_limit_is_survived(tmp_path):
+    command = [sys.executable, "-c", LIMITED, str(tmp_path / "lab.mcap")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("81 ")
+    assert "File too large" in done.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap.part"]
+    assert verify(tmp_path / "lab.mcap.part").identical
