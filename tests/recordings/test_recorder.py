@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import jsonschema
@@ -173,17 +172,6 @@ def test_the_recorder_notices_a_removed_or_replaced_file_within_a_second(recorde
     recorder.part.touch()
     with pytest.raises(DiskError, match="was replaced"):
         recorder.flush()
-
-
-def test_an_interrupted_run_leaves_a_complete_recording(tmp_path):
-    path = tmp_path / "a.mcap"
-    with suppress(KeyboardInterrupt), Recorder(path, wall=None) as recorder:
-        for sample in simulate(SCENE, 100.0, recorder):
-            if sample.step == 50:
-                raise KeyboardInterrupt
-    verification = verify(path)
-    assert verification.complete
-    assert verification.samples == 51
 
 
 def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path, recorder):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recordings.errors import DiskError, RecordingError
+from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.fields import without_extremes
 from recordings.headless import simulate
@@ -82,13 +82,3 @@ def test_without_its_start_a_run_is_lost(tmp_path, out):
         recover(spoil(ten_seconds(tmp_path / "a.mcap"), 0), out)
     assert not out.exists()
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
-
-
-def test_a_recording_is_not_recovered_onto_itself_or_over_another(tmp_path, out):
-    path = ten_seconds(tmp_path / "a.mcap")
-    with pytest.raises(DiskError, match="already exists"):
-        recover(path, path)
-    out.write_text("precious")
-    with pytest.raises(DiskError, match="already exists"):
-        recover(path, out)
-    assert out.read_text() == "precious"
