@@ -18,15 +18,15 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 969_600,
-    "characters_of_engine": 309_000,
-    "characters_of_recordings": 78_790,
-    "characters_of_tui": 581_900,
-    "characters_of_tests": 780_100,
-    "files": 183,
+    "characters": 959_700,
+    "characters_of_engine": 305_200,
+    "characters_of_recordings": 78_000,
+    "characters_of_tui": 576_600,
+    "characters_of_tests": 755_100,
+    "files": 182,
     "long_lines": 0,
-    "parallel_assignments": 20,
-    "conditional_expressions_per_1000_lines": 10,
+    "parallel_assignments": 15,
+    "conditional_expressions_per_1000_lines": 9,
     "long_functions": 0,
     "numeric_constants": 195,
 }
