@@ -68,10 +68,11 @@ def verify(
     result = Verification(path)
     with Recording.open(path, check=True, progress=progress) as recording, named(path):
         steps = sum(run.steps for run in recording.runs)
-        if steps > (max_steps or max(MAX_STEPS, MAX_STEPS_PER_SAMPLE * recording.samples)):
+        limit = max_steps or max(MAX_STEPS, MAX_STEPS_PER_SAMPLE * recording.samples)
+        if steps > limit:
             raise RecordingError(
-                f"it claims {steps} steps, more than the limit; if you trust the file, use"
-                f" --max-steps {steps}"
+                f"it claims {steps} steps, more than the limit of {limit}; if you trust the file,"
+                f" use --max-steps {steps}"
             )
         values = (value for _, value in recording.entries())
         intact: Iterator[Any] = takewhile(lambda value: value is not None, values)

@@ -18,11 +18,11 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 959_700,
+    "characters": 960_900,
     "characters_of_engine": 305_200,
     "characters_of_recordings": 78_000,
-    "characters_of_tui": 576_600,
-    "characters_of_tests": 755_100,
+    "characters_of_tui": 577_700,
+    "characters_of_tests": 756_000,
     "files": 182,
     "long_lines": 0,
     "parallel_assignments": 15,

@@ -142,7 +142,7 @@ def read_table(
         why = f"there is no table {number}; the input has {count}."
         raise _unreadable(why if count else _NO_ROW)
     if rows == count > 1:
-        raise _unreadable("its time goes back in every row; name the column of times with --time.")
+        raise _unreadable("its time never increases; name the column of times with --time.")
     found.count = count
     found.finish(start)
     return found
@@ -420,7 +420,8 @@ def _split(name: str) -> tuple[str, str]:
 
 def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
     """Return the error that a wanted column is missing."""
-    lost = [each for each in wanted if not each.isdecimal() and Head.of(names, [each]) is None]
+    parts = [part for each in wanted if Head.of(names, [each]) is None for part in each.split("+")]
+    lost = [each for each in parts if not each.isdecimal() and Head.of(names, [each]) is None]
     if not lost:
         return _unreadable(_NO_ROW)
     present = [printable(name, 40) for name in names[:20] if name]

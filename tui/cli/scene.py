@@ -212,6 +212,9 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     Fields before the tables belong to all.  Raises UserError with line and field.
     """
     text, given = _read(path)
+    if not given:
+        why = f"{path} describes no scene; give fields of scenes --json."
+        raise UserError(why, Exit.INPUT_UNREADABLE)
     tables = given.pop("scene", [{}])
     if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
         raise UserError(f"{path}: begin each with [[scene]].", Exit.INPUT_UNREADABLE)
@@ -325,6 +328,8 @@ def _value(name: str, value: Any, kind: Any, folder: Path) -> Any:
 
 def _methods(keys: Sequence[Any], folder: Path) -> Cast:
     """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
+    if not keys:
+        raise ValueError("the list is empty")
     cast: list[Method] = []
     for key in map(str, keys):
         is_own = ".py:" in key

@@ -30,7 +30,7 @@ Rows = Iterator[tuple[object, ...]]
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
     add = parser.add_argument
-    add("--format", choices=("csv", "parquet"), default="csv", help="the default is %(default)s")
+    add("--format", choices=("csv", "parquet"), help="default: parquet for OUT.parquet, else csv")
     where = "write to OUT instead of stdout"
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help=where)
     add("--force", action="store_true", help="overwrite OUT")
@@ -40,10 +40,13 @@ def run(options: argparse.Namespace) -> int:
     from recordings.recording import Recording
 
     path = resolve(options.file)
+    form = options.format
+    if form is None and options.output and options.output.suffix.lower() == ".parquet":
+        form = "parquet"
     with Recording.open(path) as recording, progress(printable(path.name)) as show:
         columns = columns_of({run.scene.model: None for run in recording.runs})
         rows = _rows(recording, show)
-        if options.format == "parquet":
+        if form == "parquet":
             _write_parquet(options, columns, rows)
         else:
             with text_file(options.output, options.force) as out:

@@ -1,7 +1,7 @@
 """Judge the energies of another program: does its integrator gain or lose energy?
 
 A table is a CSV, a GROMACS .xvg, a log of LAMMPS or Amber, JSON lines, an .npz or the like.
-Results have the units in its heads, such as Time (ps).
+Results have the units in its heads, such as Time (ps).  A verdict of failed is exit code 1.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from recordings.errors import printable
 from tui.cli.checks import Check, add_check_options, conclude, parse
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, count, positive
-from tui.cli.report import Report, add_report_options, publish
+from tui.cli.report import Report, add_report_options, fields_of, publish
 from tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -161,15 +161,15 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
         "file": name,
         "table": table.number,
         "tables": table.count,
-        "verdict": judgement.verdict,
+        **fields_of(judgement, "verdict", "transient", "fluctuation"),
         "progress": judgement.progress and judgement.progress._asdict(),
-        "transient": judgement.transient,
         **_trend(table, judgement.slope, judgement.uncertainty, size),
         "independent_samples": judgement.independent,
-        "fluctuation": judgement.fluctuation,
         "max_energy_error": float(np.abs(errors).max()),
         "energy_error": float(errors[-1]),
         "first_energy": float(rest[0]),
+        "lowest_energy": float(rest.min()),
+        "highest_energy": float(rest.max()),
         "scale": size,
         "samples": len(times),
         "first_time": float(times[0]),
@@ -329,7 +329,8 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
     error = f"{fields['energy_error']:+.2e} at the end, {fields['max_energy_error']:.2e} at most"
     lines.append(_line("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
-    if is_of_first and fields["max_energy_error"] >= 1 and fields["verdict"] == "bounded":
+    is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
+    if is_of_first and is_around_zero and fields["max_energy_error"] >= 1:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
         lines.append(_line("hint", hint))
     return lines

@@ -48,6 +48,9 @@ def run(options: argparse.Namespace) -> int:
             f"--start-at {options.start_at:g} is outside the recording; use 0 to "
             f"{replay.length:.2f} s."
         )
+    if only is not None and not set(only) & set(replay.scene.cast):
+        names = ", ".join(method.key for method in only)
+        raise UserError(f"--methods: the recording's first run has none of {names}.")
     replay.set_speed(options.speed)
     replay.looping = options.loop
     replay.seek(options.start_at)

@@ -133,8 +133,8 @@ class SceneList(Form[str]):
                 line.columns[0].width = max(map(len, SCENES))
                 line.add_row(scene.name, scene.watch)
                 listed.add_option(Option(line, scene.name))
-        if self._current in SCENES:
-            listed.highlighted = listed.get_option_index(self._current)
+        current = self._current if self._current in SCENES else next(iter(SCENES))
+        listed.highlighted = listed.get_option_index(current)
         yield listed
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:

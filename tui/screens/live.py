@@ -252,12 +252,15 @@ class LiveScreen(SourceScreen):
         self._show_shot()
 
     def action_show(self, number: int) -> None:
-        """Answer the tour's question, or show or hide a method."""
-        if self.is_on_tour and self.tour.stage == "asked" and number < 2:
+        """Answer the tour's question, or show or hide a method.
+
+        On the tour the keys of the answers hide no method.
+        """
+        if not self.is_on_tour or number >= 2:
+            super().action_show(number)
+        elif self.tour.stage == "asked":
             self.tour.answer(number)
             self._show_tour()
-        else:
-            super().action_show(number)
 
     def action_back(self) -> None:
         """Leave the tour, else the zoom of the chart."""

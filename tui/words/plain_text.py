@@ -103,6 +103,7 @@ def print_run(
         emit(sentence)
     began = clock()
     second = 0
+    explained = ""
     has_news = False
     source.tick(began)
     emitted = set(event_lines(source))
@@ -118,8 +119,12 @@ def print_run(
                 emit(f"{seconds(line.t)}: {line.text}.")
         if clock() - began >= second + 1:
             second = int(clock() - began)
-            explain = only is None and (has_news or second % insight.TURN == 0)
-            emit(insight.insight_text(source) if explain else _numbers(source, only))
+            emit(_numbers(source, only))
+            explanation = insight.insight_text(source)
+            is_due = only is None and (has_news or second % insight.TURN == 0)
+            if is_due and explanation != explained:
+                emit(explanation)
+                explained = explanation
             has_news = False
 
 

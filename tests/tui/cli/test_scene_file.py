@@ -47,6 +47,8 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine, name):
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("model = 'cubic'", "line 1: model: 'cubic' is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
+        ("h = 0.1\nmethods = []", "line 2: methods: the list is empty"),
+        ("# nothing", "describes no scene"),
         ("[shot]\nseconds = 9\nlog = 1", "line 3: log: '1' is not true or false; use for"),
         ("h = 0.1\nshot = 1", "line 2: shot: '1' is not a table; use for example shot = {view"),
         ("[shot]\nvew = 'phase'", "line 2: a shot has no field vew: did you mean view?"),

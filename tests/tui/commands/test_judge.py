@@ -123,6 +123,14 @@ def test_one_table_is_judged_and_named():
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
 
 
+def test_only_energies_around_zero_are_advised_to_use_their_spread():
+    spike = "".join(f"{n},{9 if n == 99 else 1 + n % 2 / 1000}\n" for n in range(300))
+    around_zero = "".join(f"{n},{(n * 7919) % 13 - 6.5}\n" for n in range(300))
+    names = {"time": "1", "energy": "2"}
+    assert "--scale std" not in judge(spike, **names).out
+    assert "--scale std" in judge(around_zero, **names).out
+
+
 HEAD = "   Step   Time   Temp   TotEng\n"
 FOOTER = "Loop time of 1 on 1 procs for 9 steps\nNlocal: 9 ave 9 max 9 min\nHistogram: 1 0 0 0\n"
 LATER = [(t + 30, e) for t, e in ROWS]
@@ -251,11 +259,12 @@ def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
     [
         ("", "t E", 3, "the input is empty"),
         (table(), "t Energy", 2, "there is no column 'Energy'; choose from t, E"),
+        (table(), "t E+Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (table(head="time,energy"), "time enrgy", 2, "'enrgy': did you mean energy?"),
         (table(), "1 3", 3, "no row has a number in each column; columns count from 1"),
         ("1 2\n", "t E", 2, "give columns by number"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
-        ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time goes back"),
+        ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time never increases"),
         ("\x1b[31m,\x07\n", "t E", 2, "there is no column 't'"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
     ],

@@ -112,7 +112,7 @@ def test_export_to_stdout_is_the_file_and_parquet_has_the_same_rows(tmp_path):
     text = (tmp_path / "a.csv").read_text()
     assert pendu("export", "drift").out == text
     parquet = pytest.importorskip("pyarrow.parquet")
-    assert pendu("export", "drift", "--format", "parquet", "-o", tmp_path / "a.parquet").code == 0
+    assert pendu("export", "drift", "-o", tmp_path / "a.parquet").code == 0
     table = parquet.read_table(tmp_path / "a.parquet").to_pylist()
     rows = csv.DictReader(text.splitlines())
     assert [row["theta_rad"] for row in table] == [float(row["theta_rad"]) for row in rows]

@@ -50,7 +50,7 @@ from tui.cli.time_limit import limited_steps
 from tui.cli.workers import workers_of
 from tui.commands.studies import figures
 from tui.words.insight import irregular, milestone_insight, sentence
-from tui.words.numbers import file_size, z_text
+from tui.words.numbers import counted, file_size, z_text
 
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # samples for a figure
@@ -180,7 +180,7 @@ def _report(
     return Report(
         name="run",
         title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
-        f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
+        f"{counted(sample.step, 'step')} to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
         columns=columns_of(scene, Column("per second", "drift_per_second", "+.1e")),
         rows=rows,
         notes=notes,

@@ -169,6 +169,8 @@ class AccuracyPane(Chooser[Point]):
         if self.chart == "time":
             return growth_lines(self.growths, done=len(self.growths) == len(self.here))
         words = ["the current h is not on this chart; the arrows choose another"]
+        if self.missing:
+            words = []
         if self.aim is not None:
             note = "" if self.pointer or self.cursor else "current h"
             words = [point_words(self.aim, self.chart, note)]
