@@ -13,6 +13,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from tui.cli.dropped import DROPPED, refuse_dropped
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.files import repeat_swallowed_interrupts
 from tui.cli.install import hidden_package
@@ -39,14 +40,6 @@ COMMANDS = {
     "doctor": "check the environment and suggest fixes",
 }
 """Commands and what they do."""
-
-RENAMED = {
-    "keys": "live, and there the key ?",
-    "section": "stability --section",
-    "info": "recordings show",
-    "recover": "recordings recover",
-    "completion": "--print-completion SHELL",
-}
 
 USAGE = """\
 usage: pendu-tui [COMMAND | SCENE | FILE] [OPTIONS]
@@ -130,6 +123,7 @@ def _dispatch(arguments: list[str]) -> int:
         if arguments and arguments[0].startswith("--print-completion"):
             completion_parser().parse_args(arguments)
         name, arguments = split(arguments)
+        refuse_dropped(name, arguments)
         parser, command = command_of(name)
         options = parser.parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
@@ -148,7 +142,7 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     If the first word is a scene or a file, the command is live or replay.
     """
     first = next(iter(arguments), "-")
-    if first in COMMANDS or first in RENAMED:
+    if first in COMMANDS or first in DROPPED:
         return first, arguments[1:]
     if first.endswith((".mcap", ".mcap.part")):
         return "replay", arguments
@@ -165,8 +159,6 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
     """Return a command's parser and module.  Raises UserError if there is none."""
     from tui.cli.options import Parser, did_you_mean
 
-    if name in RENAMED:
-        raise UserError(f"{name} has moved; use: pendu-tui {RENAMED[name]}.")
     if name not in COMMANDS:
         from engine.scenes import SCENES
 

@@ -13,7 +13,8 @@ from engine.methods import METHODS
 from recordings.library import GOLDEN
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.cli.dispatch import COMMANDS, RENAMED, command_of, completion_parser, split
+from tui.cli.dispatch import COMMANDS, command_of, completion_parser, split
+from tui.cli.dropped import DROPPED
 from tui.cli.errors import Exit
 
 ONE_SECOND = ("--time", "1", "--json")
@@ -57,11 +58,20 @@ def test_a_scene_may_stand_before_or_after_the_options(arguments):
         ("export drift a.csv", 2, "-o a.csv"),
         ("--h 0.1 run", 2, "there is no scene 'run'"),
         ("--theta=--", 2, "--theta: expected one argument"),
-        *((f"{name} x --json", 2, f"use: pendu-tui {new}") for name, new in RENAMED.items()),
+        *((f"{name} x --json", 2, new) for name, new in DROPPED.items()),
     ],
 )
 def test_a_mistake_is_one_sentence_that_helps(line, code, words):
     assert pendu(*line.split()).refused(code, words)
+
+
+def test_what_has_been_dropped_does_not_exist():
+    options = {
+        f"{name} {option}"
+        for name in COMMANDS
+        for option in command_of(name)[0]._option_string_actions
+    }
+    assert not {*COMMANDS, *options} & {*DROPPED}
 
 
 def test_an_escape_sequence_is_not_printed_raw():

@@ -1,0 +1,23 @@
+"""Commands and options of earlier versions.  A row stays for one version."""
+
+from collections.abc import Sequence
+from itertools import takewhile
+
+from tui.cli.errors import UserError
+
+DROPPED = {
+    "keys": "pendu-tui live, and there the key ?",
+    "section": "pendu-tui live, and there F3 and the key x",
+    "info": "pendu-tui recordings show",
+    "recover": "pendu-tui recordings recover",
+    "completion": "pendu-tui --print-completion SHELL",
+}
+"""What to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option`."""
+
+
+def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
+    """Raise UserError if a command, or one of the words after it, has been dropped."""
+    words = takewhile("--".__ne__, arguments)
+    for name in (command, *(f"{command} {word.partition('=')[0]}" for word in words)):
+        if name in DROPPED:
+            raise UserError(f"{name} has been dropped; use instead: {DROPPED[name]}.")
