@@ -32,7 +32,6 @@ COMMANDS = {
     "run": "run a scene without the screen and judge each method; for CI",
     "judge": "judge the energies of another program, from a file or stdin; for CI",
     "verify": "re-simulate recordings and compare every bit",
-    "diff": "compare two recordings: scene, changes, every number",
     "export": "convert a recording to CSV or Parquet",
     "recordings": "list the recordings, show, recover or delete them",
     "scenes": "list the scenes, with what to watch",
