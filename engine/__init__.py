@@ -11,14 +11,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from engine.library import METHODS, SCENES, judge, limits, recommend, simulate
+    from pendu_tui.engine.library import METHODS, SCENES, judge, limits, recommend, simulate
 
 __all__ = ["METHODS", "SCENES", "judge", "limits", "recommend", "simulate"]
 
 
 def __getattr__(name: str) -> Any:
     if name in __all__:
-        return getattr(import_module("engine.library"), name)
+        return getattr(import_module("pendu_tui.engine.library"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -1,4 +1,4 @@
-"""The library: what `from engine import ...` gives.  NumPy is loaded by the first call.
+"""The library: what `from pendu_tui.engine import ...` gives.  NumPy is loaded by the first call.
 
 Arguments that cannot be used raise ValueError with a sentence.
 """
@@ -11,17 +11,17 @@ from functools import partial, wraps
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from engine import methods as listed
-from engine import scenes
-from engine.methods import Cast, Method, matching
-from engine.scenes import Scene
+from pendu_tui.engine import methods as listed
+from pendu_tui.engine import scenes
+from pendu_tui.engine.methods import Cast, Method, matching
+from pendu_tui.engine.scenes import Scene
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from engine.accuracy.recommend import Attempt
-    from engine.accuracy.study import ErrorKind
+    from pendu_tui.engine.accuracy.recommend import Attempt
+    from pendu_tui.engine.accuracy.study import ErrorKind
 
     Floats = NDArray[np.float64]
 
@@ -111,8 +111,8 @@ def simulate(
     """
     import numpy as np
 
-    from engine.run.compiled import TieredLoops
-    from engine.run.lockstep import Lockstep
+    from pendu_tui.engine.run.compiled import TieredLoops
+    from pendu_tui.engine.run.lockstep import Lockstep
 
     chosen = _scene(scene, methods, numbers)
     stops = _stops(chosen, _number("time", time), every)
@@ -166,7 +166,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """
     import numpy as np
 
-    from engine.run.energies import judge_record
+    from pendu_tui.engine.run.energies import judge_record
 
     t = _finite("times", _array("times", times))
     e = _array("energies", energies)
@@ -225,7 +225,7 @@ def limits(
     stability --steps 1000` finds the same limits; more steps find lower ones.  Its help, which is
     engine.stability.LOST, says when a swing is lost.  `numbers` are those of `simulate`.
     """
-    from engine.stability.study import amplitude, ladder_of, table
+    from pendu_tui.engine.stability.study import amplitude, ladder_of, table
 
     chosen = _general(scene, methods, numbers)
     theta = amplitude(chosen)
@@ -261,9 +261,9 @@ def recommend(
     cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
     end); a `safety` of 2 halves the target.  Raises ValueError if no method reaches the target.
     """
-    from engine.accuracy.recommend import least_cost
-    from engine.accuracy.study import Study, usual
-    from engine.run.compiled import TieredLoops
+    from pendu_tui.engine.accuracy.recommend import least_cost
+    from pendu_tui.engine.accuracy.study import Study, usual
+    from pendu_tui.engine.run.compiled import TieredLoops
 
     chosen = _general(scene, methods, numbers)
     if chosen.theta == chosen.omega == 0:

@@ -8,8 +8,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording
-    from recordings.verification import verify
+    from pendu_tui.recordings.recording import Recording
+    from pendu_tui.recordings.verification import verify
 
 __all__ = ["Recording", "verify"]
 _HOMES = {"Recording": "recording", "verify": "verification"}
@@ -17,7 +17,7 @@ _HOMES = {"Recording": "recording", "verify": "verification"}
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
-        return getattr(import_module(f"recordings.{_HOMES[name]}"), name)
+        return getattr(import_module(f"pendu_tui.recordings.{_HOMES[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -7,17 +7,17 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from engine.methods import Method, method_of
-from engine.models import MODELS
-from engine.models.model import Force, Phase
-from engine.run import NUMERICS
-from engine.run.lockstep import Sample
-from engine.scenes import Scene
-from recordings.errors import RecordingError
+from pendu_tui.engine.methods import Method, method_of
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models.model import Force, Phase
+from pendu_tui.engine.run import NUMERICS
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.errors import RecordingError
 
 if TYPE_CHECKING:
-    from engine.methods.own import OwnMethod
-    from engine.run.judgement import Milestone
+    from pendu_tui.engine.methods.own import OwnMethod
+    from pendu_tui.engine.run.judgement import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred

@@ -8,10 +8,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, get_args
 
-from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.run.lockstep import Reading, Sample
-from recordings.errors import RecordingError, printable
-from recordings.events import EventKind
+from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.events import EventKind
 
 MAX_INTEGER = 1 << 53
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from recordings.errors import DiskError, NameTakenError, printable, writing
+from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
 
 
 def check_target(path: Path, force: bool = False) -> None:

@@ -10,12 +10,12 @@ import json
 from collections.abc import Sequence
 from typing import Any, get_args
 
-from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.run.judgement import VERDICTS, Milestone, MilestoneKind
-from engine.run.lockstep import Reading, Sample
-from engine.scenes import MAX_METHODS, Scene, SceneError
-from recordings.errors import RecordingError, printable
-from recordings.events import (
+from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.run.judgement import VERDICTS, Milestone, MilestoneKind
+from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
+from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.events import (
     Arithmetic,
     Event,
     EventKind,
@@ -24,7 +24,7 @@ from recordings.events import (
     name_of,
     noticed,
 )
-from recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
+from pendu_tui.recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
 
 FORMAT_VERSION = "3"
 PROFILE = "pendu"  # in the file's header

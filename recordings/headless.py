@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from engine.run.lockstep import Lockstep, Sample
-from engine.run.loops import LoopsOf, PlainLoops
-from engine.scenes import Scene
-from recordings.events import Event, noticed
-from recordings.recorder import Recorder
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.events import Event, noticed
+from pendu_tui.recordings.recorder import Recorder
 
 SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
 

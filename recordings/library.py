@@ -14,8 +14,8 @@ from typing import IO, Any, BinaryIO, NamedTuple
 
 import platformdirs
 
-from recordings.errors import DiskError, RecordingError
-from recordings.files import is_stream
+from pendu_tui.recordings.errors import DiskError, RecordingError
+from pendu_tui.recordings.files import is_stream
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording

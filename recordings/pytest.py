@@ -1,6 +1,6 @@
 """A pytest plugin: a check of energies, and recordings as tests.
 
-Load it with `-p recordings.pytest` in addopts, or with `pytest_plugins = ["recordings.pytest"]` in
+Load it with `-p pendu_tui.recordings.pytest` in addopts, or with `pytest_plugins = ["pendu_tui.recordings.pytest"]` in
 the root conftest.py.  It is not loaded by being installed.
 """
 
@@ -10,23 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-import engine
-
-if Path(str(engine.__file__)).resolve().parents[1] != Path(__file__).resolve().parents[1]:
-    raise pytest.UsageError(
-        f"{engine.__file__} hides the package engine of pendu-tui, which recordings.pytest needs;"
-        " let a test run `pendu-tui verify FOLDER` instead."
-    )
-
-from engine import judge
-from engine.run.judgement import VERDICTS
-from recordings.errors import RecordingError
-from recordings.verification import verify
+from pendu_tui.engine import judge
+from pendu_tui.engine.run.judgement import VERDICTS
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.verification import verify
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from engine.library import Judged
+    from pendu_tui.engine.library import Judged
 
 
 class EnergyDrift:
@@ -43,7 +35,7 @@ class EnergyDrift:
         max_drift: float | None = None,
         scale: float | str = "std",
     ) -> "Judged":
-        """Fail unless `engine.judge` returns this verdict and a trend of at most `max_drift`.
+        """Fail unless `pendu_tui.engine.judge` returns this verdict and a trend of at most `max_drift`.
 
         The trend is that of the energies over the scale, per unit of time.
         """

@@ -18,8 +18,8 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message
 from mcap.stream_reader import breakup_chunk
 
-from recordings.errors import RecordingError
-from recordings.format import EVENTS, FORMAT_VERSION
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
 
 MAGIC = b"\x89MCAP0\r\n"
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB

@@ -16,13 +16,13 @@ from mcap.data_stream import RecordBuilder
 from mcap.records import ChunkIndex
 from mcap.writer import CompressionType, Writer
 
-from engine.run.lockstep import Sample
-from engine.scenes import Scene
-from recordings.errors import DiskError, NameTakenError, writing
-from recordings.events import MAX_EVENTS, Event
-from recordings.fields import EVENT_SCHEMA, sample_schema, without_extremes
-from recordings.files import check_target, is_stream, publish
-from recordings.format import (
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.errors import DiskError, NameTakenError, writing
+from pendu_tui.recordings.events import MAX_EVENTS, Event
+from pendu_tui.recordings.fields import EVENT_SCHEMA, sample_schema, without_extremes
+from pendu_tui.recordings.files import check_target, is_stream, publish
+from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,
@@ -31,7 +31,7 @@ from recordings.format import (
     encode_readings,
     topics_of,
 )
-from recordings.library import free_path, hold, part_of
+from pendu_tui.recordings.library import free_path, hold, part_of
 
 FLUSH_EVERY = 0.7  # s of the recording clock; so kill -9 loses less than 1 s, slow frames included
 MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush in headless runs

@@ -14,15 +14,21 @@ from typing import BinaryIO, NamedTuple, Self
 
 from mcap.records import Message
 
-from engine.run.judgement import Milestone
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from engine.scenes import Scene, SceneError
-from recordings.errors import RecordingError, named
-from recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
-from recordings.format import CLOCK_OFFSET, EVENTS, decode_event, decode_reading, topics_of
-from recordings.library import open_file
-from recordings.reader import Contents, ShowProgress, read_chunk, read_contents
+from pendu_tui.engine.run.judgement import Milestone
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.recordings.errors import RecordingError, named
+from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
+from pendu_tui.recordings.format import (
+    CLOCK_OFFSET,
+    EVENTS,
+    decode_event,
+    decode_reading,
+    topics_of,
+)
+from pendu_tui.recordings.library import open_file
+from pendu_tui.recordings.reader import Contents, ShowProgress, read_chunk, read_contents
 
 CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two
 

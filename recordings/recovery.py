@@ -6,11 +6,11 @@ No number is repaired, guessed or changed.
 from pathlib import Path
 from typing import Any
 
-from recordings.errors import RecordingError, printable
-from recordings.events import Event
-from recordings.reader import ShowProgress
-from recordings.recorder import Recorder
-from recordings.recording import Recording
+from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.reader import ShowProgress
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
 
 
 def recover(

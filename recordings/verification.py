@@ -11,15 +11,15 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from engine.run import NUMERICS
-from engine.run.compiled import TieredLoops
-from engine.run.lockstep import Lockstep, Sample
-from engine.run.stepping import Stepping
-from recordings.errors import RecordingError, named
-from recordings.events import Event, check_present
-from recordings.fields import EXTREMES, differences
-from recordings.reader import ShowProgress
-from recordings.recording import Recording, Run
+from pendu_tui.engine.run import NUMERICS
+from pendu_tui.engine.run.compiled import TieredLoops
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.recordings.errors import RecordingError, named
+from pendu_tui.recordings.events import Event, check_present
+from pendu_tui.recordings.fields import EXTREMES, differences
+from pendu_tui.recordings.reader import ShowProgress
+from pendu_tui.recordings.recording import Recording, Run
 
 TOLERANCE = 1e-6  # relative, above 1; another sin moves regular swings by 1e-8 in 1500 steps
 STEPS_AT_ONCE = 50_000  # a fifth of a second, the longest wait of an interrupt

@@ -1,8 +1,19 @@
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+import pendu_tui.engine
+
+CHECKOUT = Path(__file__).resolve().parent.parent
+TESTED = Path(str(pendu_tui.engine.__file__)).resolve().parent.parent
+if TESTED != CHECKOUT:
+    raise pytest.UsageError(
+        f"these tests would test the pendu-tui in {TESTED}, not this checkout;"
+        " run `pip install -e '.[test]'` here."
+    )
 
 # No deadline, which a busy machine would miss.  CI tries the same examples each time, so that only a
 # change of the code can make it fail.

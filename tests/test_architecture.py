@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-import tui.commands
-from engine.models import MODELS
-from tui.cli.dispatch import COMMANDS
+import pendu_tui.tui.commands
+from pendu_tui.engine.models import MODELS
+from pendu_tui.tui.cli.dispatch import COMMANDS
 
 ROOT = Path(__file__).parent.parent
 MODULES = [
@@ -43,18 +43,23 @@ def loaded_after(work: str, *prefixes: str) -> list[str]:
     "arguments", [["--version"], ["--help"], *([name, "--help"] for name in COMMANDS)], ids=" ".join
 )
 def test_help_and_version_load_nothing_heavy(arguments):
-    work = f"from tui.cli.dispatch import main\nassert main({arguments}) == 0"
+    work = f"from pendu_tui.tui.cli.dispatch import main\nassert main({arguments}) == 0"
     assert loaded_after(work, *HEAVY) == []
 
 
 def test_the_first_paint_of_the_lab_does_not_wait_for_numpy_and_the_recorder():
-    work = "import tui.screens.app, tui.screens.launch, tui.screens.live"
+    work = (
+        "import pendu_tui.tui.screens.app, pendu_tui.tui.screens.launch, pendu_tui.tui.screens.live"
+    )
     assert loaded_after(work, "numpy", "mcap", "plotext", "numba") == []
 
 
 def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
     modules = [
-        module.name for module in pkgutil.walk_packages(tui.commands.__path__, "tui.commands.")
+        module.name
+        for module in pkgutil.walk_packages(
+            pendu_tui.tui.commands.__path__, "pendu_tui.tui.commands."
+        )
     ]
     assert {
         name.split(".")[-1] for name in modules if hasattr(import_module(name), "add_options")
@@ -104,7 +109,7 @@ def test_nobody_outside_asks_which_model_it_is():
     [
         'scene.model in ("linear", "damped")',
         "isinstance(model, (int, Pendulum))",
-        "from engine.models.pendulum import energy",
+        "from pendu_tui.engine.models.pendulum import energy",
     ],
 )
 def test_such_a_question_would_be_found(text):

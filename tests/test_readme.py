@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
-from tui.cli.dispatch import COMMANDS, command_of, split
-from tui.commands.export import columns_of
-from tui.screens.dialogs import bindings_of, key_lines
-from tui.screens.live import LiveScreen
+from pendu_tui.engine.run.judgement import DEFINITIONS, FALSE_ALARMS
+from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, split
+from pendu_tui.tui.commands.export import columns_of
+from pendu_tui.tui.screens.dialogs import bindings_of, key_lines
+from pendu_tui.tui.screens.live import LiveScreen
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / ".github" / "docs").glob("*.md"))]
@@ -155,20 +155,8 @@ def test_the_pytest_plugin_guards_energies_and_recordings(project, tmp_path):
 
 
 @pytest.mark.slow
-def test_where_a_project_hides_a_package_of_ours_the_command_line_works(project, tmp_path):
-    (tmp_path / "engine").mkdir()
-    (tmp_path / "engine" / "__init__.py").touch()
-    told = project("", 'pytest_plugins = ["recordings.pytest"]')
-    assert "hides the package engine of pendu-tui" in told
-    assert "Traceback" not in told
-    (tmp_path / "tests" / "recordings").mkdir(parents=True)
-    shutil.copy(ROOT / "recordings" / "golden" / "drift.mcap", tmp_path / "tests" / "recordings")
-    assert "1 passed" in project(block_with("python", "import subprocess"))
-
-
-@pytest.mark.slow
 def test_the_library_does_what_the_readme_shows(capsys):
-    exec(block_with("python", "from engine import"), names := {})
+    exec(block_with("python", "from pendu_tui.engine import"), names := {})
     assert capsys.readouterr().out.startswith("bounded, trend ")
     assert names["run"]["rk4"].verdict == "loses"
     general = sum(method.general for method in names["METHODS"].values())
@@ -220,8 +208,8 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
 @pytest.mark.slow
 def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for package in ("engine", "recordings", "tui"):
-        shutil.copytree(ROOT / package, tmp_path / package)
-    family = tmp_path / "engine" / "methods" / "splitting.py"
+        shutil.copytree(ROOT / package, tmp_path / "pendu_tui" / package)
+    family = tmp_path / "pendu_tui" / "engine" / "methods" / "splitting.py"
     source, of_family, members = family.read_text(encoding="utf-8").partition("FAMILY = (")
     method = block_with("python", "def ruth_3") + "\n\n" + block_with("python", "Method(")
     family.write_text(f"{source}{method}\n{of_family}RUTH_3, {members}", encoding="utf-8")
@@ -232,7 +220,7 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
         return done.stdout
 
     def pendu_there(command: str) -> str:
-        program = "import sys; from tui.cli.dispatch import main; sys.exit(main())"
+        program = "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())"
         return run("-c", program, *command.split())
 
     assert "ruth_3" in pendu_there("methods")

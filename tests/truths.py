@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import GENERAL, Method
-from engine.run.lockstep import Lockstep
-from engine.run.loops import LoopsOf
-from engine.scenes import Scene
+from pendu_tui.engine.methods import GENERAL, Method
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import LoopsOf
+from pendu_tui.engine.scenes import Scene
 
 FILE = Path(__file__).parent / "engine/run/truths.txt"
 

@@ -6,5 +6,5 @@
 - `words`: sentences; `terminal`: what the terminal can do, and how it is driven.
 - `drawing`: numbers into characters: canvas, axes, charts, colours, cells.
 - `playback`: what a screen shows, a lab or a recording, and its clock; without Textual.
-- `cli`: what all commands share; `__main__` starts it for `python -m tui`.
+- `cli`: what all commands share; `__main__` starts it for `python -m pendu_tui.tui`.
 """

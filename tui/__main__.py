@@ -1,8 +1,8 @@
-"""Let `python -m tui` do what `pendu-tui` does."""
+"""Let `python -m pendu_tui.tui` do what `pendu-tui` does."""
 
 import sys
 
-from tui.cli import main
+from pendu_tui.tui.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

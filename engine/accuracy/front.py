@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Literal
 
-from engine.accuracy.study import ErrorKind, Point
-from engine.methods import Method
-from engine.methods.runge_kutta import RK4
+from pendu_tui.engine.accuracy.study import ErrorKind, Point
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.runge_kutta import RK4
 
 Cost = Literal["evaluations", "seconds"]
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.methods import Method
-from engine.phase_space.section import orbit
-from engine.scenes import Scene
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.phase_space.section import orbit
+from pendu_tui.engine.scenes import Scene
 
 PERIODS = 100  # followed at most
 LARGEST = 0.4  # rad; larger errors begin to wrap

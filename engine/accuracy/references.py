@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.accuracy.study import COMPARISONS, TIMED_STEPS, Clock, Point, Study, shortest
-from engine.methods.method import Method
-from engine.models.exact_pendulum import exact_pendulum
-from engine.scenes import Scene
+from pendu_tui.engine.accuracy.study import COMPARISONS, TIMED_STEPS, Clock, Point, Study, shortest
+from pendu_tui.engine.methods.method import Method
+from pendu_tui.engine.models.exact_pendulum import exact_pendulum
+from pendu_tui.engine.scenes import Scene
 
 ABSENT = "Taylor's series is for shorter runs of the pendulum, where Numba compiles the methods."
 TAYLOR_20 = Method(
@@ -58,7 +58,7 @@ def taylor_points(scene: Scene, time: float, clock: Clock) -> Iterator[Point]:
     fastest = max(scene.w0, abs(scene.omega))
     if time * fastest > 1e6:  # rad of motion, which take too long
         return
-    solve = import_module("engine.accuracy.taylor").solve  # needs Numba
+    solve = import_module("pendu_tui.engine.accuracy.taylor").solve  # needs Numba
     study = Study(scene, time)
     times = np.linspace(0, time, COMPARISONS + 1)
     start = (scene.w0_squared, scene.theta, scene.omega)

@@ -4,7 +4,7 @@ import math
 import sys
 from statistics import fmean
 
-from engine.scenes import Scene
+from pendu_tui.engine.scenes import Scene
 
 NUDGE = 1e-9  # relative; small even near the separatrix, but far above the exact swing's error
 

@@ -11,13 +11,13 @@ from functools import cache, lru_cache, partial
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
-from engine.accuracy.rounding import rounding_floor
-from engine.methods import GENERAL, Cast, Method
-from engine.methods.own import OwnMethod
-from engine.run.compiled import TieredLoops, available
-from engine.run.lockstep import Lockstep
-from engine.run.loops import LoopsOf, PlainLoops, count_evaluations
-from engine.scenes import Z_LIMITS, Scene
+from pendu_tui.engine.accuracy.rounding import rounding_floor
+from pendu_tui.engine.methods import GENERAL, Cast, Method
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.run.compiled import TieredLoops, available
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import LoopsOf, PlainLoops, count_evaluations
+from pendu_tui.engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
 Clock = Callable[[], float]  # s

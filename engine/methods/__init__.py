@@ -11,7 +11,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from engine.methods import (
+from pendu_tui.engine.methods import (
     adaptive,
     damped,
     euler,
@@ -23,10 +23,10 @@ from engine.methods import (
     stiff,
     verlet,
 )
-from engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
-from engine.methods.method import Method as Method
-from engine.methods.runge_kutta import RK4
-from engine.methods.verlet import VELOCITY_VERLET
+from pendu_tui.engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
+from pendu_tui.engine.methods.method import Method as Method
+from pendu_tui.engine.methods.runge_kutta import RK4
+from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
 
 Cast = tuple[Method, ...]
 """The methods of a run, in order."""

@@ -8,9 +8,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from engine.methods.method import Method, Phases
-from engine.methods.verlet import velocity_verlet
-from engine.models.model import Force, Phase
+from pendu_tui.engine.methods.method import Method, Phases
+from pendu_tui.engine.methods.verlet import velocity_verlet
+from pendu_tui.engine.models.model import Force, Phase
 
 TOLERANCE = 0.1  # rad and rad/s, of a step
 

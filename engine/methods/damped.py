@@ -6,9 +6,9 @@ They take the pendulum's force and its friction, gamma [s⁻¹], separately.
 import math
 from collections.abc import Iterator
 
-from engine.methods.method import Method
-from engine.models.damped import DampedParts
-from engine.models.model import Phase
+from pendu_tui.engine.methods.method import Method
+from pendu_tui.engine.models.damped import DampedParts
+from pendu_tui.engine.models.model import Phase
 
 
 def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:

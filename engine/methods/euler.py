@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from engine.methods.method import HAIRER, Method
-from engine.models import FIRST_ORDER
-from engine.models.model import Force, Phase, Rates
-from engine.models.modified_energy import symplectic_euler_modified_energy
+from pendu_tui.engine.methods.method import HAIRER, Method
+from pendu_tui.engine.models import FIRST_ORDER
+from pendu_tui.engine.models.model import Force, Phase, Rates
+from pendu_tui.engine.models.modified_energy import symplectic_euler_modified_energy
 
 
 def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:

@@ -6,10 +6,16 @@ from typing import Any, cast
 
 import numpy as np
 
-from engine.methods.measure import PENDULUM, START, after, evaluations, measured
-from engine.methods.method import Phases
-from engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method, own_phases
-from engine.models.model import Phase
+from pendu_tui.engine.methods.measure import PENDULUM, START, after, evaluations, measured
+from pendu_tui.engine.methods.method import Phases
+from pendu_tui.engine.methods.own import (
+    MAX_SOURCE,
+    OwnMethod,
+    OwnMethodError,
+    own_method,
+    own_phases,
+)
+from pendu_tui.engine.models.model import Phase
 
 H = 0.05  # s
 STEPS = 6

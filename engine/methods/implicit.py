@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
 
-from engine.methods.method import COMPILABLE, HAIRER, Method, Phases
-from engine.models.model import Force, Phase
-from engine.models.modified_energy import implicit_midpoint_modified_energy
-from engine.models.spring import SpringParts
+from pendu_tui.engine.methods.method import COMPILABLE, HAIRER, Method, Phases
+from pendu_tui.engine.models.model import Force, Phase
+from pendu_tui.engine.models.modified_energy import implicit_midpoint_modified_energy
+from pendu_tui.engine.models.spring import SpringParts
 
 TOLERANCE = 1e-12  # rad, and relative, of the last correction: the next would be far smaller
 MAX_ITERATIONS = 30  # a solution takes 3 to 7 below z = 0.9

@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from typing import Any
 
-from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
-from engine.methods.method import Method
-from engine.methods.runge_kutta import rk4_on_rates
-from engine.models.model import Model, Phase, Rates
+from pendu_tui.engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
+from pendu_tui.engine.methods.method import Method
+from pendu_tui.engine.methods.runge_kutta import rk4_on_rates
+from pendu_tui.engine.models.model import Model, Phase, Rates
 
 
 def _numbers(text: str) -> list[tuple[float, ...]]:

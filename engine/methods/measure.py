@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.methods.method import Phases
-from engine.models.model import Force, Phase
-from engine.models.pendulum import Pendulum
+from pendu_tui.engine.methods.method import Phases
+from pendu_tui.engine.models.model import Force, Phase
+from pendu_tui.engine.models.pendulum import Pendulum
 
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)

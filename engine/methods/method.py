@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from engine.models.model import Model, Phase, Rates, Sine
-from engine.models.modified_energy import ModifiedEnergy
+from pendu_tui.engine.models.model import Model, Phase, Rates, Sine
+from pendu_tui.engine.models.modified_energy import ModifiedEnergy
 
 Phases = Callable[[Any, Phase, float], Iterator[Phase]]
 """(force, phase, h) -> the phases after one step of h [s], after two, and so on without end.

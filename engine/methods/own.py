@@ -12,11 +12,11 @@ from functools import cache
 from numbers import Complex, Real
 from typing import TYPE_CHECKING, Any
 
-from engine.methods.method import Method, Phases
-from engine.models.model import Force, Phase
+from pendu_tui.engine.methods.method import Method, Phases
+from pendu_tui.engine.models.model import Force, Phase
 
 if TYPE_CHECKING:  # it brings NumPy
-    from engine.methods.measure import Measured
+    from pendu_tui.engine.methods.measure import Measured
 
 MAX_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
 

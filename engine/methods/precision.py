@@ -4,9 +4,9 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from engine.methods.method import HAIRER, Method
-from engine.methods.verlet import velocity_verlet
-from engine.models.model import Force, Phase
+from pendu_tui.engine.methods.method import HAIRER, Method
+from pendu_tui.engine.methods.verlet import velocity_verlet
+from pendu_tui.engine.models.model import Force, Phase
 
 
 class Float32(float):

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 
-from engine.methods.euler import euler_step
-from engine.methods.method import HAIRER, Method
-from engine.models import FIRST_ORDER
-from engine.models.model import Force, Phase, Rates
+from pendu_tui.engine.methods.euler import euler_step
+from pendu_tui.engine.methods.method import HAIRER, Method
+from pendu_tui.engine.models import FIRST_ORDER
+from pendu_tui.engine.models.model import Force, Phase, Rates
 
 
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from engine.methods.method import COMPILABLE, Method, Phases
-from engine.models.model import Force, Phase
+from pendu_tui.engine.methods.method import COMPILABLE, Method, Phases
+from pendu_tui.engine.models.model import Force, Phase
 
 
 def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:

@@ -6,11 +6,11 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from engine.methods.method import HAIRER, Method, Phases
-from engine.methods.verlet import velocity_verlet
-from engine.models.mean_field import MeanField, strang
-from engine.models.model import Phase
-from engine.models.spring import SpringParts
+from pendu_tui.engine.methods.method import HAIRER, Method, Phases
+from pendu_tui.engine.methods.verlet import velocity_verlet
+from pendu_tui.engine.models.mean_field import MeanField, strang
+from pendu_tui.engine.models.model import Phase
+from pendu_tui.engine.models.spring import SpringParts
 
 
 def respa(inner: Phases, n: int) -> Phases:

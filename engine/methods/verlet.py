@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from engine.methods.method import HAIRER, Method
-from engine.models.model import Force, Phase
-from engine.models.modified_energy import (
+from pendu_tui.engine.methods.method import HAIRER, Method
+from pendu_tui.engine.models.model import Force, Phase
+from pendu_tui.engine.models.modified_energy import (
     position_verlet_modified_energy,
     velocity_verlet_modified_energy,
 )

@@ -1,12 +1,12 @@
 """The models, one a file, and the exact motion that methods are compared with."""
 
-from engine.models.damped import DampedPendulum
-from engine.models.linear import LinearOscillator as LinearOscillator
-from engine.models.mean_field import MeanField
-from engine.models.model import Model as Model
-from engine.models.model import Parameter as Parameter
-from engine.models.pendulum import Pendulum as Pendulum
-from engine.models.spring import Spring
+from pendu_tui.engine.models.damped import DampedPendulum
+from pendu_tui.engine.models.linear import LinearOscillator as LinearOscillator
+from pendu_tui.engine.models.mean_field import MeanField
+from pendu_tui.engine.models.model import Model as Model
+from pendu_tui.engine.models.model import Parameter as Parameter
+from pendu_tui.engine.models.pendulum import Pendulum as Pendulum
+from pendu_tui.engine.models.spring import Spring
 
 MODELS: dict[str, type[Model]] = {
     model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring, MeanField)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
-from engine.models.model import (
+from pendu_tui.engine.models.model import (
     EnergyError,
     EnergyReference,
     ExactMotion,
@@ -20,8 +20,8 @@ from engine.models.model import (
     Sine,
     State,
 )
-from engine.models.pendulum import Pendulum
-from engine.models.reference import ACCURACY, Reference, compose_verlet
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
 

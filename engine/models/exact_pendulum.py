@@ -12,7 +12,7 @@ from collections.abc import Callable
 from decimal import Context, Decimal, localcontext
 from typing import Any, NamedTuple
 
-from engine.models.model import ExactMotion, State
+from pendu_tui.engine.models.model import ExactMotion, State
 
 Compile = Callable[[Callable[..., Any]], Any]
 

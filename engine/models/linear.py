@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
+from pendu_tui.engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
 
 
 @dataclass(frozen=True)

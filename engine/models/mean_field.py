@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
 
-from engine.models.model import (
+from pendu_tui.engine.models.model import (
     Energy,
     ExactMotion,
     ExtraColumn,
@@ -27,7 +27,7 @@ from engine.models.model import (
     State,
     Variable,
 )
-from engine.models.reference import ACCURACY, Reference, compose
+from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
 
 STEP = 0.4  # of the reference, times the fastest frequency
 

@@ -6,7 +6,7 @@ higher order.  Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), 
 
 from collections.abc import Callable
 
-from engine.models.model import Model, Phase
+from pendu_tui.engine.models.model import Model, Phase
 
 ModifiedEnergy = Callable[[Model, Phase, float], float]
 """(model, (theta, omega), h [s]) -> modified energy [s⁻²]."""

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from engine.models.exact_pendulum import exact_pendulum
-from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine
+from pendu_tui.engine.models.exact_pendulum import exact_pendulum
+from pendu_tui.engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ It takes a symmetric step of order 2 with 17 fractions of h in turn: Kahan & Li,
 import math
 from collections.abc import Callable
 
-from engine.models.model import Force, Phase
+from pendu_tui.engine.models.model import Force, Phase
 
 Step = Callable[[Phase, float], Phase]
 """(phase, h) -> the phase after h [s]."""

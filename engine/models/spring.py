@@ -12,7 +12,7 @@ from functools import lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
 
-from engine.models.model import (
+from pendu_tui.engine.models.model import (
     Energy,
     ExactMotion,
     ExtraColumn,
@@ -25,7 +25,7 @@ from engine.models.model import (
     State,
     Variable,
 )
-from engine.models.reference import ACCURACY, Reference, compose_verlet
+from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 
 STEP = 0.1  # of the reference, times the spring's frequency
 

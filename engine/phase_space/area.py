@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import Method
-from engine.models.model import Phase
-from engine.run.loops import OVERFLOW
-from engine.run.stepping import Stepping, SteppingChange, change_before
-from engine.run.tangent import jacobian
-from engine.scenes import Scene
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Phase
+from pendu_tui.engine.run.loops import OVERFLOW
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
+from pendu_tui.engine.run.tangent import jacobian
+from pendu_tui.engine.scenes import Scene
 
 # theta [rad] and omega [rad/s] of the neighbours
 Ring = tuple[NDArray[np.float64], NDArray[np.float64]]

@@ -14,10 +14,10 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import Method
-from engine.models.model import Model, Phase
-from engine.run.loops import OVERFLOW
-from engine.run.tangent import Stretching
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Model, Phase
+from pendu_tui.engine.run.loops import OVERFLOW
+from pendu_tui.engine.run.tangent import Stretching
 
 Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape

@@ -12,11 +12,11 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
-from engine.methods import Method
-from engine.methods.method import compilable
-from engine.models.model import Model, Phase
-from engine.run import loops
-from engine.run.loops import Advanced, Loops, PlainLoops
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.method import compilable
+from pendu_tui.engine.models.model import Model, Phase
+from pendu_tui.engine.run import loops
+from pendu_tui.engine.run.loops import Advanced, Loops, PlainLoops
 
 COMPILED_FROM = 1_000_000  # steps of a method: they take as long as importing and compiling
 
@@ -46,7 +46,7 @@ def compiled(method: Method, model: Model) -> Loops:
 
 @cache
 def _compiled(method: Method, model: Model) -> CompiledLoops | None:
-    from engine.methods.own import OwnMethod  # slow to import
+    from pendu_tui.engine.methods.own import OwnMethod  # slow to import
 
     numba: Any = import_module("numba")
     general = method.general and not model.without_force and not isinstance(method, OwnMethod)

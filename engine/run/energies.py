@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.run import judgement as limits
-from engine.run.bands import MAX_BINS
-from engine.run.judgement import Judgement, Progress
+from pendu_tui.engine.run import judgement as limits
+from pendu_tui.engine.run.bands import MAX_BINS
+from pendu_tui.engine.run.judgement import Judgement, Progress
 
 # correlation times over the record's length: noise with the first walks, others have a level
 _TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])

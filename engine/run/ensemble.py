@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import Method
-from engine.methods.method import compilable
-from engine.methods.own import OwnMethod
-from engine.models import Pendulum
-from engine.models.model import Phase
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.method import compilable
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.models.model import Phase
 
 Floats = NDArray[np.float64]
 Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each

@@ -18,12 +18,27 @@ from collections.abc import Sequence
 from itertools import permutations
 from typing import Self
 
-from engine.methods import Cast, Method
-from engine.models.model import Model
-from engine.run import judgement as limits
-from engine.run.bands import MAX_BINS, Bands, Bin, fit_line, hull, one_way_share, typical_width
-from engine.run.judgement import Judgement, LookPoint, Milestone, MilestoneKind, Progress, Verdict
-from engine.run.tangent import Stretching, at_bottom
+from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.models.model import Model
+from pendu_tui.engine.run import judgement as limits
+from pendu_tui.engine.run.bands import (
+    MAX_BINS,
+    Bands,
+    Bin,
+    fit_line,
+    hull,
+    one_way_share,
+    typical_width,
+)
+from pendu_tui.engine.run.judgement import (
+    Judgement,
+    LookPoint,
+    Milestone,
+    MilestoneKind,
+    Progress,
+    Verdict,
+)
+from pendu_tui.engine.run.tangent import Stretching, at_bottom
 
 
 def stride(period: float, h: float) -> int:

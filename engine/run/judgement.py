@@ -3,7 +3,7 @@
 import math
 from typing import Literal, NamedTuple, get_args
 
-from engine.methods import Method
+from pendu_tui.engine.methods import Method
 
 Verdict = Literal[
     "bounded", "grows", "loses", "chaotic", "caught", "wanders", "failed", "too early"

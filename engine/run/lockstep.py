@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from engine.models.model import NO_EXTRA, Phase
-from engine.run.judge import Judges, stride
-from engine.run.judgement import Judgement, LookPoint, Milestone
-from engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
-from engine.run.stepping import Stepping
-from engine.scenes import Scene, check_h
+from pendu_tui.engine.models.model import NO_EXTRA, Phase
+from pendu_tui.engine.run.judge import Judges, stride
+from pendu_tui.engine.run.judgement import Judgement, LookPoint, Milestone
+from pendu_tui.engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene, check_h
 
 
 class Reading(NamedTuple):

@@ -6,8 +6,8 @@ from contextlib import suppress
 from itertools import islice
 from typing import Any, NamedTuple, Protocol
 
-from engine.methods import Method
-from engine.models.model import Energy, EnergyReference, Model, Phase
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Energy, EnergyReference, Model, Phase
 
 Advanced = tuple[int, Phase, float, float, float]
 """Steps done, phase and energy there, lowest and highest energy on the way [s⁻²]."""

@@ -14,8 +14,8 @@ from functools import cache
 from operator import attrgetter
 from typing import NamedTuple, Self
 
-from engine.methods import USUAL_CAST, Cast, Method
-from engine.scenes import check_h
+from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
+from pendu_tui.engine.scenes import check_h
 
 
 class Stepping(NamedTuple):

@@ -8,10 +8,10 @@ import math
 from itertools import islice
 from typing import Any, NamedTuple
 
-from engine.methods import Method
-from engine.methods.method import BoundPhases
-from engine.models import LinearOscillator
-from engine.models.model import Model, Phase
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.method import BoundPhases
+from pendu_tui.engine.models import LinearOscillator
+from pendu_tui.engine.models.model import Model, Phase
 
 _TINY = 1e-100  # no subtraction, so no cancellation: it may be as small as one likes
 

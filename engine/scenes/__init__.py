@@ -1,7 +1,7 @@
 """Scenes: what determines a run, and those worth watching."""
 
-from engine.scenes.listed import DEFAULT_SCENE, GROUPS, SCENES
-from engine.scenes.scene import (
+from pendu_tui.engine.scenes.listed import DEFAULT_SCENE, GROUPS, SCENES
+from pendu_tui.engine.scenes.scene import (
     LIMITS,
     MAX_METHODS,
     QUANTITIES,

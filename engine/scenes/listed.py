@@ -2,8 +2,8 @@
 
 import math
 
-from engine.methods import Cast, method_of
-from engine.scenes.scene import Line, Scene, Shot
+from pendu_tui.engine.methods import Cast, method_of
+from pendu_tui.engine.scenes.scene import Line, Scene, Shot
 
 _UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, NamedTuple
 
-from engine.methods import USUAL_CAST, Cast
-from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.models.model import ExactMotion, Model
+from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.models.model import ExactMotion, Model
 
 LIMITS = {  # inclusive; a value beyond is a typo
     "theta": (-1e9, 1e9),

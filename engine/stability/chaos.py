@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from engine.methods import Method
-from engine.models import Pendulum
-from engine.run.tangent import tangent_map
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run.tangent import tangent_map
 
 GREENE_Z = math.sqrt(0.971635)  # Greene's K
 

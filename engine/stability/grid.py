@@ -6,9 +6,9 @@ from itertools import product
 
 import numpy as np
 
-from engine.methods import USUAL_CAST, Cast
-from engine.run.compiled import available
-from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
+from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
 STRIP = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
 COMPILED_FROM = 100_000_000  # steps of a method: they take as long as importing and compiling

@@ -7,8 +7,8 @@ import cmath
 import math
 from typing import NamedTuple
 
-from engine.methods import Method
-from engine.run.tangent import at_bottom
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.run.tangent import at_bottom
 
 
 def amplification(method: Method, z: float) -> float:

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import Method
-from engine.models import Pendulum
-from engine.run.ensemble import Floats as Floats
-from engine.run.ensemble import Watched, compiled, plain
-from engine.stability import BAND
-from engine.stability.chaos import is_chaotic
-from engine.stability.linear import wobble
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run.ensemble import Floats as Floats
+from pendu_tui.engine.run.ensemble import Watched, compiled, plain
+from pendu_tui.engine.stability import BAND
+from pendu_tui.engine.stability.chaos import is_chaotic
+from pendu_tui.engine.stability.linear import wobble
 
 PARKED = 1 / 8  # share of an ensemble's swings: when so many are lost, it goes on without them
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.methods import Method
-from engine.scenes import Scene
-from engine.stability.grid import Grid
-from engine.stability.outcomes import Cells, Failure, first_failure
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.engine.stability.outcomes import Cells, Failure, first_failure
 
 THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
 

@@ -8,8 +8,8 @@ import re
 import sys
 from pathlib import Path
 
-from engine.scenes import DEFAULT_SCENE
-from tui.screens.still import still
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.screens.still import still
 
 TARGET = Path(__file__).parent.parent.parent / ".github" / "lab.svg"
 SIZE = (80, 24)

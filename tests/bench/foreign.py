@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.run.energies import judge_record
+from pendu_tui.engine.run.energies import judge_record
 
 LIMITS = {"wrong_percent": 1.0, "too_early_percent": 5.0}
 SIZES = (100, 200, 500, 2000, 6000)

@@ -30,7 +30,7 @@ def measure(share: float) -> dict[str, Any]:
             writer.start()
             writer.join()
             for command in COMMANDS:
-                program = [sys.executable, "-m", "tui", *command, str(path)]
+                program = [sys.executable, "-m", "pendu_tui.tui", *command, str(path)]
                 quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
                 process = subprocess.Popen(program, cwd=folder, **quiet)
                 _, status, usage = os.wait4(process.pid, 0)

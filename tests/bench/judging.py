@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.methods import GENERAL
-from engine.run.compiled import compiled
-from engine.run.energies import judge_record
-from engine.run.lockstep import Lockstep
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.methods import GENERAL
+from pendu_tui.engine.run.compiled import compiled
+from pendu_tui.engine.run.energies import judge_record
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
 LIMITS = {

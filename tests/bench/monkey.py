@@ -8,11 +8,11 @@ from traceback import print_exception
 from typing import Any
 from unittest.mock import patch
 
-from engine.scenes import SCENES, Scene
-from recordings.verification import verify
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.screens.app import PenduApp
 from tests.tui.harness import on_stage
 from tests.tui.monkey import SIZE, play_on_stage, small_studies, wild_presses, wild_stage
-from tui.screens.app import PenduApp
 
 LIMITS = {"early_ends": 0, "unfinished": 0, "not_verified": 0}
 SITTING = 500  # events in one lab

@@ -34,11 +34,11 @@ class Pane(NamedTuple):
 
 async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
     """Film the lab."""
-    from engine.scenes import DEFAULT_SCENE
-    from tui.playback.live import Live
-    from tui.screens.app import PenduApp
-    from tui.screens.live import LiveScreen
-    from tui.screens.still import settled
+    from pendu_tui.engine.scenes import DEFAULT_SCENE
+    from pendu_tui.tui.playback.live import Live
+    from pendu_tui.tui.screens.app import PenduApp
+    from pendu_tui.tui.screens.live import LiveScreen
+    from pendu_tui.tui.screens.still import settled
 
     now = 0.0
     panes: dict[Widget, Pane] = {}

@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.accuracy.taylor import solve as solve_by_taylor
-from engine.methods import GENERAL
-from engine.run.compiled import compiled
-from engine.scenes import Scene
+from pendu_tui.engine.accuracy.taylor import solve as solve_by_taylor
+from pendu_tui.engine.methods import GENERAL
+from pendu_tui.engine.run.compiled import compiled
+from pendu_tui.engine.scenes import Scene
 
 LIMITS = {"targets_behind_heyoka": 0}
 SCENE = Scene(theta=2.0)

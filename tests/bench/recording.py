@@ -8,12 +8,12 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from engine.run.lockstep import Lockstep
-from engine.scenes import DEFAULT_SCENE
-from recordings.events import Event
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from tui.playback.replay import Replay
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.playback.replay import Replay
 
 LIMITS = {"open_seconds": 1.0, "seek_seconds_median": 0.01, "memory_mb": 100}
 FRAMES = 30  # a second

@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from recordings.verification import verify
+from pendu_tui.recordings.verification import verify
 from tests.tui.pty_lab import PtyLab
 
 LIMITS = dict.fromkeys(("dead", "still_there", "late", "unfinished", "not_verified"), 0)

@@ -16,7 +16,7 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from engine.methods import USUAL_CAST, Method
+from pendu_tui.engine.methods import USUAL_CAST, Method
 from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
 
 WINDOWS = [1 << power for power in range(4, 20)] + [3 << 18, 1 << 20]  # steps at their ends

@@ -1,4 +1,4 @@
-"""The six names of `from engine import ...`."""
+"""The six names of `from pendu_tui.engine import ...`."""
 
 import math
 import pkgutil
@@ -8,11 +8,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-import engine
-import recordings
-from engine import METHODS, SCENES, judge, limits, recommend, simulate
-from engine.methods import METHODS as LISTED
-from engine.run.lockstep import Lockstep
+from pendu_tui import engine, recordings
+from pendu_tui.engine import METHODS, SCENES, judge, limits, recommend, simulate
+from pendu_tui.engine.methods import METHODS as LISTED
+from pendu_tui.engine.run.lockstep import Lockstep
 from tests.test_architecture import loaded_after
 
 GENERAL = [key for key, method in METHODS.items() if method.general]
@@ -21,13 +20,13 @@ WAVE = 10 + np.cos(TIMES)
 
 
 def test_importing_the_engine_loads_no_numpy_and_nothing_else_of_it():
-    assert loaded_after("import engine", "engine.", "numpy") == []
+    assert loaded_after("import pendu_tui.engine", "pendu_tui.engine.", "numpy") == []
 
 
 def test_no_module_hides_a_name_of_the_library():
     for package in (engine, recordings):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if module.name != "recordings.pytest":
+            if module.name != "pendu_tui.recordings.pytest":
                 import_module(module.name)
         names = set(package.__all__)
         assert not names & {module.name for module in pkgutil.iter_modules(package.__path__)}

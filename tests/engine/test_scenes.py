@@ -7,9 +7,9 @@ from statistics import fmean
 
 import pytest
 
-from engine.run.lockstep import Lockstep
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Scene, SceneError
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Scene, SceneError
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 

@@ -10,16 +10,16 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from recordings.errors import RecordingError
-from recordings.events import Event
-from recordings.fields import without_extremes
-from recordings.reader import read_contents
-from recordings.recording import Recording
-from recordings.recovery import recover
-from recordings.verification import verify
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.reader import read_contents
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recovery import recover
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.replay import Replay
 from tests.recordings.examples import record, samples_of, tiny, two_runs
 from tests.tui.command_line import pendu
-from tui.playback.replay import Replay
 
 
 class Damaged:

@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import VELOCITY_VERLET
-from engine.run.lockstep import Lockstep, Sample
-from engine.run.stepping import Stepping
-from engine.scenes import Scene
-from recordings.events import Entry, Event, noticed
-from recordings.recorder import FLUSH_EVERY, Recorder
-from recordings.recording import Recording
+from pendu_tui.engine.methods import VELOCITY_VERLET
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.events import Entry, Event, noticed
+from pendu_tui.recordings.recorder import FLUSH_EVERY, Recorder
+from pendu_tui.recordings.recording import Recording
 
 SCENE = Scene("test", theta=2.0, h=0.1)
 

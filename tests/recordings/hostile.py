@@ -8,10 +8,10 @@ from pathlib import Path
 
 from mcap.writer import CompressionType, Writer
 
-from engine.run.judgement import Milestone
-from engine.run.lockstep import Lockstep, Sample
-from recordings.events import Event, noticed
-from recordings.format import (
+from pendu_tui.engine.run.judgement import Milestone
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.recordings.events import Event, noticed
+from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,

@@ -10,12 +10,12 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import GENERAL, USUAL_CAST
-from engine.methods.examine import load
-from engine.run.lockstep import Sample
-from recordings.recorder import LiveRecorder
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.methods.examine import load
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.tui.playback.live import Live
 from tests.recordings.examples import SCENE
-from tui.playback.live import Live
 
 FRAME = 1 / 30  # s
 HEUN = """

@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELOCITY_VERLET, Cast
-from engine.run.lockstep import Sample
-from engine.scenes import SCENES, Scene
-from recordings.events import Event
-from recordings.library import GOLDEN, SUFFIX
-from recordings.recorder import Recorder
+from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELOCITY_VERLET, Cast
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.library import GOLDEN, SUFFIX
+from pendu_tui.recordings.recorder import Recorder
 from tests.recordings.examples import Changes, with_changes
 
 

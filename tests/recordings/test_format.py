@@ -10,15 +10,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
-from engine.models import MODELS
-from engine.run.judgement import Milestone, Verdict
-from engine.run.lockstep import Reading, Sample
-from engine.scenes import LIMITS, Scene
-from recordings.errors import MAX_TEXT, RecordingError, printable
-from recordings.events import Event, fingerprint, noticed
-from recordings.fields import EVENT_SCHEMA, EXTRA, differences, sample_schema, without_extremes
-from recordings.format import decode_event, decode_reading, encode_event, encode_readings
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.run.judgement import Milestone, Verdict
+from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.engine.scenes import LIMITS, Scene
+from pendu_tui.recordings.errors import MAX_TEXT, RecordingError, printable
+from pendu_tui.recordings.events import Event, fingerprint, noticed
+from pendu_tui.recordings.fields import (
+    EVENT_SCHEMA,
+    EXTRA,
+    differences,
+    sample_schema,
+    without_extremes,
+)
+from pendu_tui.recordings.format import decode_event, decode_reading, encode_event, encode_readings
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")

@@ -4,14 +4,14 @@ import csv
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from recordings.fields import values_of
-from recordings.library import GOLDEN, golden_names
-from recordings.recording import Recording
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.recordings.fields import values_of
+from pendu_tui.recordings.library import GOLDEN, golden_names
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.commands.export import columns_of
 from tests.recordings.examples import samples_of
 from tests.recordings.make_golden import RECORDINGS, make
 from tests.tui.command_line import pendu
-from tui.commands.export import columns_of
 
 ROOM = 64_000  # bytes; they are in every installation
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from recordings.headless import simulate, steps_for
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from recordings.recovery import recover
+from pendu_tui.recordings.headless import simulate, steps_for
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recovery import recover
 from tests.recordings.examples import SCENE
 
 

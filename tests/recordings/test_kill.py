@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from recordings.events import remember
-from recordings.library import leftovers
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.recordings.events import remember
+from pendu_tui.recordings.library import leftovers
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.screens.launch import recover_leftover
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
-from tui.screens.launch import recover_leftover
 
 pytestmark = pytest.mark.slow
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from recordings import library
-from recordings.errors import RecordingError
-from recordings.library import GOLDEN, leftovers, listing, new_path
-from recordings.recorder import Recorder
+from pendu_tui.recordings import library
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.library import GOLDEN, leftovers, listing, new_path
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.commands.recordings import delete
 from tests.recordings.examples import start, tiny
-from tui.cli.options import resolve
-from tui.commands.recordings import delete
 
 
 @pytest.fixture(autouse=True)

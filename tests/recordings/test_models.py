@@ -5,20 +5,20 @@ import json
 
 import pytest
 
-from engine.scenes import SCENES
-from recordings.errors import RecordingError
-from recordings.events import Entry
-from recordings.fields import EXTRA
-from recordings.format import decode_event, encode_event
-from recordings.headless import simulate
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from recordings.recovery import recover
-from recordings.verification import verify
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.fields import EXTRA
+from pendu_tui.recordings.format import decode_event, encode_event
+from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recovery import recover
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.replay import Replay
 from tests.recordings.examples import record, samples_of, start, with_changes
 from tests.recordings.test_verify import of_another_machine
 from tests.tui.command_line import pendu
-from tui.playback.replay import Replay
 
 SPECIAL = sorted(name for name, scene in SCENES.items() if scene.why_not_mapped)
 SPRING_FIELDS = [field.name for field in EXTRA["spring"]]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from recordings import events
+from pendu_tui.recordings import events
 from tests.recordings.killed import HEUN
 from tests.tui.command_line import pendu
 

@@ -11,15 +11,15 @@ from mcap.reader import make_reader
 from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
 from mcap.stream_reader import StreamReader
 
-from engine.run.lockstep import Lockstep
-from recordings.errors import DiskError
-from recordings.events import Entry, Event
-from recordings.format import EVENTS
-from recordings.headless import simulate
-from recordings.library import part_of
-from recordings.recorder import FLUSH_EVERY, LiveRecorder, Recorder
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.recordings.errors import DiskError
+from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.format import EVENTS
+from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.library import part_of
+from pendu_tui.recordings.recorder import FLUSH_EVERY, LiveRecorder, Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
 FRAME = 1 / 30
@@ -185,7 +185,7 @@ def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path, recorder):
 
 def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_path, monkeypatch):
     for module in ("recorder", "recording"):
-        monkeypatch.setattr(f"recordings.{module}.MAX_EVENTS", 30)
+        monkeypatch.setattr(f"pendu_tui.recordings.{module}.MAX_EVENTS", 30)
     recorder = LiveRecorder(tmp_path / "lab.mcap")
     for sample in simulate(SCENE, 4.0, recorder):
         recorder.event(Event("mark", 1, sample.step, sample.t), sample.t)

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recordings.events import Entry, Event
-from recordings.fields import without_extremes
-from recordings.headless import simulate
-from recordings.recorder import Recorder
-from recordings.recording import Recording
+from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
 from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 

@@ -2,15 +2,15 @@
 
 import pytest
 
-from recordings.errors import RecordingError
-from recordings.events import Entry, Event
-from recordings.fields import without_extremes
-from recordings.headless import simulate
-from recordings.reader import read_contents
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from recordings.recovery import recover
-from recordings.verification import verify
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.reader import read_contents
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recovery import recover
+from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 
 

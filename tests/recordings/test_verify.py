@@ -6,15 +6,15 @@ from itertools import count
 
 import pytest
 
-from engine.run import loops
-from engine.run.compiled import CompiledLoops
-from engine.run.lockstep import Lockstep
-from engine.scenes import SCENES
-from recordings.errors import RecordingError
-from recordings.events import Entry, Event, arithmetic_here
-from recordings.headless import simulate
-from recordings.recorder import Recorder
-from recordings.verification import TOLERANCE, verify
+from pendu_tui.engine.run import loops
+from pendu_tui.engine.run.compiled import CompiledLoops
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.events import Entry, Event, arithmetic_here
+from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.verification import TOLERANCE, verify
 from tests.recordings.examples import SCENE, record, start, two_runs, with_changes
 
 
@@ -115,7 +115,7 @@ def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, kept, more, 
 def of_another_machine(monkeypatch):
     """Change the fingerprint of this machine's sin."""
     here = arithmetic_here()._replace(sin="another")
-    monkeypatch.setattr("recordings.events.fingerprint", lambda name: getattr(here, name))
+    monkeypatch.setattr("pendu_tui.recordings.events.fingerprint", lambda name: getattr(here, name))
 
 
 def foreign_loops(monkeypatch, every):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tui.cli.dispatch import main
+from pendu_tui.tui.cli.dispatch import main
 
 
 @dataclass(frozen=True)

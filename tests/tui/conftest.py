@@ -41,7 +41,7 @@ async def computed_here(
 @pytest.fixture(autouse=True)
 def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     if request.node.get_closest_marker("other_process") is None:
-        monkeypatch.setattr("tui.views.background.computed", computed_here)
+        monkeypatch.setattr("pendu_tui.tui.views.background.computed", computed_here)
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """The contents of a picture, cell by cell."""
 
-from tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import Picture
 
 
 def cells(picture: Picture) -> dict[tuple[int, int], tuple[str, object]]:

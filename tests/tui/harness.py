@@ -8,22 +8,22 @@ from typing import Any
 
 from textual.pilot import Pilot
 
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from recordings.recorder import LiveRecorder
-from recordings.recording import Recording
-from tui.drawing.cells import CellWidget
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.playback.source import Source
-from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
-from tui.screens.still import settled
-from tui.terminal.options import FPS
-from tui.views import VIEWS
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.drawing.cells import CellWidget
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.replay import ReplayScreen
+from pendu_tui.tui.screens.still import settled
+from pendu_tui.tui.terminal.options import FPS
+from pendu_tui.tui.views import VIEWS
 
 PATIENCE = 120  # s
 

@@ -12,14 +12,14 @@ from textual._xterm_parser import XTermParser
 from textual.events import Key, Resize
 from textual.geometry import Size
 
-from engine.accuracy.study import ladder
-from engine.scenes import DEFAULT_SCENE, Scene
-from recordings.library import new_path
-from recordings.recorder import LiveRecorder
+from pendu_tui.engine.accuracy.study import ladder
+from pendu_tui.engine.scenes import DEFAULT_SCENE, Scene
+from pendu_tui.recordings.library import new_path
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.live import LiveScreen
 from tests.tui.conftest import computed_here
 from tests.tui.harness import Theatre
-from tui.playback.live import Live
-from tui.screens.live import LiveScreen
 
 SIZE = 120, 40
 LARGEST = 300, 90
@@ -133,7 +133,7 @@ def small_studies(library: Path) -> Iterator[None]:
             ("accuracy.pane.usual", lambda scene, all: (5.0, few)),
             ("stability.pane.PASSES", (2, 6)),
         ):
-            stack.enter_context(patch(f"tui.views.{name}", value))
+            stack.enter_context(patch(f"pendu_tui.tui.views.{name}", value))
         yield
 
 

@@ -14,7 +14,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
-PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+PENDU = [
+    sys.executable,
+    "-c",
+    "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
+]
 PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
 ROOT = Path(__file__).parents[2]
 

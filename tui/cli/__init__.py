@@ -7,6 +7,6 @@
 errors into a sentence and an exit code.
 """
 
-from tui.cli.dispatch import main
+from pendu_tui.tui.cli.dispatch import main
 
 __all__ = ["main"]

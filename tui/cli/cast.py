@@ -8,13 +8,13 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
-from engine.scenes import MAX_METHODS
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import Suggestions, add_file
+from pendu_tui.engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
+from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import Suggestions, add_file
 
 if TYPE_CHECKING:
-    from engine.methods.own import OwnMethod
+    from pendu_tui.engine.methods.own import OwnMethod
 
 MAX_SECONDS = 10.0  # to load and measure a method; 0.2 s is typical
 KEYS = [method.key for method in METHODS]
@@ -112,9 +112,9 @@ def family_of(key: str) -> str:
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     """Return the method in FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
-    from engine.methods.examine import load
-    from engine.methods.own import MAX_SOURCE
-    from tui.cli.time_limit import limited
+    from pendu_tui.engine.methods.examine import load
+    from pendu_tui.engine.methods.own import MAX_SOURCE
+    from pendu_tui.tui.cli.time_limit import limited
 
     if text.endswith(".py"):
         text += f":{Path(text).stem}"

@@ -23,15 +23,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
-from engine.methods import USUAL_CAST, Cast
-from engine.run.judgement import VERDICTS, Progress
-from recordings.errors import printable
-from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
-from tui.cli.cast import find
-from tui.cli.errors import Exit, UserError
-from tui.cli.files import text_file
-from tui.cli.options import Suggestions, add_file, did_you_mean
-from tui.cli.report import MAX_CELL, warn
+from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.run.judgement import VERDICTS, Progress
+from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
+from pendu_tui.tui.cli.cast import find
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.files import text_file
+from pendu_tui.tui.cli.options import Suggestions, add_file, did_you_mean
+from pendu_tui.tui.cli.report import MAX_CELL, warn
 
 FIELDS = (
     *NUMBERS,

@@ -18,9 +18,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from recordings.errors import printable
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import did_you_mean
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import did_you_mean
 
 LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_LINE = 1 << 20  # bytes

@@ -13,13 +13,12 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from tui.cli.dropped import DROPPED, refuse_dropped
-from tui.cli.errors import Exit, UserError, explained
-from tui.cli.files import repeat_swallowed_interrupts
-from tui.cli.install import hidden_package
+from pendu_tui.tui.cli.dropped import DROPPED, refuse_dropped
+from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.files import repeat_swallowed_interrupts
 
 if TYPE_CHECKING:
-    from tui.cli.options import Parser
+    from pendu_tui.tui.cli.options import Parser
 
 COMMANDS = {
     "live": "the lab: methods side by side, their errors, a recording",
@@ -77,9 +76,6 @@ def _main(arguments: Sequence[str] | None) -> int:
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?
     if arguments is None:
         repeat_swallowed_interrupts()
-    if why := hidden_package():
-        print(f"pendu-tui: {why}", file=sys.stderr)
-        return Exit.USAGE
     try:
         code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()
@@ -89,8 +85,8 @@ def _main(arguments: Sequence[str] | None) -> int:
         return Exit.PIPE_CLOSED
     except (KeyboardInterrupt, Exception) as error:
         refusal = explained(error)
-        from recordings.errors import printable
-        from tui.cli.report import warn
+        from pendu_tui.recordings.errors import printable
+        from pendu_tui.tui.cli.report import warn
 
         warn(printable(str(refusal), limit=1000))
         try:
@@ -129,7 +125,7 @@ def _dispatch(arguments: list[str]) -> int:
         return Exit.FINE
     if not getattr(options, "method", None):
         return int(command.run(options))
-    from tui.cli.time_limit import limited_calls, limited_steps
+    from pendu_tui.tui.cli.time_limit import limited_calls, limited_steps
 
     with limited_calls(), limited_steps():
         return int(command.run(options))
@@ -147,7 +143,7 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
         return "replay", arguments
     if first.startswith("-") or first.endswith(".toml"):
         return "live", arguments
-    from engine.scenes import SCENES
+    from pendu_tui.engine.scenes import SCENES
 
     if first in SCENES:
         return "live", arguments
@@ -156,14 +152,14 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:
     """Return a command's parser and module.  Raises UserError if there is none."""
-    from tui.cli.options import Parser, did_you_mean
+    from pendu_tui.tui.cli.options import Parser, did_you_mean
 
     if name not in COMMANDS:
-        from engine.scenes import SCENES
+        from pendu_tui.engine.scenes import SCENES
 
         hint = did_you_mean(name, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
         raise UserError(f"there is no command, scene or file {name!r}{hint}")
-    command = import_module(f"tui.commands.{name}")
+    command = import_module(f"pendu_tui.tui.commands.{name}")
     parser = Parser(
         prog=f"pendu-tui {name}",
         description=command.__doc__,
@@ -179,7 +175,7 @@ def completion_parser() -> "Parser":
     """Return a parser of all commands with --print-completion."""
     import shtab
 
-    from tui.cli.options import Parser
+    from pendu_tui.tui.cli.options import Parser
 
     parser = Parser(prog="pendu-tui")
     shtab.add_argument_to(parser, "--print-completion")
@@ -187,5 +183,5 @@ def completion_parser() -> "Parser":
     commands = parser.add_subparsers(parser_class=ArgumentParser)
     for name, about in COMMANDS.items():
         subparser = commands.add_parser(name, help=about, description=about)
-        import_module(f"tui.commands.{name}").add_options(subparser)
+        import_module(f"pendu_tui.tui.commands.{name}").add_options(subparser)
     return parser

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import takewhile
 
-from tui.cli.errors import UserError
+from pendu_tui.tui.cli.errors import UserError
 
 DROPPED = {
     "keys": "pendu-tui live, and there the key ?",

@@ -34,9 +34,9 @@ def explained(error: BaseException) -> UserError:
             "interrupted.", Exit.INTERRUPTED
         )  # or a library's error about the interrupt
     # imported here: --help and --version do not need them
-    from engine.methods.own import OwnMethodError
-    from engine.scenes import SceneError
-    from recordings.errors import RecordingError
+    from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.engine.scenes import SceneError
+    from pendu_tui.recordings.errors import RecordingError
 
     match error:
         case SceneError() | OwnMethodError():

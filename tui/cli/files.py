@@ -22,7 +22,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     If the block raises, or at Ctrl+C, SIGTERM or SIGHUP, nothing is left of it and an older file
     stays as it was.  Raises DiskError before the block if the name is taken.
     """
-    from recordings import files
+    from pendu_tui.recordings import files
 
     with interruptible(), files.whole_file(path, force) as part:
         yield part
@@ -40,7 +40,7 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 
 def check_free(path: Path, force: bool) -> None:
     """Raise DiskError if this name is taken and must not, or cannot, be overwritten."""
-    from recordings.files import check_target, is_stream
+    from pendu_tui.recordings.files import check_target, is_stream
 
     if not is_stream(path):
         check_target(path, force)

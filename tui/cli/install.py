@@ -1,7 +1,6 @@
-"""Which packages are missing, and which folders hide ours."""
+"""How to install what is missing."""
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 
@@ -13,15 +12,3 @@ def install_advice(package: str, extra: str) -> str:
     if (environment / "pipx_metadata.json").exists():
         return f"pipx inject pendu-tui {package}"
     return f"pip install 'pendu-tui[{extra}]'"
-
-
-def hidden_package() -> str:
-    """Return a sentence if a user's folder hides a package of pendu-tui, else ""."""
-    ours = Path(__file__).resolve().parents[2]
-    for name in ("engine", "recordings"):
-        spec = find_spec(name)
-        origin = Path(spec.origin or "") if spec else Path()
-        if ours not in origin.resolve().parents:
-            where = "unset PYTHONPATH, or run pendu-tui in another folder"
-            return f"{origin} hides the package {name} of pendu-tui; {where}."
-    return ""

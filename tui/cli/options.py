@@ -9,7 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
-from tui.cli.errors import UserError
+from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
 
@@ -80,8 +80,8 @@ def resolve(name: str) -> Path:
 
     Raises RecordingError if there is none.
     """
-    from recordings import library
-    from recordings.errors import RecordingError, printable
+    from pendu_tui.recordings import library
+    from pendu_tui.recordings.errors import RecordingError, printable
 
     folder = library.folder()
     file = name + library.SUFFIX

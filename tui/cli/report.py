@@ -15,13 +15,13 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
-from engine.methods import Method
-from engine.models import DEFAULT_MODEL
-from engine.scenes import LIMITS, Scene
-from recordings.errors import printable
-from recordings.files import is_stream
-from tui.cli.files import text_file
-from tui.cli.options import add_file
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models import DEFAULT_MODEL
+from pendu_tui.engine.scenes import LIMITS, Scene
+from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import is_stream
+from pendu_tui.tui.cli.files import text_file
+from pendu_tui.tui.cli.options import add_file
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType

@@ -15,9 +15,9 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from engine.methods import METHODS, Cast, Method
-from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.scenes import (
+from pendu_tui.engine.methods import METHODS, Cast, Method
+from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.scenes import (
     DEFAULT_SCENE,
     MAX_METHODS,
     QUANTITIES,
@@ -27,10 +27,10 @@ from engine.scenes import (
     SceneError,
     Shot,
 )
-from recordings.errors import printable
-from tui.cli.cast import add_cast_options, cast_of, find, own_method_at
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import (
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli.cast import add_cast_options, cast_of, find, own_method_at
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import (
     LIST,
     Suggestions,
     angle,

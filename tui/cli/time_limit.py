@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from engine.methods.own import OwnMethodError, TooLongError, UserCode
+from pendu_tui.engine.methods.own import OwnMethodError, TooLongError, UserCode
 
 MAX_STEP_TIME = 3.0  # s
 MAX_CALL_TIME = 5.0  # s of processor time for a call in C, which cannot be interrupted

@@ -22,11 +22,11 @@ from itertools import islice
 from multiprocessing import active_children, get_context
 from typing import Any, TypeVar
 
-from recordings.errors import printable
-from tui.cli.errors import Exit, UserError
-from tui.cli.files import interruptible
-from tui.cli.install import install_advice
-from tui.cli.options import count
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.files import interruptible
+from pendu_tui.tui.cli.install import install_advice
+from pendu_tui.tui.cli.options import count
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -108,7 +108,7 @@ class Workers:
 
 def _explained(error: Exception) -> UserError:
     """Return the error of a task, or of its lost worker, for the user."""
-    from engine.methods.own import OwnMethodError
+    from pendu_tui.engine.methods.own import OwnMethodError
 
     if isinstance(error, UserError | OwnMethodError):
         return UserError(str(error))

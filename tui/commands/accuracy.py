@@ -2,12 +2,12 @@
 
 import argparse
 
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import count, positive, values
-from tui.cli.report import add_report_options, publish, warn
-from tui.cli.scene import add_scene_options, general_scene_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies import figures
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import count, positive, values
+from pendu_tui.tui.cli.report import add_report_options, publish, warn
+from pendu_tui.tui.cli.scene import add_scene_options, general_scene_of
+from pendu_tui.tui.cli.workers import add_worker_options
+from pendu_tui.tui.commands.studies import figures
 
 EXAMPLES = """\
 examples:
@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
             "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
             "--omega."
         )
-    from tui.commands.studies.accuracy import Results, measure, report
+    from pendu_tui.tui.commands.studies.accuracy import Results, measure, report
 
     results = Results(scene, options)
     interrupted = False

@@ -10,11 +10,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from tui.cli.errors import Exit, UserError
-from tui.cli.install import install_advice
-from tui.cli.report import Column, Report, add_report_options, publish
-from tui.terminal.options import SMALLEST, colours, is_utf8
-from tui.words.numbers import file_size
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.install import install_advice
+from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
+from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
+from pendu_tui.tui.words.numbers import file_size
 
 EXAMPLES = """\
 examples:
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _findings() -> Iterator[tuple[str, str, str]]:
     """Yield what was checked, what was found, and advice, which is empty if that is fine."""
-    from recordings import library
+    from pendu_tui.recordings import library
 
     yield "lab", *_lab()
     if sys.stdout.isatty():
@@ -62,7 +62,7 @@ def _findings() -> Iterator[tuple[str, str, str]]:
 
 
 def _lab() -> tuple[str, str]:
-    from tui.terminal.check import check_terminal
+    from pendu_tui.tui.terminal.check import check_terminal
 
     try:
         check_terminal()

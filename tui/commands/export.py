@@ -7,16 +7,16 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from recordings.errors import printable
-from tui.cli.errors import Exit, UserError
-from tui.cli.files import text_file, whole_file
-from tui.cli.install import install_advice
-from tui.cli.options import add_file, add_recording, resolve
-from tui.cli.report import progress, warn, write_csv
-from tui.words.numbers import file_size
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.files import text_file, whole_file
+from pendu_tui.tui.cli.install import install_advice
+from pendu_tui.tui.cli.options import add_file, add_recording, resolve
+from pendu_tui.tui.cli.report import progress, warn, write_csv
+from pendu_tui.tui.words.numbers import file_size
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording
 
 EXAMPLES = """\
 examples:
@@ -37,7 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording
 
     path = resolve(options.file)
     form = options.format
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
 
 def columns_of(models: Iterable[str]) -> tuple[str, ...]:
     """Return the columns, names with units; energies are per unit m·L²."""
-    from recordings.fields import EXTRA, MOMENT, READING
+    from pendu_tui.recordings.fields import EXTRA, MOMENT, READING
 
     moment = [field.column for field in MOMENT]
     extra = dict.fromkeys(field.column for model in models for field in EXTRA[model])
@@ -71,7 +71,7 @@ def columns_of(models: Iterable[str]) -> tuple[str, ...]:
 
 
 def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
-    from recordings.fields import EXTRA, READING
+    from pendu_tui.recordings.fields import EXTRA, READING
 
     extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])
     scalars_of = attrgetter(*(field.name for field in READING))

@@ -10,16 +10,16 @@ from collections.abc import Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
-from engine.run.judgement import DEFINITIONS, FALSE_ALARMS, Progress
-from recordings.errors import printable
-from tui.cli.checks import Check, add_check_options, conclude, parse
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import add_file, count, positive
-from tui.cli.report import Report, add_report_options, fields_of, publish
-from tui.words.numbers import counted
+from pendu_tui.engine.run.judgement import DEFINITIONS, FALSE_ALARMS, Progress
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli.checks import Check, add_check_options, conclude, parse
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import add_file, count, positive
+from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, publish
+from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
-    from tui.cli.columns import Table
+    from pendu_tui.tui.cli.columns import Table
 
 EXAMPLES = """\
 examples:
@@ -144,7 +144,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one file; - is stdin.  Raises UserError."""
     import numpy as np
 
-    from engine.run.energies import judge_record
+    from pendu_tui.engine.run.energies import judge_record
 
     table = _read(name, options)
     times, energies, *_ = map(np.asarray, table.columns)
@@ -184,7 +184,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
 def _read(name: str, options: argparse.Namespace) -> "Table":
     """Return the table of a file.  Raises UserError if it has nothing to judge."""
-    from tui.cli.columns import read_table
+    from pendu_tui.tui.cli.columns import read_table
 
     wanted = [options.time, options.energy]
     if str(options.scale).startswith("kinetic:"):
@@ -212,7 +212,7 @@ def _read(name: str, options: argparse.Namespace) -> "Table":
 
 
 def _skipped(skipped: dict[str, int]) -> list[str]:
-    from tui.cli.columns import REASONS
+    from pendu_tui.tui.cli.columns import REASONS
 
     return [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
 

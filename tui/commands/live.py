@@ -4,14 +4,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.scenes import Scene
-from tui.cli.errors import UserError
-from tui.cli.options import add_file, add_recording, positive, resolve
-from tui.cli.scene import add_scene_options, read_scenes, scene_of
-from tui.terminal.options import add_terminal_options
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.options import add_file, add_recording, positive, resolve
+from pendu_tui.tui.cli.scene import add_scene_options, read_scenes, scene_of
+from pendu_tui.tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
-    from tui.playback.live import Live
+    from pendu_tui.tui.playback.live import Live
 
 EXAMPLES = """\
 examples:
@@ -41,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
     """Return a lab of the scene.  Raises SceneError for a step too large at equal cost."""
-    from tui.playback.live import Live
+    from pendu_tui.tui.playback.live import Live
 
     live = Live(scene, options.speed or scene.speed)
     if options.equal_cost:
@@ -50,7 +50,7 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 
 
 def run(options: argparse.Namespace) -> int:
-    from tui.screens import launch
+    from pendu_tui.tui.screens import launch
 
     ghost = default = None
     if options.ghost:

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
-from engine.methods import METHODS, Method, simplified
-from engine.scenes import DEFAULT_SCENE, MAX_METHODS
-from tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
-from tui.cli.errors import Exit
-from tui.cli.options import Suggestions
-from tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
-from tui.words.cards import method_card
+from pendu_tui.engine.methods import METHODS, Method, simplified
+from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS
+from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.options import Suggestions
+from pendu_tui.tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
+from pendu_tui.tui.words.cards import method_card
 
 EXAMPLES = """\
 examples:
@@ -48,8 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from engine.accuracy.study import orders
-    from engine.run.compiled import available
+    from pendu_tui.engine.accuracy.study import orders
+    from pendu_tui.engine.run.compiled import available
 
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
@@ -87,8 +87,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _row(method: Method, order: float | None) -> Row:
     """Return the claims, which a user's own method does not make, and the measured properties."""
-    from engine.methods import measure
-    from engine.methods.own import OwnMethod
+    from pendu_tui.engine.methods import measure
+    from pendu_tui.engine.methods.own import OwnMethod
 
     claims = fields_of(method, *CLAIMS)
     if isinstance(method, OwnMethod):

@@ -6,16 +6,24 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from recordings.errors import RecordingError, printable
-from tui.cli.errors import Exit, UserError
-from tui.cli.files import check_free
-from tui.cli.options import add_file, add_recording, count, resolve
-from tui.cli.report import Column, Report, Table, add_report_options, fields_of, form_of, progress
-from tui.words.numbers import counted, file_size, seconds
+from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.files import check_free
+from pendu_tui.tui.cli.options import add_file, add_recording, count, resolve
+from pendu_tui.tui.cli.report import (
+    Column,
+    Report,
+    Table,
+    add_report_options,
+    fields_of,
+    form_of,
+    progress,
+)
+from pendu_tui.tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:
-    from recordings.library import Item
-    from recordings.recording import Recording
+    from pendu_tui.recordings.library import Item
+    from pendu_tui.recordings.recording import Recording
 
 EXAMPLES = """\
 examples:
@@ -63,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> Report:
-    from recordings import library
+    from pendu_tui.recordings import library
 
     rows = [_facts(item) for item in library.listing()]
     folder = library.folder()
@@ -98,7 +106,7 @@ def _date(when: float) -> str:
 
 
 def _facts(item: "Item") -> dict[str, Any]:
-    from recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording
 
     facts = {"file": str(item.path), "bytes": item.bytes, "modified": item.modified}
     try:
@@ -111,7 +119,7 @@ def _facts(item: "Item") -> dict[str, Any]:
 
 
 def _show(options: argparse.Namespace) -> Report:
-    from recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording
 
     path = resolve(options.file)
     with (
@@ -161,7 +169,7 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    from recordings.recovery import recover
+    from pendu_tui.recordings.recovery import recover
 
     if options.output is None:
         raise UserError("name the file to write: -o OUT.")
@@ -180,7 +188,7 @@ def _recover(options: argparse.Namespace) -> Report:
 
 
 def _prune(options: argparse.Namespace) -> Report:
-    from recordings import library
+    from pendu_tui.recordings import library
 
     if options.keep is None:
         raise UserError("specify how many to keep: --keep 20 for the newest 20.")
@@ -198,7 +206,7 @@ def _prune(options: argparse.Namespace) -> Report:
 
 def delete(item: "Item") -> bool:
     """Delete a recording unless it is in use; return whether it was deleted."""
-    from recordings import library
+    from pendu_tui.recordings import library
 
     with suppress(OSError):
         if not library.in_use(item.path):

@@ -3,11 +3,11 @@
 import argparse
 from functools import partial
 
-from engine.methods import METHODS
-from tui.cli.cast import add_cast_options, cast_of, own_methods
-from tui.cli.errors import UserError
-from tui.cli.options import add_recording, number, positive, resolve
-from tui.terminal.options import add_terminal_options
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.options import add_recording, number, positive, resolve
+from pendu_tui.tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
 examples:
@@ -32,9 +32,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from recordings.events import remember
-    from tui.playback.replay import Replay
-    from tui.screens import launch
+    from pendu_tui.recordings.events import remember
+    from pendu_tui.tui.playback.replay import Replay
+    from pendu_tui.tui.screens import launch
 
     path = resolve(options.file)
     remember(own_methods(options))
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     replay.seek(options.start_at)
     replay.pause(options.paused)
     if options.plain:
-        from tui.words.plain_text import print_run
+        from pendu_tui.tui.words.plain_text import print_run
 
         return launch.print_sentences(replay, partial(print_run, only=only))
     screen = launch.replay_screen(replay, options.no_record)

@@ -3,16 +3,16 @@
 import argparse
 from pathlib import Path
 
-from engine.methods import METHODS
-from engine.run.judgement import DEFINITIONS
-from engine.scenes import Scene
-from tui.cli.checks import FIELDS, add_check_options, parse
-from tui.cli.errors import UserError
-from tui.cli.options import add_file, count, duration
-from tui.cli.report import add_report_options
-from tui.cli.scene import add_scene_options, scenes_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies import figures
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.run.judgement import DEFINITIONS
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.checks import FIELDS, add_check_options, parse
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.options import add_file, count, duration
+from pendu_tui.tui.cli.report import add_report_options
+from pendu_tui.tui.cli.scene import add_scene_options, scenes_of
+from pendu_tui.tui.cli.workers import add_worker_options
+from pendu_tui.tui.commands.studies import figures
 
 EXAMPLES = """\
 examples:
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     for scene in scenes.corners():
         _check_time(scene, options.time)
     is_figure = figures.check_output(options)
-    from tui.commands.studies.run import run_list, run_one
+    from pendu_tui.tui.commands.studies.run import run_list, run_one
 
     if len(scenes) > 1:
         return run_list(scenes, options, gate, is_figure)

@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Iterator
 from typing import Any
 
-from engine.scenes import GROUPS, SCENES
-from tui.cli.errors import Exit
-from tui.cli.options import Suggestions
-from tui.cli.report import Column, Report, add_report_options, publish
-from tui.cli.scene import scene_named
-from tui.words.cards import scene_card
+from pendu_tui.engine.scenes import GROUPS, SCENES
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.options import Suggestions
+from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
+from pendu_tui.tui.cli.scene import scene_named
+from pendu_tui.tui.words.cards import scene_card
 
 EXAMPLES = """\
 examples:

@@ -4,12 +4,12 @@ import argparse
 import os
 from pathlib import Path
 
-from tui.cli.errors import Exit, UserError
-from tui.cli.install import install_advice
-from tui.cli.options import add_file, count
-from tui.cli.report import warn
-from tui.cli.scene import add_scene_options, scene_of
-from tui.terminal.options import add_picture_options, terminal_options_of
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.install import install_advice
+from pendu_tui.tui.cli.options import add_file, count
+from pendu_tui.tui.cli.report import warn
+from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.terminal.options import add_picture_options, terminal_options_of
 
 EXAMPLES = """\
 examples:
@@ -38,7 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     try:
-        from tui.commands.web.server import serve
+        from pendu_tui.tui.commands.web.server import serve
     except ImportError as error:
         advice = install_advice("textual-serve", "web")
         raise UserError(f"serve needs {error.name}: {advice}.") from None

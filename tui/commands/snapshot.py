@@ -4,12 +4,12 @@ import argparse
 import os
 from pathlib import Path
 
-from tui.cli.errors import Exit
-from tui.cli.files import whole_file
-from tui.cli.options import add_file, number
-from tui.cli.report import file_type
-from tui.cli.scene import add_scene_options, scene_of
-from tui.terminal.options import add_picture_options, cells, terminal_options_of
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.options import add_file, number
+from pendu_tui.tui.cli.report import file_type
+from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.terminal.options import add_picture_options, cells, terminal_options_of
 
 EXAMPLES = """\
 examples:
@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     import asyncio
 
-    from tui.screens.still import still
+    from pendu_tui.tui.screens.still import still
 
     scene = scene_of(options)
     display = terminal_options_of(options, os.environ, "utf-8")

@@ -5,13 +5,13 @@
 
 import argparse
 
-from engine.stability import LOST
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import LIST, angle, count, number, values
-from tui.cli.report import add_report_options, publish, warn
-from tui.cli.scene import add_scene_options, general_scene_of
-from tui.cli.workers import add_worker_options
-from tui.commands.studies import figures
+from pendu_tui.engine.stability import LOST
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import LIST, angle, count, number, values
+from pendu_tui.tui.cli.report import add_report_options, publish, warn
+from pendu_tui.tui.cli.scene import add_scene_options, general_scene_of
+from pendu_tui.tui.cli.workers import add_worker_options
+from pendu_tui.tui.commands.studies import figures
 
 EXAMPLES = f"""\
 examples:
@@ -56,7 +56,13 @@ def run(options: argparse.Namespace) -> int:
     options.steps = options.steps or (SECTION_STEPS if options.section else STEPS)
     suffix = options.output and options.output.suffix.lower()
     is_figure = figures.check_output(options)
-    from tui.commands.studies.stability import compute, grids_of, report, show_section, write_map
+    from pendu_tui.tui.commands.studies.stability import (
+        compute,
+        grids_of,
+        report,
+        show_section,
+        write_map,
+    )
 
     if options.section:
         if options.csv or suffix in (".npz", ".csv"):

@@ -2,7 +2,7 @@
 
 import argparse
 
-from tui.terminal.options import add_terminal_options
+from pendu_tui.tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
 examples:
@@ -20,10 +20,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from tui.screens import launch
+    from pendu_tui.tui.screens import launch
 
     launch.check(options)
-    from engine.scenes import DEFAULT_SCENE
-    from tui.playback.live import Live
+    from pendu_tui.engine.scenes import DEFAULT_SCENE
+    from pendu_tui.tui.playback.live import Live
 
     return launch.open_lab(Live(DEFAULT_SCENE), options, with_tour=True)

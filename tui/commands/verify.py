@@ -5,13 +5,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from recordings import library
-from recordings.errors import RecordingError, printable
-from tui.cli.cast import add_cast_options, cast_of, own_methods
-from tui.cli.errors import Exit
-from tui.cli.options import add_recording, count, resolve
-from tui.cli.report import Report, add_report_options, progress, publish, warn
-from tui.words.numbers import counted
+from pendu_tui.recordings import library
+from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.options import add_recording, count, resolve
+from pendu_tui.tui.cli.report import Report, add_report_options, progress, publish, warn
+from pendu_tui.tui.words.numbers import counted
 
 EXAMPLES = """\
 examples:
@@ -36,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from recordings.events import remember
+    from pendu_tui.recordings.events import remember
 
     remember(own_methods(options))
     only = None
@@ -74,7 +74,7 @@ def _files(name: str) -> list[Path]:
 
 
 def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str, Any]:
-    from recordings.verification import Verification, verify
+    from pendu_tui.recordings.verification import Verification, verify
 
     result = Verification(path)
     error = None
@@ -92,7 +92,7 @@ def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str,
 
 
 def _sentence(row: dict[str, Any]) -> str:
-    from engine.run import NUMERICS
+    from pendu_tui.engine.run import NUMERICS
 
     text = f"{counted(row['samples'], 'sample')} in {counted(row['runs'], 'run')}"
     if not row["complete"]:

@@ -14,8 +14,8 @@ from functools import lru_cache
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
-from tui.drawing.palette import NOBODY
-from tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.palette import NOBODY
+from pendu_tui.tui.drawing.picture import Picture, Row
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,8 +10,8 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.palette import NOBODY, palette
-from tui.drawing.picture import Ink, Picture
+from pendu_tui.tui.drawing.palette import NOBODY, palette
+from pendu_tui.tui.drawing.picture import Ink, Picture
 
 
 class CellWidget(Widget):

@@ -11,11 +11,11 @@ from typing import Self
 
 import numpy as np
 
-from tui.drawing.axes import Floats, Frame, log_axis, log_x_axis
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import FRAME, NOBODY, TEXT
-from tui.drawing.picture import Picture
-from tui.drawing.time_chart import ROOM, too_small
+from pendu_tui.tui.drawing.axes import Floats, Frame, log_axis, log_x_axis
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import FRAME, NOBODY, TEXT
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.time_chart import ROOM, too_small
 
 MIN_COLUMNS = 20
 MIN_ROWS = 7

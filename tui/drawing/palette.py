@@ -7,7 +7,7 @@ become a colour.  Nothing depends on colour alone: methods also have a digit and
 import itertools
 from typing import NamedTuple
 
-from engine.methods import Cast, Method
+from pendu_tui.engine.methods import Cast, Method
 
 EXACT = -1
 FRAME = -2

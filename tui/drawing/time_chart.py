@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.methods import Cast
-from tui.drawing.axes import (
+from pendu_tui.engine.methods import Cast
+from pendu_tui.tui.drawing.axes import (
     Axis,
     Floats,
     Frame,
@@ -20,11 +20,11 @@ from tui.drawing.axes import (
     time_axis,
     time_span,
 )
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks
-from tui.drawing.picture import Picture
-from tui.playback.rows import Window
-from tui.playback.shown import Shown
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.rows import Window
+from pendu_tui.tui.playback.shown import Shown
 
 MIN_COLUMNS = 20
 MIN_ROWS = 5

@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from engine.models.model import ExactMotion
-from engine.run.lockstep import Sample
-from engine.run.rewindable import RewindableRun
-from engine.run.stepping import Stepping, SteppingChange
-from engine.scenes import Scene
-from recordings.events import Event
-from tui.playback.history import History
-from tui.playback.shown import Shown
+from pendu_tui.engine.models.model import ExactMotion
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.rewindable import RewindableRun
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.events import Event
+from pendu_tui.tui.playback.history import History
+from pendu_tui.tui.playback.shown import Shown
 
 if TYPE_CHECKING:
-    from tui.playback.ghost import Ghost
+    from pendu_tui.tui.playback.ghost import Ghost
 
 
 @dataclass(slots=True)

@@ -4,10 +4,10 @@ import math
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
 
-from engine.methods import Method
-from engine.models.model import Model
-from engine.run.compiled import TieredLoops, compiled
-from engine.run.loops import Loops
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Model
+from pendu_tui.engine.run.compiled import TieredLoops, compiled
+from pendu_tui.engine.run.loops import Loops
 
 
 def compiled_in_background(method: Method, model: Model) -> Loops:

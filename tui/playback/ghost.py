@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tui.playback.history import History, changes_of
+from pendu_tui.tui.playback.history import History, changes_of
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording
-    from tui.playback.rows import Window
+    from pendu_tui.recordings.recording import Recording
+    from pendu_tui.tui.playback.rows import Window
 
 MAX_ROWS = 1 << 14  # 9 minutes at the default rate, read in a second
 

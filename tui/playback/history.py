@@ -8,14 +8,14 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping, SteppingChange, change_before
-from engine.scenes import Scene
-from tui.playback.shown import Quantity
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
-    from recordings.recording import Run
-    from tui.playback.rows import (
+    from pendu_tui.recordings.recording import Run
+    from pendu_tui.tui.playback.rows import (
         Floats,
         Row,
         Rows,
@@ -152,7 +152,7 @@ class History:
     @property
     def rows(self) -> "Rows":
         if self._rows is None:
-            from tui.playback.rows import Rows
+            from pendu_tui.tui.playback.rows import Rows
 
             self._rows = Rows(len(self._quantities), len(self.scene.cast), self._capacity)
         for row in self._waiting:
@@ -162,7 +162,7 @@ class History:
 
     def window(self, seconds: float | None = None) -> "Window":
         """Return the last `seconds` of simulated time and half a swing before, or the whole run."""
-        from tui.playback.rows import Window
+        from pendu_tui.tui.playback.rows import Window
 
         assert self._current is not None
         records = self.rows.until(self._current)

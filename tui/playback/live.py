@@ -6,21 +6,21 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, Literal
 
-from engine.methods.own import OwnMethod, OwnMethodError
-from engine.run.judgement import Judgement, Milestone
-from engine.run.lockstep import Sample
-from engine.run.rewindable import RewindableRun
-from engine.run.stepping import Stepping
-from engine.scenes import Scene
-from recordings.events import Event, EventKind, noticed
-from tui.cli.time_limit import limited
-from tui.playback.common import Playback, Playhead, RecordingStatus, RunState
-from tui.playback.compiler import compiled_in_background
-from tui.playback.history import History
+from pendu_tui.engine.methods.own import OwnMethod, OwnMethodError
+from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.rewindable import RewindableRun
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.events import Event, EventKind, noticed
+from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus, RunState
+from pendu_tui.tui.playback.compiler import compiled_in_background
+from pendu_tui.tui.playback.history import History
 
 if TYPE_CHECKING:
-    from recordings.recorder import LiveRecorder
-    from tui.playback.ghost import Ghost
+    from pendu_tui.recordings.recorder import LiveRecorder
+    from pendu_tui.tui.playback.ghost import Ghost
 
 FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
 CHUNK = 256  # steps between clock readings, about a millisecond
@@ -205,7 +205,7 @@ class Live(Playback):
         number = self._run.run
         self.start(before.scene.altered(h=self.stepping.smallest))
         if self.scene != before.scene:
-            from tui.playback.ghost import Ghost  # imports NumPy
+            from pendu_tui.tui.playback.ghost import Ghost  # imports NumPy
 
             self._left = Ghost(f"run {number}", before)
 

@@ -8,16 +8,16 @@ from copy import copy
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
-from engine.run.judgement import Judgement, Milestone
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping, SteppingChange, change_before
-from recordings.events import Event, check_present
-from tui.playback.common import Playback, Playhead, RecordingStatus
-from tui.playback.history import History, changes_of
-from tui.playback.live import Live
+from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
+from pendu_tui.recordings.events import Event, check_present
+from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus
+from pendu_tui.tui.playback.history import History, changes_of
+from pendu_tui.tui.playback.live import Live
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run, SamplePlace
+    from pendu_tui.recordings.recording import Recording, Run, SamplePlace
 
 MAX_FOLLOWED = 100  # samples; over longer distances it jumps
 DENSE = 60.0  # s of the past that are read completely

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tui.playback.shown import Quantity
+from pendu_tui.tui.playback.shown import Quantity
 
 Floats = NDArray[np.float64]
 Records = NDArray[np.void]

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from engine.methods import Cast
-from engine.scenes import QUANTITIES, SCENES, Line, Scene, Shot
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.scenes import QUANTITIES, SCENES, Line, Scene, Shot
 
 Quantity = str
 """One of QUANTITIES, or a variable of the model outside its state."""

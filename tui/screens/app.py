@@ -14,13 +14,13 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
-from tui.cli.errors import Exit
-from tui.drawing.palette import PALETTES, Palette
-from tui.screens.base import SourceScreen
-from tui.terminal.character_sets import CharacterSetFilter
-from tui.terminal.check import is_gone
-from tui.terminal.options import SMALLEST, USUAL, TerminalOptions
-from tui.terminal.signals import Job, SignalThread
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.drawing.palette import PALETTES, Palette
+from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
+from pendu_tui.tui.terminal.check import is_gone
+from pendu_tui.tui.terminal.options import SMALLEST, USUAL, TerminalOptions
+from pendu_tui.tui.terminal.signals import Job, SignalThread
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
@@ -62,7 +62,7 @@ class PenduApp(App[Exit | BaseException]):
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
-        from tui.screens.svg import portable
+        from pendu_tui.tui.screens.svg import portable
 
         return portable(super().export_screenshot(title=title, simplify=simplify))
 
@@ -128,7 +128,7 @@ class PenduApp(App[Exit | BaseException]):
             self._job.stop()
 
     def action_command_palette(self) -> None:
-        from tui.screens.palette import Commands, LabCommands
+        from pendu_tui.tui.screens.palette import Commands, LabCommands
 
         if self.screen is self.source_screen:
             self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))

@@ -12,20 +12,20 @@ from textual.content import Content
 from textual.reactive import var
 from textual.widget import Widget
 
-from engine.run.lockstep import Sample
-from engine.scenes import MAX_METHODS
-from recordings import library
-from tui.cli.errors import explained
-from tui.playback.common import State, doubled
-from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.screens.lines import InsightLine, KeyLine, SizedScreen, StatusLine, TooSmall
-from tui.terminal.check import is_writing
-from tui.views import VIEWS, create, following
-from tui.views.view import Box, Pane, View, Zoomed
-from tui.words.command_line import command, reproduces
-from tui.words.events import event_lines, numbered
-from tui.words.plain_text import description
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.recordings import library
+from pendu_tui.tui.cli.errors import explained
+from pendu_tui.tui.playback.common import State, doubled
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.lines import InsightLine, KeyLine, SizedScreen, StatusLine, TooSmall
+from pendu_tui.tui.terminal.check import is_writing
+from pendu_tui.tui.views import VIEWS, create, following
+from pendu_tui.tui.views.view import Box, Pane, View, Zoomed
+from pendu_tui.tui.words.command_line import command, reproduces
+from pendu_tui.tui.words.events import event_lines, numbered
+from pendu_tui.tui.words.plain_text import description
 
 STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
 
@@ -310,12 +310,12 @@ class SourceScreen(SizedScreen[None]):
         self.show_now()
 
     def show_text(self, title: str, *paragraphs: str) -> None:
-        from tui.screens.dialogs import TextScreen
+        from pendu_tui.tui.screens.dialogs import TextScreen
 
         self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
 
     def action_help(self) -> None:
-        from tui.screens.dialogs import help_text
+        from pendu_tui.tui.screens.dialogs import help_text
 
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
         owners: list[type[Widget]] = [pane for pane in panes if pane.BINDING_GROUP_TITLE]

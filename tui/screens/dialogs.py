@@ -17,15 +17,15 @@ from textual.screen import ModalScreen, ScreenResultType
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
-from engine.methods import METHODS, Method
-from engine.models import PARAMETERS
-from engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
-from tui.cli.options import angle, number
-from tui.playback.source import Source
-from tui.screens.lines import SizedScreen, key_text
-from tui.words.cards import glossary, method_card, scene_card
-from tui.words.numbers import counted, z_text
-from tui.words.plain_text import step_text
+from pendu_tui.engine.methods import METHODS, Method
+from pendu_tui.engine.models import PARAMETERS
+from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
+from pendu_tui.tui.cli.options import angle, number
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.lines import SizedScreen, key_text
+from pendu_tui.tui.words.cards import glossary, method_card, scene_card
+from pendu_tui.tui.words.numbers import counted, z_text
+from pendu_tui.tui.words.plain_text import step_text
 
 KEY_WIDTH = 9  # characters
 COLUMN_WIDTH = 36  # characters, a key and what it does
@@ -74,7 +74,7 @@ class TextScreen(ModalScreen[None], Once[None]):
 
 def bindings_of(owner: type[DOMNode]) -> list[Binding]:
     """Return the described bindings of a class, then of those of its bases that are ours."""
-    classes = [each for each in owner.__mro__ if each.__module__.startswith("tui.")]
+    classes = [each for each in owner.__mro__ if each.__module__.startswith("pendu_tui.tui.")]
     found = [binding for each in classes for binding in each.__dict__.get("BINDINGS", ())]
     return [each for each in found if isinstance(each, Binding) and each.description]
 

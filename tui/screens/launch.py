@@ -12,25 +12,25 @@ from pathlib import Path
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
-from tui.cli.errors import Exit, UserError, explained
-from tui.cli.report import progress, warn
+from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.report import progress, warn
 
 # Textual, NumPy and mcap are imported only where they are needed
 if TYPE_CHECKING:
-    from engine.scenes import Scene
-    from recordings.recording import Recording
-    from tui.playback.ghost import Ghost
-    from tui.playback.live import Live
-    from tui.playback.replay import Replay
-    from tui.playback.source import Source
-    from tui.screens.base import SourceScreen
-    from tui.screens.live import LiveScreen
-    from tui.screens.replay import ReplayScreen
+    from pendu_tui.engine.scenes import Scene
+    from pendu_tui.recordings.recording import Recording
+    from pendu_tui.tui.playback.ghost import Ghost
+    from pendu_tui.tui.playback.live import Live
+    from pendu_tui.tui.playback.replay import Replay
+    from pendu_tui.tui.playback.source import Source
+    from pendu_tui.tui.screens.base import SourceScreen
+    from pendu_tui.tui.screens.live import LiveScreen
+    from pendu_tui.tui.screens.replay import ReplayScreen
 
 
 def check(options: argparse.Namespace) -> None:
     if not options.plain:
-        from tui.terminal.check import check_terminal
+        from pendu_tui.tui.terminal.check import check_terminal
 
         check_terminal()
         # until the screen is up; collections would delay the first paint by 3 %
@@ -42,7 +42,7 @@ def recording_path(file: Path | None) -> Path:
 
     Raises UserError or OSError.
     """
-    from recordings import library
+    from pendu_tui.recordings import library
 
     if file is not None and file.exists():
         raise UserError(f"{file} exists already: choose another name or delete it.", Exit.DISK)
@@ -61,9 +61,9 @@ def recording_path(file: Path | None) -> Path:
 def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
     if path is None:
         return
-    from recordings.errors import NameTakenError
-    from recordings.library import free_path
-    from recordings.recorder import LiveRecorder  # imports mcap
+    from pendu_tui.recordings.errors import NameTakenError
+    from pendu_tui.recordings.library import free_path
+    from pendu_tui.recordings.recorder import LiveRecorder  # imports mcap
 
     while live.recorder is None:
         try:
@@ -77,14 +77,14 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
 def live_screen(
     live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True
 ) -> "LiveScreen":
-    from tui.screens.live import LiveScreen
+    from pendu_tui.tui.screens.live import LiveScreen
 
     return LiveScreen(live, prepare=partial(start_recording, live, path, or_next), notices=notices)
 
 
 def open_recording(path: Path) -> "Recording":
     """Open a recording to replay it.  Raises UserError if it is empty."""
-    from recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording
 
     with progress(f"reading {path.name}") as show_progress:
         recording = Recording.open(path, progress=show_progress)
@@ -96,7 +96,7 @@ def open_recording(path: Path) -> "Recording":
 
 def open_ghost(path: Path) -> "Ghost":
     """Open a recording to lay it under the lab.  Raises UserError if it is empty."""
-    from tui.playback.ghost import Ghost
+    from pendu_tui.tui.playback.ghost import Ghost
 
     with open_recording(path) as recording:
         return Ghost.recorded(recording)
@@ -104,7 +104,7 @@ def open_ghost(path: Path) -> "Ghost":
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
     """Return the replay's screen; a lab that continues it is recorded in the library, if at all."""
-    from tui.screens.replay import ReplayScreen
+    from pendu_tui.tui.screens.replay import ReplayScreen
 
     def go_live(live: "Live") -> "LiveScreen":
         return live_screen(live, None if no_record else recording_path(None))
@@ -117,9 +117,9 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
 
 def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     """Run the app with this screen first, say goodbye, and return the exit code."""
-    from tui.screens.app import PenduApp
-    from tui.terminal.check import background
-    from tui.terminal.options import fitting_theme, terminal_options_of
+    from pendu_tui.tui.screens.app import PenduApp
+    from pendu_tui.tui.terminal.check import background
+    from pendu_tui.tui.terminal.options import fitting_theme, terminal_options_of
 
     assert sys.__stderr__ is not None  # where Textual draws
     if options.theme == "auto" and not os.environ.get("COLORFGBG"):
@@ -169,7 +169,7 @@ def open_lab(
         warn(notice)
     or_next = options.record is None
     if options.plain:
-        from tui.words.plain_text import print_run, print_tour
+        from pendu_tui.tui.words.plain_text import print_run, print_tour
 
         start_recording(live, path, or_next)
         return print_sentences(live, print_tour if with_tour else print_run)
@@ -181,11 +181,11 @@ def open_lab(
 
 def recover_leftovers(folder: Path) -> list[str]:
     """Recover a folder's unfinished recordings; return a sentence on each, or its error."""
-    from recordings.library import leftovers
+    from pendu_tui.recordings.library import leftovers
 
     sentences = []
     for part in leftovers(folder):
-        from recordings.errors import printable  # imports mcap
+        from pendu_tui.recordings.errors import printable  # imports mcap
 
         try:
             sentence = recover_leftover(part)
@@ -203,10 +203,10 @@ def recover_leftover(leftover: Path) -> str:
 
     If a part is lost, the leftover is kept, under a name that is not recovered again.
     """
-    from recordings.errors import NameTakenError, RecordingError
-    from recordings.files import publish
-    from recordings.library import PART, alone_with, free_path
-    from recordings.recovery import recover
+    from pendu_tui.recordings.errors import NameTakenError, RecordingError
+    from pendu_tui.recordings.files import publish
+    from pendu_tui.recordings.library import PART, alone_with, free_path
+    from pendu_tui.recordings.recovery import recover
 
     with alone_with(leftover):
         name = leftover.with_name(leftover.name.removesuffix(PART))
@@ -235,7 +235,7 @@ def recover_leftover(leftover: Path) -> str:
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:
     """Have `write` print what happens until Ctrl+C or another signal, which is no error here."""
-    from tui.cli.files import stop_requests
+    from pendu_tui.tui.cli.files import stop_requests
 
     try:
         with stop_requests() as stopped:
@@ -246,7 +246,7 @@ def print_sentences(source: Any, write: Callable[..., None]) -> int:
 
 
 def say_goodbye(source: "Source") -> int:
-    from tui.playback.live import Live
+    from pendu_tui.tui.playback.live import Live
 
     if not isinstance(source, Live) or source.recorder is None:
         return Exit.FINE

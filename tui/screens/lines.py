@@ -12,18 +12,18 @@ from textual.app import App
 from textual.binding import ActiveBinding, Binding
 from textual.screen import Screen, ScreenResultType
 
-from engine.methods import Cast
-from engine.run.lockstep import Sample
-from recordings.errors import printable
-from tui.drawing.cells import CellWidget
-from tui.drawing.palette import EXACT, QUIET, TEXT, WARN
-from tui.drawing.picture import Picture, Row
-from tui.playback.source import Source
-from tui.terminal.options import SMALLEST
-from tui.views.view import Pane
-from tui.words.insight import insight_text
-from tui.words.numbers import about, factor, seconds, start, two_digits
-from tui.words.tour import Tour
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.drawing.cells import CellWidget
+from pendu_tui.tui.drawing.palette import EXACT, QUIET, TEXT, WARN
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.terminal.options import SMALLEST
+from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.words.insight import insight_text
+from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
+from pendu_tui.tui.words.tour import Tour
 
 BADGE = -10
 """The ink of LIVE, REPLAY and the tour's titles."""

@@ -8,17 +8,17 @@ from textual.binding import Binding, BindingType
 from textual.screen import ModalScreen
 from textual.widget import Widget
 
-from engine.methods.own import OwnMethodError
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene, SceneError
-from tui.playback.common import State
-from tui.playback.live import Live
-from tui.screens.base import SourceScreen
-from tui.screens.lines import TourPanel
-from tui.views.view import Held, SceneChosen, StepSizeChosen
-from tui.words.insight import return_text
-from tui.words.tour import Tour
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene, SceneError
+from pendu_tui.tui.playback.common import State
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.screens.lines import TourPanel
+from pendu_tui.tui.views.view import Held, SceneChosen, StepSizeChosen
+from pendu_tui.tui.words.insight import return_text
+from pendu_tui.tui.words.tour import Tour
 
 _H = Binding.Group("larger, smaller step h")
 
@@ -194,17 +194,17 @@ class LiveScreen(SourceScreen):
         self.app.push_screen(form, answered)
 
     def action_scenes(self) -> None:
-        from tui.screens.dialogs import SceneList
+        from pendu_tui.tui.screens.dialogs import SceneList
 
         self._ask(SceneList(self.live.scene.name), self.action_start_scene)
 
     def action_start_values(self) -> None:
-        from tui.screens.dialogs import StartForm
+        from pendu_tui.tui.screens.dialogs import StartForm
 
         self._ask(StartForm(self._scene_now()), self.start)
 
     def action_methods(self) -> None:
-        from tui.screens.dialogs import CastForm
+        from pendu_tui.tui.screens.dialogs import CastForm
 
         self._ask(CastForm(self._scene_now()), self.start)
 

@@ -7,12 +7,12 @@ from typing import NamedTuple, cast
 from rich.markup import escape
 from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
-from engine.scenes import SCENES
-from tui.drawing.palette import PALETTES
-from tui.screens.base import SourceScreen
-from tui.screens.dialogs import KEY_WIDTH, Once, bindings_of, purpose
-from tui.screens.lines import key_text
-from tui.screens.live import LiveScreen
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.screens.dialogs import KEY_WIDTH, Once, bindings_of, purpose
+from pendu_tui.tui.screens.lines import key_text
+from pendu_tui.tui.screens.live import LiveScreen
 
 
 class Entry(NamedTuple):

@@ -10,18 +10,18 @@ from textual import events
 from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
-from engine.methods.own import OwnMethodError
-from engine.run.lockstep import Sample
-from recordings.errors import RecordingError
-from tui.cli.errors import UserError, explained
-from tui.drawing.palette import FRAME, TEXT, WARN
-from tui.drawing.picture import Picture, Row
-from tui.playback.live import Live, has_own
-from tui.playback.replay import Replay
-from tui.playback.source import Source
-from tui.screens.base import SourceScreen
-from tui.views.view import Pane
-from tui.words.numbers import seconds
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.tui.cli.errors import UserError, explained
+from pendu_tui.tui.drawing.palette import FRAME, TEXT, WARN
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.live import Live, has_own
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.words.numbers import seconds
 
 _SECONDS = Binding.Group("back, forward 1 s")
 _ENDS = Binding.Group("to the start, to the end")

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 
 from textual.widget import Widget
 
-from engine.scenes import Scene
-from tui.drawing.cells import CellWidget
-from tui.playback.live import Live
-from tui.screens.app import PenduApp
-from tui.screens.live import LiveScreen
-from tui.screens.svg import normalised
-from tui.terminal.options import FPS, USUAL, TerminalOptions
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.drawing.cells import CellWidget
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.svg import normalised
+from pendu_tui.tui.terminal.options import FPS, USUAL, TerminalOptions
 
 
 async def still(

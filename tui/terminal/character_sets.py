@@ -7,7 +7,7 @@ from rich.segment import Segment
 from textual.color import Color
 from textual.filter import LineFilter
 
-from tui.terminal.options import CharacterSet
+from pendu_tui.tui.terminal.options import CharacterSet
 
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any, Literal
 
-from tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError
 
 
 def check_terminal() -> None:

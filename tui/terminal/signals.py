@@ -9,10 +9,10 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, suppress
 from threading import Thread
 
-from tui.cli.errors import Exit
-from tui.cli.files import ENDING
-from tui.cli.time_limit import PLAIN_SCREEN
-from tui.terminal.check import is_gone
+from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.files import ENDING
+from pendu_tui.tui.cli.time_limit import PLAIN_SCREEN
+from pendu_tui.tui.terminal.check import is_gone
 
 MARGIN = 0.1  # s; the order of two signals closer than this is unknown
 

@@ -4,9 +4,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:  # the process that computes for a view starts faster without Textual
-    from tui.playback.shown import Shown
-    from tui.playback.source import Source
-    from tui.views.view import View
+    from pendu_tui.tui.playback.shown import Shown
+    from pendu_tui.tui.playback.source import Source
+    from pendu_tui.tui.views.view import View
 
 
 class ViewEntry(NamedTuple):
@@ -16,10 +16,10 @@ class ViewEntry(NamedTuple):
 
 
 VIEWS: dict[str, ViewEntry] = {
-    "lab": ViewEntry("Lab", "tui.views.lab.view", "LabView"),
-    "phase": ViewEntry("Phase space", "tui.views.phase.view", "PhaseView"),
-    "accuracy": ViewEntry("Accuracy", "tui.views.accuracy.pane", "AccuracyView"),
-    "stability": ViewEntry("Stability", "tui.views.stability.pane", "StabilityView"),
+    "lab": ViewEntry("Lab", "pendu_tui.tui.views.lab.view", "LabView"),
+    "phase": ViewEntry("Phase space", "pendu_tui.tui.views.phase.view", "PhaseView"),
+    "accuracy": ViewEntry("Accuracy", "pendu_tui.tui.views.accuracy.pane", "AccuracyView"),
+    "stability": ViewEntry("Stability", "pendu_tui.tui.views.stability.pane", "StabilityView"),
 }
 """In the order of the key v."""
 

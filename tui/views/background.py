@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any
 
-from tui.cli.time_limit import limited_steps
+from pendu_tui.tui.cli.time_limit import limited_steps
 
 
 async def computed(

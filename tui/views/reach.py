@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from engine.models.model import Model
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from engine.scenes import Scene
+from pendu_tui.engine.models.model import Model
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene
 
 
 class Reach(NamedTuple):

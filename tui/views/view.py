@@ -14,16 +14,16 @@ from textual.content import Content
 from textual.message import Message
 from textual.worker import Worker, WorkerState
 
-from engine.methods import Cast
-from engine.methods.own import OwnMethodError
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from engine.scenes import Scene, SceneError
-from tui.drawing.cells import CellWidget
-from tui.drawing.palette import TEXT
-from tui.drawing.picture import Picture, Row
-from tui.playback.shown import Shown, Stretch
-from tui.playback.source import Source
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.tui.drawing.cells import CellWidget
+from pendu_tui.tui.drawing.palette import TEXT
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.shown import Shown, Stretch
+from pendu_tui.tui.playback.source import Source
 
 Place = TypeVar("Place")
 
@@ -154,7 +154,7 @@ class Pane(CellWidget):
         self, function: Callable[..., Iterator[Any]], *arguments: object, group: str = "default"
     ) -> Worker[None]:
         """Compute in another process and `add` the results; cancel the group's earlier work."""
-        from tui.views.background import computed  # not needed for the first paint
+        from pendu_tui.tui.views.background import computed  # not needed for the first paint
 
         async def work() -> None:
             await asyncio.sleep(0.1)  # until the wheel stops turning

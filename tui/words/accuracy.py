@@ -3,11 +3,11 @@
 import math
 from collections.abc import Sequence
 
-from engine.accuracy.front import Cheapest, Cost, ranges
-from engine.accuracy.growth import PERIODS, Growth
-from engine.accuracy.references import TAYLOR_20
-from engine.accuracy.study import REASONS, ErrorKind, Point
-from engine.methods.runge_kutta import RK4
+from pendu_tui.engine.accuracy.front import Cheapest, Cost, ranges
+from pendu_tui.engine.accuracy.growth import PERIODS, Growth
+from pendu_tui.engine.accuracy.references import TAYLOR_20
+from pendu_tui.engine.accuracy.study import REASONS, ErrorKind, Point
+from pendu_tui.engine.methods.runge_kutta import RK4
 
 COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
 

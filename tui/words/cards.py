@@ -4,13 +4,13 @@ import math
 import textwrap
 from collections.abc import Mapping
 
-from engine.methods import Method
-from engine.models import MODELS
-from engine.models.model import EnergyError
-from engine.run.judgement import DEFINITIONS
-from engine.scenes import SCENES, UNITS, Scene
-from tui.drawing.palette import SIGNS
-from tui.words.numbers import counted, motion_text, z_text
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models.model import EnergyError
+from pendu_tui.engine.run.judgement import DEFINITIONS
+from pendu_tui.engine.scenes import SCENES, UNITS, Scene
+from pendu_tui.tui.drawing.palette import SIGNS
+from pendu_tui.tui.words.numbers import counted, motion_text, z_text
 
 WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 

@@ -3,11 +3,11 @@
 import math
 import shlex
 
-from engine.methods.own import OwnMethod
-from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.playback.source import Source
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.source import Source
 
 
 def command(source: Source) -> str:

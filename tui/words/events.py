@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from engine.methods import Method
-from engine.run.judgement import Milestone
-from tui.playback.source import Source
-from tui.words.insight import energy_ratio, short_name
-from tui.words.numbers import start, two_digits
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.run.judgement import Milestone
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.words.insight import energy_ratio, short_name
+from pendu_tui.tui.words.numbers import start, two_digits
 
 VERDICTS: dict[str, str] = {
     "bounded": "stays bounded",

@@ -9,13 +9,13 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from engine.methods import USUAL_CAST, Method
-from engine.run.judgement import Judgement, Milestone
-from engine.run.lockstep import Sample
-from engine.run.stepping import SteppingChange
-from engine.scenes import Scene
-from tui.playback.source import Source
-from tui.words.numbers import about, two_digits
+from pendu_tui.engine.methods import USUAL_CAST, Method
+from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import SteppingChange
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.words.numbers import about, two_digits
 
 SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",

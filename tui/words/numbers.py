@@ -6,8 +6,8 @@ Tables get a hyphen for nan and inf.
 import math
 from collections.abc import Sequence
 
-from engine.models.model import ExactMotion, Model
-from engine.scenes import Scene
+from pendu_tui.engine.models.model import ExactMotion, Model
+from pendu_tui.engine.scenes import Scene
 
 
 def counted(number: int, noun: str) -> str:

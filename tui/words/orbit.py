@@ -2,9 +2,9 @@
 
 import math
 
-from engine.methods import Method
-from engine.phase_space.section import OrbitKind, least_lyapunov
-from tui.words.numbers import counted
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.phase_space.section import OrbitKind, least_lyapunov
+from pendu_tui.tui.words.numbers import counted
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
 MAX_DRIFT = 1e-3  # relative change of the energy; with more an orbit is a spiral

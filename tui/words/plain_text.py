@@ -3,14 +3,14 @@
 import time
 from collections.abc import Callable
 
-from engine.methods import Cast
-from tui.cli.errors import UserError
-from tui.playback.live import Live
-from tui.playback.source import Source
-from tui.words import insight
-from tui.words.events import event_lines
-from tui.words.numbers import about, seconds, start
-from tui.words.tour import STEPS, Tour
+from pendu_tui.engine.methods import Cast
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.words import insight
+from pendu_tui.tui.words.events import event_lines
+from pendu_tui.tui.words.numbers import about, seconds, start
+from pendu_tui.tui.words.tour import STEPS, Tour
 
 THINKING = 6.0  # s, to find an answer
 READING = 5.0  # s, to read it

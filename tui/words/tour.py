@@ -7,10 +7,10 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from engine.models import DEFAULT_MODEL
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene, Shot
-from tui.playback.live import Live
+from pendu_tui.engine.models import DEFAULT_MODEL
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene, Shot
+from pendu_tui.tui.playback.live import Live
 
 ASTRAY = "This is your own run now. Enter begins the step again."
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from engine.accuracy.front import cost_at, front, ranges
-from engine.accuracy.references import TAYLOR_20
-from engine.accuracy.study import Flaws, Point
-from engine.methods import method_of
+from pendu_tui.engine.accuracy.front import cost_at, front, ranges
+from pendu_tui.engine.accuracy.references import TAYLOR_20
+from pendu_tui.engine.accuracy.study import Flaws, Point
+from pendu_tui.engine.methods import method_of
 
 RK4, BM6 = method_of("rk4"), method_of("blanes_moan_6")
 

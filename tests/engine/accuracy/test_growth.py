@@ -2,10 +2,10 @@
 
 import pytest
 
-from engine.accuracy.growth import duration, growth, growths
-from engine.methods import USUAL_CAST
-from engine.phase_space.section import orbit
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.accuracy.growth import duration, growth, growths
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.phase_space.section import orbit
+from pendu_tui.engine.scenes import SCENES, Scene
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
 

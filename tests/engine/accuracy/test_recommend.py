@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from engine.accuracy.recommend import MAX_TIMES, least_cost, least_error, reach
-from engine.accuracy.study import Study, with_all_methods
-from engine.methods import USUAL_CAST
-from engine.run import compiled
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.scenes import SCENES, Z_LIMITS
+from pendu_tui.engine.accuracy.recommend import MAX_TIMES, least_cost, least_error, reach
+from pendu_tui.engine.accuracy.study import Study, with_all_methods
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.scenes import SCENES, Z_LIMITS
 
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]

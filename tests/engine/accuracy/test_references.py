@@ -6,10 +6,10 @@ import time
 import numpy as np
 import pytest
 
-from engine.accuracy.references import references, taylor_points
-from engine.models.exact_pendulum import exact_pendulum
-from engine.run.compiled import available
-from engine.scenes import Scene
+from pendu_tui.engine.accuracy.references import references, taylor_points
+from pendu_tui.engine.models.exact_pendulum import exact_pendulum
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.scenes import Scene
 
 pytestmark = pytest.mark.skipif(not available(), reason="Numba is not installed")
 SWING = Scene(theta=2.0)

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.accuracy.rounding import rounding_floor
-from engine.accuracy.study import Study, ladder, orders, timed
-from engine.methods import USUAL_CAST
-from engine.run import compiled
-from engine.run.loops import PlainLoops
-from engine.scenes import SCENES, SceneError
+from pendu_tui.engine.accuracy.rounding import rounding_floor
+from pendu_tui.engine.accuracy.study import Study, ladder, orders, timed
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.scenes import SCENES, SceneError
 
 E, S, V, R = USUAL_CAST
 LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits

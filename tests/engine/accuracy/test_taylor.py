@@ -6,12 +6,12 @@ from statistics import fmean
 import numpy as np
 import pytest
 
-from engine.run.compiled import available
-from engine.scenes import Scene
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.scenes import Scene
 
 pytestmark = pytest.mark.skipif(not available(), reason="Numba is not installed")
 if available():
-    from engine.accuracy.taylor import solve
+    from pendu_tui.engine.accuracy.taylor import solve
 SWING = Scene(theta=2.0)
 
 

@@ -11,14 +11,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import simulate
-from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, implicit, matching, measure
-from engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
-from engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
-from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
-from engine.models.pendulum import Pendulum
-from engine.run.tangent import jacobian
-from engine.scenes import Scene
+from pendu_tui.engine import simulate
+from pendu_tui.engine.methods import (
+    EXPLICIT_EULER,
+    GENERAL,
+    METHODS,
+    RK4,
+    implicit,
+    matching,
+    measure,
+)
+from pendu_tui.engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
+from pendu_tui.engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
+from pendu_tui.engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.tangent import jacobian
+from pendu_tui.engine.scenes import Scene
 
 W0_SQUARED = 9.81
 PENDULUM = Pendulum(W0_SQUARED)

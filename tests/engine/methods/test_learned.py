@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods.learned import (
+from pendu_tui.engine.methods.learned import (
     FAMILY,
     LEARNED_MAP,
     LEARNED_SYMPLECTIC_MAP,
@@ -17,9 +17,9 @@ from engine.methods.learned import (
     learned_field,
     learned_hamiltonian,
 )
-from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
-from engine.models.pendulum import Pendulum
-from engine.run.loops import PlainLoops
+from pendu_tui.engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.loops import PlainLoops
 from tests.bench import learn
 
 W0_SQUARED = 9.81

@@ -10,15 +10,15 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from engine.methods import VELOCITY_VERLET
-from engine.methods.examine import load
-from engine.methods.own import MAX_SOURCE, OwnMethodError
-from engine.models.pendulum import Pendulum
-from engine.run.compiled import compiled
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.scenes import DEFAULT_SCENE, SCENES
-from engine.stability.grid import Grid
+from pendu_tui.engine.methods import VELOCITY_VERLET
+from pendu_tui.engine.methods.examine import load
+from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.compiled import compiled
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.stability.grid import Grid
 
 VERLET = '''
 def mine(force, phase, h):

@@ -9,19 +9,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
-from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET
-from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
-from engine.methods.implicit import IMPLICIT_MIDPOINT
-from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
-from engine.methods.stiff import IMEX_EULER, RESPA
-from engine.methods.verlet import POSITION_VERLET
-from engine.models.damped import DampedPendulum
-from engine.models.mean_field import MeanField
-from engine.models.pendulum import Pendulum
-from engine.models.spring import Spring
-from engine.run.loops import PlainLoops, count_evaluations
-from engine.run.tangent import jacobian
+from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
+from pendu_tui.engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET
+from pendu_tui.engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
+from pendu_tui.engine.methods.implicit import IMPLICIT_MIDPOINT
+from pendu_tui.engine.methods.precision import (
+    VERLET_COMPENSATED,
+    VERLET_FLOAT32,
+    Compensated,
+    Float32,
+)
+from pendu_tui.engine.methods.stiff import IMEX_EULER, RESPA
+from pendu_tui.engine.methods.verlet import POSITION_VERLET
+from pendu_tui.engine.models.damped import DampedPendulum
+from pendu_tui.engine.models.mean_field import MeanField
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.models.spring import Spring
+from pendu_tui.engine.run.loops import PlainLoops, count_evaluations
+from pendu_tui.engine.run.tangent import jacobian
 
 PENDULUM, DAMPED, SPRING = Pendulum(9.81), DampedPendulum(9.81, 0.5), Spring(9.81, 100.0)
 MEAN_FIELD = MeanField(9.81, 2.0, 20.0)

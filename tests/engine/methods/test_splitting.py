@@ -6,11 +6,11 @@ from itertools import islice
 
 import pytest
 
-from engine.methods import METHODS, VELOCITY_VERLET, method_of
-from engine.methods.splitting import FAMILY, FOREST_RUTH, composition, splitting
-from engine.models.pendulum import Pendulum
-from engine.run.loops import PlainLoops
-from engine.run.stepping import Stepping
+from pendu_tui.engine.methods import METHODS, VELOCITY_VERLET, method_of
+from pendu_tui.engine.methods.splitting import FAMILY, FOREST_RUTH, composition, splitting
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.stepping import Stepping
 
 MODEL = Pendulum(9.81)
 

@@ -16,7 +16,7 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State, Variable
+from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State, Variable
 
 
 @dataclass(frozen=True)
@@ -63,20 +63,20 @@ def pendu(tmp_path_factory):
     copy = tmp_path_factory.mktemp("copy")
     for package in ("engine", "recordings", "tui"):
         ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / package, copy / package, ignore=ignored)
-    models = copy / "engine" / "models"
+        shutil.copytree(ROOT / package, copy / "pendu_tui" / package, ignore=ignored)
+    models = copy / "pendu_tui" / "engine" / "models"
     (models / "decaying.py").write_text(MODEL, "utf-8")
     listed = (models / "__init__.py").read_text("utf-8")
     changed = listed.replace("MeanField)", "MeanField, Decaying)").replace(
-        "from engine.models.damped",
-        "from engine.models.decaying import Decaying\nfrom engine.models.damped",
+        "from pendu_tui.engine.models.damped",
+        "from pendu_tui.engine.models.decaying import Decaying\nfrom pendu_tui.engine.models.damped",
     )
     assert changed.count("Decaying") == 2
     (models / "__init__.py").write_text(changed, "utf-8")
     scene = 'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n'
     (copy / "scene.toml").write_text(scene, "utf-8")
     environment = os.environ | {"PYTHONPATH": str(copy), "PENDU_RECORDINGS": str(copy / "made")}
-    code = "import sys; from tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
+    code = "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
 
     def run(*arguments):
         command = [sys.executable, "-c", code, *arguments]

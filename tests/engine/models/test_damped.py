@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.damped import ACCURACY, STEP, DampedPendulum
-from engine.models.pendulum import Pendulum, exact_pendulum
-from engine.models.reference import Reference, compose_verlet
-from engine.scenes import Scene, SceneError
+from pendu_tui.engine.models.damped import ACCURACY, STEP, DampedPendulum
+from pendu_tui.engine.models.pendulum import Pendulum, exact_pendulum
+from pendu_tui.engine.models.reference import Reference, compose_verlet
+from pendu_tui.engine.scenes import Scene, SceneError
 
 TIMES = [0.37 * n for n in range(163)]  # a minute
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import RK4, method_of
-from engine.models.mean_field import ACCURACY, STEP, MeanField, strang
-from engine.models.reference import Reference, compose
-from engine.run.lockstep import Lockstep
-from engine.scenes import SCENES
+from pendu_tui.engine.methods import RK4, method_of
+from pendu_tui.engine.models.mean_field import ACCURACY, STEP, MeanField, strang
+from pendu_tui.engine.models.reference import Reference, compose
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import SCENES
 
 MODEL = MeanField(9.81, 2.0, 20.0)
 START = MODEL.start(1.0, 0.0)

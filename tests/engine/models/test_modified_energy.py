@@ -5,8 +5,8 @@ from itertools import islice
 
 import pytest
 
-from engine.methods import METHODS
-from engine.models.pendulum import Pendulum
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.models.pendulum import Pendulum
 
 PENDULUM = Pendulum(9.81)
 with_shadow = [method for method in METHODS if method.modified_energy]

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.model import EnergyReference
-from engine.models.pendulum import Pendulum
+from pendu_tui.engine.models.model import EnergyReference
+from pendu_tui.engine.models.pendulum import Pendulum
 
 ENERGY = Pendulum(9.81).energy()
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.reference import Reference, compose_verlet
-from engine.models.spring import ACCURACY, STEP, Spring
-from engine.scenes import Scene, SceneError
+from pendu_tui.engine.models.reference import Reference, compose_verlet
+from pendu_tui.engine.models.spring import ACCURACY, STEP, Spring
+from pendu_tui.engine.scenes import Scene, SceneError
 
 SPRING = Spring(9.81, 2500.0)
 places = st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3)

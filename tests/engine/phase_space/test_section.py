@@ -6,10 +6,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from engine.methods import GENERAL, USUAL_CAST, method_of
-from engine.models.linear import LinearOscillator
-from engine.models.pendulum import Pendulum
-from engine.phase_space.section import (
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
+from pendu_tui.engine.models.linear import LinearOscillator
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.phase_space.section import (
     iterate,
     kind_of,
     least_lyapunov,

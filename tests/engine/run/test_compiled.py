@@ -5,11 +5,11 @@ from resource import RUSAGE_SELF, getrusage
 
 import pytest
 
-from engine.methods import GENERAL, RK4, VELOCITY_VERLET
-from engine.models import MODELS
-from engine.models.pendulum import Pendulum
-from engine.run import compiled
-from engine.run.loops import PlainLoops
+from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.loops import PlainLoops
 from tests.engine.run.test_loops import OVERFLOWING
 from tests.test_architecture import loaded_after
 
@@ -95,9 +95,9 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
 
 def test_few_steps_and_asking_for_numba_do_not_import_it():
     work = """
-import engine.accuracy.references
-from engine.run.compiled import TieredLoops, available
-from engine.scenes import DEFAULT_SCENE as scene
+import pendu_tui.engine.accuracy.references
+from pendu_tui.engine.run.compiled import TieredLoops, available
+from pendu_tui.engine.scenes import DEFAULT_SCENE as scene
 available()
 TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
 """

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from engine.run.energies import judge_record
-from engine.run.judgement import MIN_INDEPENDENT, MIN_SAMPLES
+from pendu_tui.engine.run.energies import judge_record
+from pendu_tui.engine.run.judgement import MIN_INDEPENDENT, MIN_SAMPLES
 from tests.bench.foreign import correlated
 
 T = np.linspace(0, 100, 2000)

@@ -7,10 +7,10 @@ from resource import RUSAGE_SELF, getrusage
 import numpy as np
 import pytest
 
-from engine.methods import FAMILIES, GENERAL, VELOCITY_VERLET
-from engine.models import Pendulum
-from engine.run.compiled import available
-from engine.run.ensemble import Watched, compiled, plain
+from pendu_tui.engine.methods import FAMILIES, GENERAL, VELOCITY_VERLET
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.run.ensemble import Watched, compiled, plain
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 WAYS = [(method, False) for method in GENERAL]

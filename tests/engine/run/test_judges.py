@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.methods import USUAL_CAST
-from engine.run import compiled
-from engine.run.judgement import Milestone
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.run.rewindable import RewindableRun
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.judgement import Milestone
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.rewindable import RewindableRun
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene
 
 DRIFT = SCENES["drift"]
 

@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import USUAL_CAST, method_of
-from engine.models.model import Phase
-from engine.models.pendulum import Pendulum
-from engine.run.compiled import available, compiled
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.run.stepping import Stepping
-from engine.scenes import LIMITS, SCENES, Scene, SceneError
-from recordings.fields import without_extremes
+from pendu_tui.engine.methods import USUAL_CAST, method_of
+from pendu_tui.engine.models.model import Phase
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.compiled import available, compiled
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import LIMITS, SCENES, Scene, SceneError
+from pendu_tui.recordings.fields import without_extremes
 
 scenes = st.builds(
     Scene,

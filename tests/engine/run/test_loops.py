@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import GENERAL
-from engine.models import MODELS
-from engine.models.pendulum import Pendulum
-from engine.run.loops import PlainLoops
+from pendu_tui.engine.methods import GENERAL
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.loops import PlainLoops
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(

@@ -6,14 +6,14 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
-from engine.models import MODELS
-from engine.run.compiled import available, compiled
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene, SceneError
-from recordings.fields import without_extremes
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.run.compiled import available, compiled
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene, SceneError
+from pendu_tui.recordings.fields import without_extremes
 
 NAMES = [n for n, s in SCENES.items() if s.why_not_mapped]
 each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)

@@ -5,10 +5,10 @@ import itertools
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.run.lockstep import Lockstep
-from engine.run.rewindable import COPY_EVERY, RewindableRun
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.rewindable import COPY_EVERY, RewindableRun
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 
 H_VALUES = st.sampled_from([0.1, 0.02, -0.05, 0.05])
 

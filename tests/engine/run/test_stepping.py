@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import USUAL_CAST
-from engine.run.lockstep import Lockstep
-from engine.run.stepping import Stepping, SteppingChange, change_before
-from engine.scenes import DEFAULT_SCENE, SceneError
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SceneError
 
 STEPPINGS = st.builds(
     lambda h, equal_cost: Stepping(h, equal_cost),  # st.builds would also choose the cast

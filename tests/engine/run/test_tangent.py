@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from engine.methods import GENERAL, Method
-from engine.models.pendulum import Pendulum
-from engine.run.tangent import jacobian
+from pendu_tui.engine.methods import GENERAL, Method
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.tangent import jacobian
 
 
 @pytest.mark.parametrize("method", GENERAL, ids=lambda m: m.key)

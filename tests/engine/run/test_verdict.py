@@ -6,16 +6,16 @@ from statistics import median
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.models.pendulum import Pendulum
-from engine.run import compiled
-from engine.run.bands import Bands, fit_line
-from engine.run.judge import Judge
-from engine.run.judgement import LookPoint
-from engine.run.lockstep import Lockstep
-from engine.run.loops import PlainLoops
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.bands import Bands, fit_line
+from pendu_tui.engine.run.judge import Judge
+from pendu_tui.engine.run.judgement import LookPoint
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
 E, S, V, R = USUAL_CAST

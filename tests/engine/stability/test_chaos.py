@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import SYMPLECTIC_EULER, VELOCITY_VERLET
-from engine.models.pendulum import Pendulum
-from engine.scenes import SCENES
-from engine.stability.chaos import GREENE_Z, is_chaotic, parting
+from pendu_tui.engine.methods import SYMPLECTIC_EULER, VELOCITY_VERLET
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.stability.chaos import GREENE_Z, is_chaotic, parting
 
 SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
 

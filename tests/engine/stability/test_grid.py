@@ -3,13 +3,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.methods import GENERAL, USUAL_CAST
-from engine.run.compiled import available
-from engine.scenes import Scene
-from engine.stability import grid as stability_map
-from engine.stability.grid import Grid, pieces
-from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
-from engine.stability.study import map_of
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.stability import grid as stability_map
+from pendu_tui.engine.stability.grid import Grid, pieces
+from pendu_tui.engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
+from pendu_tui.engine.stability.study import map_of
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_way = pytest.mark.parametrize(

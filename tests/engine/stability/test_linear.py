@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import GENERAL
-from engine.stability.linear import amplification, wobble
+from pendu_tui.engine.methods import GENERAL
+from pendu_tui.engine.stability.linear import amplification, wobble
 
 BY_KEY = {method.key: method for method in GENERAL}
 

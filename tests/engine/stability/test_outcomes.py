@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST
-from engine.models.pendulum import Pendulum
-from engine.run.ensemble import plain
-from engine.stability.linear import wobble
-from engine.stability.outcomes import (
+from pendu_tui.engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run.ensemble import plain
+from pendu_tui.engine.stability.linear import wobble
+from pendu_tui.engine.stability.outcomes import (
     BAND,
     CAUGHT,
     CHAOTIC,
@@ -78,7 +78,7 @@ def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch):
         watch = plain(method, model)
         return lambda phase, h, *others: begun.append(len(h)) or watch(phase, h, *others)
 
-    monkeypatch.setattr("engine.stability.outcomes.plain", counting)
+    monkeypatch.setattr("pendu_tui.engine.stability.outcomes.plain", counting)
     cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
     assert len(np.unique(cells["steps"])) > 200
     assert begun[0] == 500

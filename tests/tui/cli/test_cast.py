@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from engine.methods import (
+from pendu_tui.engine.methods import (
     EXPLICIT_EULER,
     METHODS,
     RK4,
@@ -13,14 +13,14 @@ from engine.methods import (
     Cast,
     method_of,
 )
-from engine.methods import VELOCITY_VERLET as VERLET
-from engine.methods.own import OwnMethod
-from engine.scenes import MAX_METHODS
+from pendu_tui.engine.methods import VELOCITY_VERLET as VERLET
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.tui.cli import cast as cast_options
+from pendu_tui.tui.cli.options import Parser
+from pendu_tui.tui.cli.scene import add_scene_options, scene_of
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU, ROOT
-from tui.cli import cast as cast_options
-from tui.cli.options import Parser
-from tui.cli.scene import add_scene_options, scene_of
 
 STEP = """
 def {name}(force, phase, h):
@@ -165,9 +165,9 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
 
 def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
     screens = []
-    monkeypatch.setattr("tui.terminal.check.check_terminal", lambda: None)
+    monkeypatch.setattr("pendu_tui.tui.terminal.check.check_terminal", lambda: None)
     monkeypatch.setattr(
-        "tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0
+        "pendu_tui.tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0
     )
     for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
         assert pendu("replay", "drift", *words).code == 0

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from engine.methods import USUAL_CAST
-from engine.run.judgement import Verdict
-from tui.cli.checks import FIELDS, Check, parse, write_junit
-from tui.cli.errors import UserError
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.judgement import Verdict
+from pendu_tui.tui.cli.checks import FIELDS, Check, parse, write_junit
+from pendu_tui.tui.cli.errors import UserError
 
 SIGNS = {
     "<": operator.lt,

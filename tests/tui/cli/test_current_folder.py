@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from recordings.library import GOLDEN
+from pendu_tui.recordings.library import GOLDEN
 from tests.tui.pty_lab import ROOT, PtyLab
 
 pytestmark = pytest.mark.slow
@@ -65,7 +65,7 @@ def program(tmp_path: Path, monkeypatch) -> list[str]:
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     script = tmp_path / "pendu-tui"
     script.write_text(
-        "import sys\nfrom tui.cli import main\nif __name__ == '__main__': sys.exit(main())\n"
+        "import sys\nfrom pendu_tui.tui.cli import main\nif __name__ == '__main__': sys.exit(main())\n"
     )
     return [sys.executable, str(script)]
 

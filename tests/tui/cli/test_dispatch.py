@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from engine.methods import METHODS
-from recordings.library import GOLDEN
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, completion_parser, split
+from pendu_tui.tui.cli.dropped import DROPPED
+from pendu_tui.tui.cli.errors import Exit
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.cli.dispatch import COMMANDS, command_of, completion_parser, split
-from tui.cli.dropped import DROPPED
-from tui.cli.errors import Exit
 
 ONE_SECOND = ("--time", "1", "--json")
 
@@ -79,7 +79,7 @@ def test_an_escape_sequence_is_not_printed_raw():
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
-    monkeypatch.setattr("tui.commands.scenes.run", lambda _: 1 / 0)
+    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         pendu("scenes")
 
@@ -94,7 +94,7 @@ def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_i
         except KeyboardInterrupt:
             raise becomes("half imported") from None
 
-    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
+    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", interrupted)
     outcome = pendu("scenes")
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 

@@ -11,8 +11,8 @@ from signal import SIGHUP, SIGINT, SIGTERM
 
 import pytest
 
+from pendu_tui.tui.cli.files import repeat_swallowed_interrupts, whole_file
 from tests.tui.command_line import pendu
-from tui.cli.files import repeat_swallowed_interrupts, whole_file
 
 WRITERS = {
     "export": ("export", "drift", "-o"),
@@ -96,7 +96,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 
 
 def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
-    monkeypatch.setattr("tui.commands.export.write_csv", None)
+    monkeypatch.setattr("pendu_tui.tui.commands.export.write_csv", None)
     refusal = pendu(*WRITERS["export"], tmp_path / "no" / "file.csv")
     assert refusal.refused(5, "no folder", "choose a folder")
 

@@ -2,7 +2,7 @@ import sys
 
 import pytest
 
-from tui.cli.install import install_advice
+from pendu_tui.tui.cli.install import install_advice
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
-from tui.cli.errors import UserError
-from tui.cli.options import Parser, angle, number, seconds, values
-from tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.options import Parser, angle, number, seconds, values
+from pendu_tui.tui.cli.scene import add_scene_options, scene_of
 
 
 def scene_from(*arguments: str) -> Scene:

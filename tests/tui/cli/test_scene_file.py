@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from engine.scenes import SCENES, Line, Shot
+from pendu_tui.engine.scenes import SCENES, Line, Shot
+from pendu_tui.tui.cli.scene import read_scenes
 from tests.tui.command_line import own_method, pendu
-from tui.cli.scene import read_scenes
 
 
 @pytest.fixture

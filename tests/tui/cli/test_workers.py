@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.workers import workers_of
 from tests.tui.command_line import pendu
-from tui.cli.errors import Exit, UserError
-from tui.cli.workers import workers_of
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 SECTION = ("stability", "--section", "--steps", 200, "--starts", 60)
@@ -20,7 +20,7 @@ RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 20)
 
 @pytest.fixture
 def small_strips(monkeypatch):
-    monkeypatch.setattr("engine.stability.grid.STRIP", 6)
+    monkeypatch.setattr("pendu_tui.engine.stability.grid.STRIP", 6)
 
 
 @pytest.mark.parametrize("command", [(*STABILITY, "--json", "--map"), (*RUNS, "--csv"), SECTION])
@@ -82,7 +82,7 @@ def test_workers_that_die_again_and_again_are_lost():
 
 
 def test_many_more_tasks_than_are_handed_out_at_once_stay_in_order(monkeypatch):
-    monkeypatch.setattr("tui.cli.workers.MAX_AHEAD", 3)
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.MAX_AHEAD", 3)
     with workers(executor="concurrent.futures:ThreadPoolExecutor") as threads:
         assert list(threads.map(square, range(50))) == [number * number for number in range(50)]
 

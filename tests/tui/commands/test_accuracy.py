@@ -5,12 +5,12 @@ from itertools import count
 
 import pytest
 
-from engine.accuracy.references import ABSENT
-from engine.accuracy.study import Study
-from engine.methods import GENERAL, USUAL_CAST, method_of
-from engine.run.compiled import available
-from engine.run.loops import PlainLoops
-from engine.scenes import SCENES
+from pendu_tui.engine.accuracy.references import ABSENT
+from pendu_tui.engine.accuracy.study import Study
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.scenes import SCENES
 from tests.tui.command_line import pendu
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -139,8 +139,8 @@ SECONDS = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.
 @pytest.fixture
 def hasty(monkeypatch):
     """Seconds of methods that are not compiled, measured in few steps."""
-    monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)
-    monkeypatch.setattr("engine.accuracy.study.TIMED_STEPS", 100)
+    monkeypatch.setattr("pendu_tui.engine.run.compiled.compiled", PlainLoops)
+    monkeypatch.setattr("pendu_tui.engine.accuracy.study.TIMED_STEPS", 100)
 
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")

@@ -6,9 +6,9 @@ import json
 import pyte
 import pytest
 
+from pendu_tui.tui.drawing.palette import PALETTES
 from tests.tui.chromium import NEEDED, Page, chromium
 from tests.tui.commands.test_serve import serving
-from tui.drawing.palette import PALETTES
 
 pytestmark = [NEEDED, pytest.mark.slow]
 

@@ -1,7 +1,7 @@
 import pytest
 
+from pendu_tui.tui.commands.doctor import colour, folder, size
 from tests.tui.command_line import pendu
-from tui.commands.doctor import colour, folder, size
 
 
 def test_doctor_reports_and_never_fails(monkeypatch, tmp_path):

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.tui.cli.columns import Table, read_table
+from pendu_tui.tui.cli.errors import UserError
 from tests.tui.command_line import Outcome, pendu
-from tui.cli.columns import Table, read_table
-from tui.cli.errors import UserError
 
 ROWS = [(n / 10, 100 + math.sin(n)) for n in range(300)]
 
@@ -308,8 +308,8 @@ def test_a_file_or_a_gate_that_cannot_be_read_is_one_sentence():
     ],
 )
 def test_what_is_no_table_is_refused_within_bounds(data, words, monkeypatch):
-    monkeypatch.setattr("tui.cli.columns.MAX_LINES_BEFORE", 1000)
-    monkeypatch.setattr("tui.cli.columns.MAX_RECORDS", 2000)
+    monkeypatch.setattr("pendu_tui.tui.cli.columns.MAX_LINES_BEFORE", 1000)
+    monkeypatch.setattr("pendu_tui.tui.cli.columns.MAX_RECORDS", 2000)
     assert judge(data, time="1", energy="2").refused(3, words)
 
 

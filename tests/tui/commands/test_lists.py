@@ -2,12 +2,12 @@
 
 import math
 
-from engine.methods import METHODS
-from engine.run.compiled import available
-from engine.scenes import GROUPS, SCENES
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.scenes import GROUPS, SCENES
+from pendu_tui.tui.commands.methods import MEASURED
+from pendu_tui.tui.words.cards import method_card, scene_card
 from tests.tui.command_line import pendu
-from tui.commands.methods import MEASURED
-from tui.words.cards import method_card, scene_card
 
 
 def test_scenes_are_listed_in_groups_with_what_to_watch():

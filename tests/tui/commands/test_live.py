@@ -1,13 +1,13 @@
 """`pendu-tui live` before there is a screen."""
 
-from engine.scenes import DEFAULT_SCENE
-from recordings.library import listing
-from recordings.recorder import LiveRecorder
-from recordings.verification import verify
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.recordings.library import listing
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.launch import say_goodbye
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
-from tui.playback.live import Live
-from tui.screens.launch import say_goodbye
 
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from recordings.library import listing
-from recordings.verification import verify
+from pendu_tui.recordings.library import listing
+from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 

@@ -6,9 +6,9 @@ import os
 import pytest
 from mcap.writer import Writer
 
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
 

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.run.lockstep import Lockstep
-from engine.run.loops import count_evaluations
-from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.library import hold
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import count_evaluations
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.library import hold
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.commands.studies.run import partial_of
+from pendu_tui.tui.words.numbers import about, file_size
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.commands.studies.run import partial_of
-from tui.words.numbers import about, file_size
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:

@@ -6,12 +6,12 @@ import io
 import numpy as np
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.stability.grid import Grid
-from engine.stability.outcomes import FATES, UNKNOWN
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.engine.stability.outcomes import FATES, UNKNOWN
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.workers import Workers
 from tests.tui.command_line import own_method, pendu
-from tui.cli.errors import Exit, UserError
-from tui.cli.workers import Workers
 
 SMALL = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 KEYS = [method.key for method in USUAL_CAST]

@@ -3,7 +3,7 @@ from io import BytesIO
 import pytest
 from mcap.writer import Writer
 
-from recordings.library import golden_names
+from pendu_tui.recordings.library import golden_names
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import Outcome, pendu
@@ -114,6 +114,6 @@ def test_only_the_methods_asked_for_are_compared(other, tmp_path):
 
 def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
     with monkeypatch.context() as earlier:
-        earlier.setattr("recordings.events.NUMERICS", 1)
+        earlier.setattr("pendu_tui.recordings.events.NUMERICS", 1)
         path = record(tmp_path / "earlier.mcap", two_runs())
     assert "made with version 1 of the numerics, this is version" in pendu("verify", path).out

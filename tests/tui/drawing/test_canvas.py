@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import NOBODY, TEXT
-from tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import NOBODY, TEXT
+from pendu_tui.tui.drawing.picture import Picture
 
 DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit
 COLUMNS, ROWS = 10, 6

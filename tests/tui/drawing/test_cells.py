@@ -6,9 +6,9 @@ from rich.style import Style
 from textual.app import App, ComposeResult
 from textual.strip import Strip
 
-from tui.drawing.cells import CellWidget
-from tui.drawing.palette import NOBODY, TEXT
-from tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.cells import CellWidget
+from pendu_tui.tui.drawing.palette import NOBODY, TEXT
+from pendu_tui.tui.drawing.picture import Picture
 
 
 class Drawn(CellWidget):

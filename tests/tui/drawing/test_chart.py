@@ -4,15 +4,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from engine.methods import USUAL_CAST
-from engine.scenes import Line
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.scenes import Line
+from pendu_tui.tui.drawing.chart import Series, loglog_chart
+from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
+from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
+from pendu_tui.tui.playback.rows import Window
+from pendu_tui.tui.playback.shown import Shown
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, inks, size
-from tui.drawing.chart import Series, loglog_chart
-from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
-from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
-from tui.playback.rows import Window
-from tui.playback.shown import Shown
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)

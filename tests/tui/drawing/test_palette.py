@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from rich.color import Color, ColorSystem
 
-from engine.methods import USUAL_CAST, method_of
-from engine.scenes import SCENES
-from tui.drawing.palette import (
+from pendu_tui.engine.methods import USUAL_CAST, method_of
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import (
     EXACT,
     FAINT,
     FRAME,

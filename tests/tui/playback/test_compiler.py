@@ -6,10 +6,10 @@ import threading
 
 import pytest
 
-from engine.run import compiled
-from engine.run.loops import PlainLoops
-from engine.scenes import DEFAULT_SCENE
-from tui.playback import compiler
+from pendu_tui.engine.run import compiled
+from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.playback import compiler
 
 
 @pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.run.lockstep import Reading, Sample
-from engine.run.rewindable import RewindableRun
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from tui.playback.history import History
+from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.engine.run.rewindable import RewindableRun
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.tui.playback.history import History
 
 DRIFT = SCENES["drift"]
 CAPACITY = 8  # small, so that few samples reach many levels

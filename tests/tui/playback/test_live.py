@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods.examine import load
-from engine.run.lockstep import Lockstep, Sample
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
-from recordings.events import Event
+from pendu_tui.engine.methods.examine import load
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
+from pendu_tui.recordings.events import Event
+from pendu_tui.tui.playback.common import Playhead, doubled
+from pendu_tui.tui.playback.live import FRAME_BUDGET
 from tests.tui.harness import FPS, Lab
-from tui.playback.common import Playhead, doubled
-from tui.playback.live import FRAME_BUDGET
 
 FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
 
@@ -212,8 +212,8 @@ def mine(force, phase, h):
     ],
 )
 def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, words, monkeypatch):
-    monkeypatch.setattr("tui.cli.time_limit.MAX_STEP_TIME", 0.3)
-    monkeypatch.setattr("tui.cli.time_limit.LOOK_INTERVAL", 0.05)
+    monkeypatch.setattr("pendu_tui.tui.cli.time_limit.MAX_STEP_TIME", 0.3)
+    monkeypatch.setattr("pendu_tui.tui.cli.time_limit.LOOK_INTERVAL", 0.05)
     own = load(FAILING.format(failure), "mine", "m", "mine.py")
     scene = DEFAULT_SCENE.with_cast((*DEFAULT_SCENE.cast, own))
     bench = Bench(scene)

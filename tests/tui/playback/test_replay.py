@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
-from recordings.events import Entry
-from recordings.recorder import Recorder
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.replay import Replay, pieces
 from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
-from tui.playback.replay import Replay, pieces
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting

@@ -5,15 +5,15 @@ import re
 import pytest
 from rich.color import Color
 
-from engine.scenes import DEFAULT_SCENE
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.drawing.palette import PALETTES, TEXT
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.views import VIEWS
 from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tests.tui.monkey import small_studies
-from tui.drawing.palette import PALETTES, TEXT
-from tui.playback.live import Live
-from tui.screens.app import PenduApp
-from tui.screens.live import LiveScreen
-from tui.views import VIEWS
 
 
 @pytest.fixture(autouse=True)

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from engine.scenes import Scene
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.live import LiveScreen
 from tests.tui.harness import recorded
-from tui.playback.live import Live
-from tui.screens.live import LiveScreen
 
 
 class Driver(LiveScreen):

@@ -2,8 +2,8 @@
 
 import math
 
-from engine.methods import METHODS, USUAL_CAST
-from engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
+from pendu_tui.engine.methods import METHODS, USUAL_CAST
+from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
 from tests.tui.harness import lab
 
 

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.recording import Recording
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.drawing.palette import faint, ink_of
+from pendu_tui.tui.playback.ghost import Ghost
+from pendu_tui.tui.views.lab.time_chart import TimeChart
+from pendu_tui.tui.views.lab.view import LabView
 from tests.tui.command_line import pendu
 from tests.tui.drawn import inks
 from tests.tui.harness import after, lab, recorded
-from tui.drawing.palette import faint, ink_of
-from tui.playback.ghost import Ghost
-from tui.views.lab.time_chart import TimeChart
-from tui.views.lab.view import LabView
 
 OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 

@@ -2,22 +2,22 @@
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.recorder import LiveRecorder
-from recordings.verification import verify
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import WINDOWS, quantities
+from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
+from pendu_tui.tui.screens.lines import StatusLine
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.replay import ReplayScreen
+from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.lab.event_list import EventList
+from pendu_tui.tui.views.lab.time_chart import TimeChart
+from pendu_tui.tui.views.lab.view import LabView
+from pendu_tui.tui.views.phase.view import SectionPane
 from tests.tui.harness import lab, on_stage, uncomputed
-from tui.playback.live import Live
-from tui.playback.shown import WINDOWS, quantities
-from tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
-from tui.screens.lines import StatusLine
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
-from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.event_list import EventList
-from tui.views.lab.time_chart import TimeChart
-from tui.views.lab.view import LabView
-from tui.views.phase.view import SectionPane
 
 
 async def test_space_pauses_and_goes_on_full_stop_and_comma_step():
@@ -224,7 +224,7 @@ async def test_a_dialog_pauses_the_lab_which_is_afterwards_as_it_was_before():
 
 
 async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):
-    monkeypatch.setattr("tui.views.background.computed", uncomputed)
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     titles = {"f2": "Lab", "f3": "Phase space", "f4": "Accuracy", "f5": "Stability"}
     async with lab() as theatre:
         for view, title in titles.items():

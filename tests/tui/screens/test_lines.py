@@ -2,15 +2,15 @@
 
 import pytest
 
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.recording import Recording
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.playback.common import Playhead, RecordingStatus
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.screens.lines import speed_text, status_row
+from pendu_tui.tui.screens.replay import bar, facts
 from tests.tui.harness import after, eventful
-from tui.playback.common import Playhead, RecordingStatus
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.screens.lines import speed_text, status_row
-from tui.screens.replay import bar, facts
 
 
 def text(row) -> str:

@@ -8,8 +8,8 @@ from textual.geometry import Size
 from textual.screen import Screen
 from textual.widgets._toast import Toast
 
+from pendu_tui.tui.screens.dialogs import TextScreen
 from tests.tui.harness import lab
-from tui.screens.dialogs import TextScreen
 
 
 async def test_a_text_closes_only_itself_however_often_it_is_dismissed():

@@ -8,17 +8,17 @@ from pathlib import Path
 
 import pytest
 
-from recordings.recorder import LiveRecorder
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.replay import ReplayScreen
 from tests.tui.harness import on_stage
 from tests.tui.monkey import ESC, LOOK, SIZE, play_on_stage, small_studies, wild_presses, wild_stage
-from tui.cli.options import resolve
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
 
 pytestmark = [pytest.mark.other_process, pytest.mark.slow]  # what is computed is left again at once
 

@@ -2,12 +2,12 @@
 
 from textual.widgets._toast import Toast
 
-from engine.scenes import DEFAULT_SCENE
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.lines import InsightLine
+from pendu_tui.tui.screens.live import LiveScreen
 from tests.tui.harness import lab, until
-from tui.playback.live import Live
-from tui.screens.app import PenduApp
-from tui.screens.lines import InsightLine
-from tui.screens.live import LiveScreen
 
 
 async def test_a_moment_is_marked_once_and_the_notice_lies_on_the_insight_line():

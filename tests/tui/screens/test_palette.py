@@ -6,11 +6,11 @@ import pytest
 from textual.command import CommandList
 from textual.widgets import Input
 
-from engine.scenes import SCENES
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.screens.palette import LabCommands, entries
+from pendu_tui.tui.words.command_line import command
 from tests.tui.harness import Theatre, lab
-from tui.drawing.palette import PALETTES
-from tui.screens.palette import LabCommands, entries
-from tui.words.command_line import command
 
 
 async def found(theatre: Theatre, words: str) -> None:

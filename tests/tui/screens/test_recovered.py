@@ -1,10 +1,10 @@
 from pathlib import Path
 
-from recordings.reader import read_contents
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.recordings.reader import read_contents
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.screens.launch import recover_leftovers
 from tests.tui.harness import Lab
-from tui.screens.launch import recover_leftovers
 
 
 def left_unfinished(path: Path) -> Path:
@@ -77,7 +77,7 @@ def test_a_full_disk_does_not_keep_the_lab_from_starting(tmp_path, monkeypatch):
 
 def test_leftovers_recovered_by_another_lab_are_skipped(tmp_path, monkeypatch):
     one, two = left_unfinished(tmp_path / "one.mcap"), left_unfinished(tmp_path / "two.mcap")
-    monkeypatch.setattr("recordings.library.leftovers", lambda folder: [one, two])
+    monkeypatch.setattr("pendu_tui.recordings.library.leftovers", lambda folder: [one, two])
     one.unlink()
     assert len(recover_leftovers(tmp_path)) == 1
     assert not two.exists()

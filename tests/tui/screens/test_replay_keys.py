@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.lines import StatusLine
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.replay import ReplayScreen, SeekBar
+from pendu_tui.tui.views.lab.event_list import EventList
 from tests.tui.harness import eventful, player, recorded
-from tui.cli.errors import UserError
-from tui.playback.live import Live
-from tui.screens.lines import StatusLine
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen, SeekBar
-from tui.views.lab.event_list import EventList
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """The lab on a terminal that is too small, and that grows again."""
 
+from pendu_tui.tui.screens.lines import StatusLine, TooSmall
 from tests.tui.harness import lab
-from tui.screens.lines import StatusLine, TooSmall
 
 
 async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_work():

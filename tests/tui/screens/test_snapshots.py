@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.screens.still import still
+from pendu_tui.tui.screens.svg import normalised
+from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS
 from tests.tui.harness import player
-from tui.cli.options import resolve
-from tui.screens.still import still
-from tui.screens.svg import normalised
-from tui.terminal.options import TerminalOptions
 
 SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}
 SECONDS = 12.0
@@ -50,8 +50,8 @@ def stored_studies(monkeypatch, request):
         for item in studies[task]:
             yield item
 
-    monkeypatch.setattr("tui.views.stability.pane.PASSES", PASSES)
-    monkeypatch.setattr("tui.views.background.computed", computed)
+    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", PASSES)
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", computed)
     yield
     if is_update:
         STUDIES.write_bytes(zlib.compress(pickle.dumps(studies, protocol=4), 9))

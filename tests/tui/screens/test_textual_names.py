@@ -10,12 +10,12 @@ from importlib import import_module
 import pytest
 from textual.message_pump import MessagePump
 
-import tui
+import pendu_tui.tui
 
 MEANT = {"PenduApp": {"_handle_exception"}}
 """What replaces Textual's own, by class."""
 
-for module in pkgutil.walk_packages(tui.__path__, "tui."):
+for module in pkgutil.walk_packages(pendu_tui.tui.__path__, "pendu_tui.tui."):
     import_module(module.name)
 
 
@@ -26,7 +26,7 @@ def below(kind: type) -> Iterator[type]:
 
 
 OURS = sorted(
-    {each for each in below(MessagePump) if each.__module__.startswith("tui.")},
+    {each for each in below(MessagePump) if each.__module__.startswith("pendu_tui.tui.")},
     key=lambda each: str(each),
 )
 
@@ -50,4 +50,6 @@ def test_a_class_takes_no_private_name_of_textuals(kind):
 
 
 def test_the_names_that_textual_uses_are_found_wherever_it_writes_them():
-    assert {"_closing", "_running", "_timers", "_driver"} <= textuals(tui.screens.app.PenduApp)
+    assert {"_closing", "_running", "_timers", "_driver"} <= textuals(
+        pendu_tui.tui.screens.app.PenduApp
+    )

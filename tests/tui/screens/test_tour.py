@@ -2,20 +2,20 @@
 
 import pytest
 
-from engine.scenes import SCENES
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.screens.lines import InsightLine, TourPanel
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.svg import normalised
+from pendu_tui.tui.words.tour import STEPS
 from tests.tui.harness import FPS, Theatre, lab, on_stage
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.screens.lines import InsightLine, TourPanel
-from tui.screens.live import LiveScreen
-from tui.screens.svg import normalised
-from tui.words.tour import STEPS
 
 
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the stability map: they take no time."""
-    monkeypatch.setattr("tui.views.stability.pane.PASSES", (20, 300))
+    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", (20, 300))
 
 
 def words(text: str) -> str:

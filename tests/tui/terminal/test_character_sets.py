@@ -6,9 +6,9 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.color import Color
 
-from tui.drawing.canvas import Canvas
-from tui.terminal.character_sets import CharacterSetFilter
-from tui.terminal.options import CHARACTER_SETS
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
+from pendu_tui.tui.terminal.options import CHARACTER_SETS
 
 BOLD = Style(bold=True)
 

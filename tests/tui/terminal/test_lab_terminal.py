@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from recordings.library import GOLDEN
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU, ROOT, PtyLab
 
@@ -61,7 +61,9 @@ def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_v
 
 def program(code: str) -> list[str]:
     """The lab in which the key m runs some code."""
-    mark = f"import time\nfrom tui.screens.live import LiveScreen\ndef mark(self): {code}\n"
+    mark = (
+        f"import time\nfrom pendu_tui.tui.screens.live import LiveScreen\ndef mark(self): {code}\n"
+    )
     return [*PENDU[:2], f"{mark}LiveScreen.action_mark = mark\n{PENDU[2]}"]
 
 
@@ -137,7 +139,7 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
 def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, library):
     (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
     own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
-    soon = "from tui.cli import time_limit; time_limit.MAX_CALL_TIME = 1.0\n"
+    soon = "from pendu_tui.tui.cli import time_limit; time_limit.MAX_CALL_TIME = 1.0\n"
     program = [*PENDU[:2], soon + PENDU[2]]
     environment = {"PYTHONPATH": str(ROOT)}
     with lab(library, *own, program=program, folder=tmp_path, **environment) as session:

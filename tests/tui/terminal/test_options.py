@@ -4,10 +4,10 @@ from types import SimpleNamespace
 import pytest
 from textual.drivers._writer_thread import WriterThread
 
-from tui.cli.errors import UserError
-from tui.cli.options import Parser
-from tui.terminal.check import is_writing
-from tui.terminal.options import (
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.options import Parser
+from pendu_tui.tui.terminal.check import is_writing
+from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     FPS,
     TerminalOptions,

@@ -1,6 +1,6 @@
 """Where the screen is saved."""
 
-from recordings import library
+from pendu_tui.recordings import library
 from tests.tui.conftest import text_of
 from tests.tui.harness import lab
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.run.lockstep import Sample
-from recordings.recording import Recording
-from recordings.verification import verify
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import verify
 from tests.tui.pty_lab import PtyLab
 
 pytestmark = pytest.mark.slow

@@ -9,19 +9,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.models import MODELS, PARAMETERS
-from engine.scenes import LIMITS, SCENES, Scene
+from pendu_tui.engine.models import MODELS, PARAMETERS
+from pendu_tui.engine.scenes import LIMITS, SCENES, Scene
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.time_chart import time_chart
+from pendu_tui.tui.playback.shown import Shown, quantities
+from pendu_tui.tui.screens.lines import status_row
+from pendu_tui.tui.views.lab.error_table import table
+from pendu_tui.tui.views.phase.picture import fact_rows
+from pendu_tui.tui.words.command_line import scene_arguments
+from pendu_tui.tui.words.insight import insight_text, lasting, sentence
+from pendu_tui.tui.words.plain_text import description
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
-from tui.drawing.picture import Picture
-from tui.drawing.time_chart import time_chart
-from tui.playback.shown import Shown, quantities
-from tui.screens.lines import status_row
-from tui.views.lab.error_table import table
-from tui.views.phase.picture import fact_rows
-from tui.words.command_line import scene_arguments
-from tui.words.insight import insight_text, lasting, sentence
-from tui.words.plain_text import description
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:

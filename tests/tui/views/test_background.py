@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tui.views.background import computed
+from pendu_tui.tui.views.background import computed
 
 pytestmark = pytest.mark.slow
 
@@ -87,7 +87,7 @@ async def test_a_computation_that_fails_or_is_killed_is_an_error_here():
 READER = """
 import asyncio
 from tests.tui.views.test_background import busy
-from tui.views.background import computed
+from pendu_tui.tui.views.background import computed
 
 async def read():
     async for process in computed(busy):

@@ -4,15 +4,15 @@ import re
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.scenes import SCENES
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.views import VIEWS
+from pendu_tui.tui.views.accuracy.pane import AccuracyPane
+from pendu_tui.tui.views.phase.view import SectionPane
+from pendu_tui.tui.views.stability.pane import StabilityPane
+from pendu_tui.tui.views.view import Chooser, Pane
 from tests.tui.harness import key_of, lab, player, uncomputed
-from tui.cli.options import resolve
-from tui.views import VIEWS
-from tui.views.accuracy.pane import AccuracyPane
-from tui.views.phase.view import SectionPane
-from tui.views.stability.pane import StabilityPane
-from tui.views.view import Chooser, Pane
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 STIFF = SCENES["stiff-slow"]
@@ -26,7 +26,7 @@ def words(theatre):
 async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(
     view, monkeypatch
 ):
-    monkeypatch.setattr("tui.views.background.computed", uncomputed)
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     async with lab() as theatre:
         await theatre.press(key_of(view))
         for scene in SCENES.values():

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.views.reach import amplitude, reach
 from tests.tui.harness import Lab
-from tui.views.reach import amplitude, reach
 
 
 def reaches(scene, seconds, shown):

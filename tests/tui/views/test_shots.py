@@ -5,15 +5,15 @@ from itertools import pairwise
 
 import pytest
 
-from engine.scenes import SCENES
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import FAINT, inks
+from pendu_tui.tui.drawing.time_chart import time_chart
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.views.phase.picture import method_points, phase_picture
+from pendu_tui.tui.views.phase.portrait import Portrait
+from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui.drawn import cells
-from tui.drawing.palette import FAINT, inks
-from tui.drawing.time_chart import time_chart
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.views.phase.picture import method_points, phase_picture
-from tui.views.phase.portrait import Portrait
-from tui.views.phase.viewport import Viewport
 
 CHARTS = {"120x40": (68, 16), "80x24": (50, 14)}
 PORTRAITS = {"120x40": (118, 28), "80x24": (78, 15)}

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from engine.methods import METHODS
-from engine.run.judgement import VERDICTS
-from engine.scenes import SCENES
-from tui.words.cards import WIDTH, glossary, method_card, scene_card
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.run.judgement import VERDICTS
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.words.cards import WIDTH, glossary, method_card, scene_card
 
 
 def words(card: str) -> str:

@@ -8,19 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
-from engine.run.stepping import Stepping
-from engine.scenes import LIMITS, SCENES
-from recordings.library import GOLDEN
-from recordings.recorder import LiveRecorder
-from recordings.recording import Recording
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import LIMITS, SCENES
+from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.cli.dispatch import command_of
+from pendu_tui.tui.cli.scene import scene_of
+from pendu_tui.tui.commands.live import lab_of
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.words.command_line import command, reproduces
 from tests.tui.command_line import own_method
-from tui.cli.dispatch import command_of
-from tui.cli.scene import scene_of
-from tui.commands.live import lab_of
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.words.command_line import command, reproduces
 
 DRIFT = SCENES["drift"]
 

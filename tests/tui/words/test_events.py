@@ -2,14 +2,14 @@
 
 import pytest
 
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.views.lab.event_list import EventList
+from pendu_tui.tui.words.events import event_lines, numbered
 from tests.tui.harness import after
-from tui.playback.source import Source
-from tui.screens.app import PenduApp
-from tui.screens.live import LiveScreen
-from tui.views.lab.event_list import EventList
-from tui.words.events import event_lines, numbered
 
 DRIFT = SCENES["drift"]
 

@@ -4,16 +4,15 @@ import math
 
 import pytest
 
-from engine.methods import RK4 as RK4_METHOD
-from engine.methods import USUAL_CAST
-from engine.run.judgement import Judgement
-from engine.run.lockstep import Lockstep
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
-from tests.tui.harness import FPS, Lab, after
-from tui.playback.live import Live
-from tui.words.events import event_lines
-from tui.words.insight import (
+from pendu_tui.engine.methods import RK4 as RK4_METHOD
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.judgement import Judgement
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.words.events import event_lines
+from pendu_tui.tui.words.insight import (
     FRESH,
     TURN,
     Insight,
@@ -27,6 +26,7 @@ from tui.words.insight import (
     milestone_insight,
     sentence,
 )
+from tests.tui.harness import FPS, Lab, after
 
 DRIFT = SCENES["drift"]
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.scenes import Scene
-from tui.words.numbers import (
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.words.numbers import (
     angle,
     decimal,
     energy_share,

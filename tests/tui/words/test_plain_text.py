@@ -4,17 +4,17 @@ import re
 
 import pytest
 
-from engine.methods import RK4, VELOCITY_VERLET, Cast
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
-from recordings.library import GOLDEN
-from recordings.recording import Recording
+from pendu_tui.engine.methods import RK4, VELOCITY_VERLET, Cast
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.playback.ghost import Ghost
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.words.plain_text import description, method_sentence, print_run
 from tests.tui.harness import after, lab
-from tui.playback.ghost import Ghost
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.playback.source import Source
-from tui.words.plain_text import description, method_sentence, print_run
 
 DRIFT = SCENES["drift"]
 

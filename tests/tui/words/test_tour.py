@@ -7,21 +7,21 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine.accuracy.recommend import reach
-from engine.accuracy.study import Study, usual
-from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET
-from engine.phase_space.area import Neighbourhood
-from engine.run.lockstep import Lockstep, Reading
-from engine.run.stepping import Stepping
-from engine.run.tangent import jacobian
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.accuracy.recommend import reach
+from pendu_tui.engine.accuracy.study import Study, usual
+from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET
+from pendu_tui.engine.phase_space.area import Neighbourhood
+from pendu_tui.engine.run.lockstep import Lockstep, Reading
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.tangent import jacobian
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.views import VIEWS
+from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.words.plain_text import READING, THINKING, print_tour
+from pendu_tui.tui.words.tour import ASTRAY, STEPS, Tour, TourStep
 from tests.tui.harness import FPS, Clocked
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.views import VIEWS
-from tui.views.phase.viewport import Viewport
-from tui.words.plain_text import READING, THINKING, print_tour
-from tui.words.tour import ASTRAY, STEPS, Tour, TourStep
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
 DRIFT = SCENES["drift"]

@@ -8,10 +8,10 @@ from itertools import pairwise
 from operator import methodcaller
 from typing import Any
 
-from engine.accuracy.front import Cheapest, front
-from engine.accuracy.recommend import Advice, Attempt, least_cost, least_error
-from engine.accuracy.references import References, references
-from engine.accuracy.study import (
+from pendu_tui.engine.accuracy.front import Cheapest, front
+from pendu_tui.engine.accuracy.recommend import Advice, Attempt, least_cost, least_error
+from pendu_tui.engine.accuracy.references import References, references
+from pendu_tui.engine.accuracy.study import (
     ALL_LADDER,
     REASONS,
     Z_LADDER,
@@ -27,12 +27,12 @@ from engine.accuracy.study import (
     usual,
     with_all_methods,
 )
-from engine.methods.own import OwnMethod
-from engine.run import compiled, loops
-from engine.run.loops import LoopsOf
-from engine.scenes import Scene, check_h
-from tui.cli.errors import UserError
-from tui.cli.report import (
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.run import compiled, loops
+from pendu_tui.engine.run.loops import LoopsOf
+from pendu_tui.engine.scenes import Scene, check_h
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.report import (
     Column,
     Report,
     Table,
@@ -42,11 +42,11 @@ from tui.cli.report import (
     progress,
     scene_line,
 )
-from tui.cli.workers import workers_of
-from tui.commands.studies.figures import lines_of
-from tui.drawing.palette import PALETTES
-from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from tui.words.accuracy import factor_words, few, front_words, length
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.studies.figures import lines_of
+from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
+from pendu_tui.tui.words.accuracy import factor_words, few, front_words, length
 
 MAX_STEPS = 10**10  # at the smallest h: half an hour, compiled
 CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows

@@ -8,22 +8,22 @@ from importlib.util import find_spec
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
-from engine.methods import Cast
-from engine.scenes import Scene
-from tui.cli.errors import UserError
-from tui.cli.files import check_free, whole_file
-from tui.cli.install import install_advice
-from tui.drawing.palette import PALETTES, Palette, inks
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.files import check_free, whole_file
+from pendu_tui.tui.cli.install import install_advice
+from pendu_tui.tui.drawing.palette import PALETTES, Palette, inks
 
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from engine.accuracy.study import Point
-    from engine.phase_space.section import Points
-    from engine.run.lockstep import Sample
-    from engine.stability.grid import Grid
-    from engine.stability.outcomes import Cells
-    from tui.drawing.picture import Picture
+    from pendu_tui.engine.accuracy.study import Point
+    from pendu_tui.engine.phase_space.section import Points
+    from pendu_tui.engine.run.lockstep import Sample
+    from pendu_tui.engine.stability.grid import Grid
+    from pendu_tui.engine.stability.outcomes import Cells
+    from pendu_tui.tui.drawing.picture import Picture
 
 SUFFIXES = (".svg", ".pdf", ".png")
 CM = 1 / 2.54  # inches
@@ -126,7 +126,7 @@ def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> N
 
 
 def draw_accuracy(options: Namespace, cast: Cast, points: Sequence["Point"]) -> None:
-    from engine.accuracy.front import cost_of
+    from pendu_tui.engine.accuracy.front import cost_of
 
     errors = {
         "theta": "largest error of θ / rad",
@@ -152,7 +152,7 @@ def draw_map(options: Namespace, grid: "Grid", cells: "Cells") -> None:
     """Draw where each method holds a swing, by z and amplitude, with its largest energy error."""
     import numpy as np
 
-    from engine.stability.outcomes import is_lost
+    from pendu_tui.engine.stability.outcomes import is_lost
 
     rows = math.ceil(len(grid.methods) / 2)
     extent = (0, grid.z[-1] + grid.z[0], 0, np.degrees(grid.theta[-1] + grid.theta[0]))

@@ -18,23 +18,23 @@ from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
-from engine.methods import Method
-from engine.methods.own import OwnMethodError
-from engine.run import compiled, loops
-from engine.run.judgement import Judgement, Progress
-from engine.run.lockstep import Lockstep, Reading, Sample
-from engine.scenes import Scene
-from recordings.errors import printable, writing
-from recordings.fields import NUMBERS, OPTIONAL
-from recordings.files import is_stream
-from recordings.files import publish as give_name
-from recordings.headless import SAMPLE_EVERY, simulate, steps_for
-from recordings.library import hold, in_use
-from recordings.recorder import Recorder
-from tui.cli.checks import Check, Gate, conclude
-from tui.cli.errors import Exit, UserError, explained
-from tui.cli.files import check_free, stop_requests
-from tui.cli.report import (
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run import compiled, loops
+from pendu_tui.engine.run.judgement import Judgement, Progress
+from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.errors import printable, writing
+from pendu_tui.recordings.fields import NUMBERS, OPTIONAL
+from pendu_tui.recordings.files import is_stream
+from pendu_tui.recordings.files import publish as give_name
+from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
+from pendu_tui.recordings.library import hold, in_use
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.tui.cli.checks import Check, Gate, conclude
+from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.files import check_free, stop_requests
+from pendu_tui.tui.cli.report import (
     Column,
     Report,
     fields_of,
@@ -45,12 +45,12 @@ from tui.cli.report import (
     warn,
     write_records,
 )
-from tui.cli.scene import SceneList
-from tui.cli.time_limit import limited_steps
-from tui.cli.workers import workers_of
-from tui.commands.studies import figures
-from tui.words.insight import irregular, milestone_insight, sentence
-from tui.words.numbers import counted, file_size, z_text
+from pendu_tui.tui.cli.scene import SceneList
+from pendu_tui.tui.cli.time_limit import limited_steps
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.studies import figures
+from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
+from pendu_tui.tui.words.numbers import counted, file_size, z_text
 
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # samples for a figure

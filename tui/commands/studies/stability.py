@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from rich.text import Text
 
-from engine.methods import Method
-from engine.methods.measure import linear_limit
-from engine.methods.own import OwnMethod
-from engine.methods.verlet import VELOCITY_VERLET
-from engine.models.model import State
-from engine.phase_space.section import (
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.measure import linear_limit
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.phase_space.section import (
     OrbitKind,
     Points,
     batches,
@@ -24,15 +24,15 @@ from engine.phase_space.section import (
     least_lyapunov,
     orbit,
 )
-from engine.scenes import Z_LIMITS, Scene
-from engine.stability import BAND, LOST
-from engine.stability.grid import Grid
-from engine.stability.linear import amplification
-from engine.stability.outcomes import FATES, UNKNOWN, Cells
-from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
-from tui.cli.errors import UserError, explained
-from tui.cli.files import whole_file
-from tui.cli.report import (
+from pendu_tui.engine.scenes import Z_LIMITS, Scene
+from pendu_tui.engine.stability import BAND, LOST
+from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.engine.stability.linear import amplification
+from pendu_tui.engine.stability.outcomes import FATES, UNKNOWN, Cells
+from pendu_tui.engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
+from pendu_tui.tui.cli.errors import UserError, explained
+from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.report import (
     Column,
     Report,
     Table,
@@ -43,15 +43,15 @@ from tui.cli.report import (
     publish,
     scene_line,
 )
-from tui.cli.workers import workers_of
-from tui.commands.studies.figures import draw_section, lines_of
-from tui.drawing.palette import PALETTES, ink_of
-from tui.terminal.options import fitting_theme
-from tui.views.phase.picture import Section, starts
-from tui.views.phase.viewport import Viewport
-from tui.views.stability.picture import picture
-from tui.words.orbit import HEADS, fraction, sentence
-from tui.words.orbit import cells as orbit_cells
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.studies.figures import draw_section, lines_of
+from pendu_tui.tui.drawing.palette import PALETTES, ink_of
+from pendu_tui.tui.terminal.options import fitting_theme
+from pendu_tui.tui.views.phase.picture import Section, starts
+from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.stability.picture import picture
+from pendu_tui.tui.words.orbit import HEADS, fraction, sentence
+from pendu_tui.tui.words.orbit import cells as orbit_cells
 
 MAX_POINTS = 10**8  # of a section: 1.6 GB in memory
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory

@@ -8,11 +8,11 @@ from typing import Any
 
 from textual.drivers.web_driver import WebDriver
 
-from recordings import library
-from tui.playback.live import Live
-from tui.screens.app import PenduApp
-from tui.screens.launch import live_screen
-from tui.terminal.options import LARGEST
+from pendu_tui.recordings import library
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.launch import live_screen
+from pendu_tui.tui.terminal.options import LARGEST
 
 
 class BoundedDriver(WebDriver):

@@ -17,7 +17,7 @@ from aiohttp import web
 from textual_serve.server import Server
 from yarl import URL
 
-from tui.cli.files import ENDING
+from pendu_tui.tui.cli.files import ENDING
 
 CONNECTIONS_PER_LAB = 10  # browsers open six
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
@@ -27,7 +27,7 @@ class LabServer(Server):  # type: ignore[misc]
     """Serves a limited number of labs, to its own pages only."""
 
     def __init__(self, settings_file: str, max_labs: int, host: str) -> None:
-        served = [sys.executable, "-P", "-m", "tui.commands.web.served", settings_file]
+        served = [sys.executable, "-P", "-m", "pendu_tui.tui.commands.web.served", settings_file]
         super().__init__(f"exec {shlex.join(served)}", host, title="pendu-tui")
         self._max_labs = max_labs
         self._labs = 0

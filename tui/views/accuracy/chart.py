@@ -3,15 +3,15 @@
 import math
 from collections.abc import Sequence
 
-from engine.accuracy.front import Cost, cost_of
-from engine.accuracy.growth import Growth
-from engine.accuracy.references import TAYLOR_20, References
-from engine.accuracy.study import ErrorKind, Flaw, Point
-from engine.methods import Cast
-from tui.drawing.chart import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
-from tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
-from tui.drawing.picture import Picture
-from tui.words.accuracy import COSTS
+from pendu_tui.engine.accuracy.front import Cost, cost_of
+from pendu_tui.engine.accuracy.growth import Growth
+from pendu_tui.engine.accuracy.references import TAYLOR_20, References
+from pendu_tui.engine.accuracy.study import ErrorKind, Flaw, Point
+from pendu_tui.engine.methods import Cast
+from pendu_tui.tui.drawing.chart import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
+from pendu_tui.tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.words.accuracy import COSTS
 
 Placed = list[tuple[int, int, Point]]
 """Column and row in the chart, and the point drawn there."""

@@ -6,14 +6,14 @@ from typing import ClassVar, Literal
 from textual import events
 from textual.binding import Binding, BindingType
 
-from engine.accuracy.front import front
-from engine.accuracy.growth import Growth, growths
-from engine.accuracy.study import Point, measured, usual, with_all_methods
-from engine.methods import Cast, Method
-from engine.run.lockstep import Sample
-from tui.drawing.picture import Picture
-from tui.playback.source import Source
-from tui.views.accuracy.chart import (
+from pendu_tui.engine.accuracy.front import front
+from pendu_tui.engine.accuracy.growth import Growth, growths
+from pendu_tui.engine.accuracy.study import Point, measured, usual, with_all_methods
+from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.accuracy.chart import (
     Placed,
     accuracy_chart,
     accuracy_series,
@@ -21,8 +21,8 @@ from tui.views.accuracy.chart import (
     nearest,
     placed,
 )
-from tui.views.view import Chooser, StepSizeChosen, StudyView
-from tui.words.accuracy import front_words, growth_lines, point_words
+from pendu_tui.tui.views.view import Chooser, StepSizeChosen, StudyView
+from pendu_tui.tui.words.accuracy import front_words, growth_lines, point_words
 
 Chart = Literal["energy", "theta", "time"]
 """Error over cost, or the theta error over time."""

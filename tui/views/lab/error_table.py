@@ -6,17 +6,17 @@ from typing import NamedTuple
 
 from textual import events
 
-from engine.methods import Method
-from engine.models.model import ExtraColumn, Model
-from engine.run.judgement import Judgement
-from engine.run.lockstep import Reading, Sample
-from engine.run.stepping import change_before
-from tui.drawing.palette import GOOD, QUIET, SIGNS, TEXT, WARN, inks, mark
-from tui.drawing.picture import Picture, Row
-from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.views.view import Pane
-from tui.words.numbers import angle, decimal, scientific
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import ExtraColumn, Model
+from pendu_tui.engine.run.judgement import Judgement
+from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.engine.run.stepping import change_before
+from pendu_tui.tui.drawing.palette import GOOD, QUIET, SIGNS, TEXT, WARN, inks, mark
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.words.numbers import angle, decimal, scientific
 
 
 class TableLine(NamedTuple):
@@ -167,7 +167,7 @@ class ErrorTable(Pane):
         return Picture(rows)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        from tui.words.cards import head_text  # not needed for the first paint
+        from pendu_tui.tui.words.cards import head_text  # not needed for the first paint
 
         ends = accumulate(map(len, self._head))
         head = next((text for text, end in zip(self._head, ends, strict=True) if event.x < end), "")

@@ -2,13 +2,13 @@
 
 from textual import events
 
-from engine.run.lockstep import Sample
-from tui.drawing.palette import QUIET, TEXT, ink_of
-from tui.drawing.picture import Picture
-from tui.playback.source import Source
-from tui.views.view import Pane
-from tui.words.events import EventLine, event_lines, numbered
-from tui.words.insight import short_name
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.tui.drawing.palette import QUIET, TEXT, ink_of
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.words.events import EventLine, event_lines, numbered
+from pendu_tui.tui.words.insight import short_name
 
 
 class EventList(Pane):

@@ -8,13 +8,13 @@ from typing import NamedTuple
 from textual import events
 from textual.geometry import Offset
 
-from engine.run.lockstep import Sample
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, faint, inks
-from tui.drawing.picture import Picture
-from tui.playback.source import Source
-from tui.views.reach import reach
-from tui.views.view import Held, Pane
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import EXACT, FRAME, faint, inks
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.reach import reach
+from pendu_tui.tui.views.view import Held, Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
 MAGNIFIED = 0.8  # rad, to which small swings are enlarged

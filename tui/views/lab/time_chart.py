@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 from textual import events
 
-from engine.methods import Cast
-from engine.models.model import ExactMotion, Model
-from engine.run.lockstep import Sample
-from tui.drawing.picture import Picture
-from tui.playback.shown import Quantity, Shown, Stretch
-from tui.playback.source import Source
-from tui.views.view import Pane, Zoomed
-from tui.words.numbers import about, seconds
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.models.model import ExactMotion, Model
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.shown import Quantity, Shown, Stretch
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.view import Pane, Zoomed
+from pendu_tui.tui.words.numbers import about, seconds
 
 if TYPE_CHECKING:
-    from tui.drawing.time_chart import Reading, TimePlot
+    from pendu_tui.tui.drawing.time_chart import Reading, TimePlot
 
 NAMES: dict[Quantity, tuple[str, str]] = {
     "energy_error": ("energy error dE/E0", "|dE/E0|"),
@@ -94,7 +94,7 @@ class TimeChart(Pane):
         return self.plot.picture
 
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
-        from tui.drawing.time_chart import time_chart
+        from pendu_tui.tui.drawing.time_chart import time_chart
 
         until = sample.t
         back = look.seconds

@@ -8,16 +8,16 @@ from textual.geometry import NULL_OFFSET, NULL_SPACING, Region, Size
 from textual.layout import ArrangeResult, Layout, WidgetPlacement
 from textual.widget import Widget
 
-from engine.run.lockstep import Sample
-from engine.scenes import MAX_METHODS
-from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.event_list import EventList
-from tui.views.lab.pendulums import Pendulum
-from tui.views.lab.time_chart import TimeChart
-from tui.views.phase.pane import PhasePane
-from tui.views.view import Box, Pane, View
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.lab.event_list import EventList
+from pendu_tui.tui.views.lab.pendulums import Pendulum
+from pendu_tui.tui.views.lab.time_chart import TimeChart
+from pendu_tui.tui.views.phase.pane import PhasePane
+from pendu_tui.tui.views.view import Box, Pane, View
 
 CHART = 52  # columns at least, so that its title fits
 NARROW = 28 + CHART  # columns below which there is no chart

@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import events
 from textual.binding import Binding, BindingType
 
-from engine.methods.own import OwnMethodError
-from engine.models.model import State
-from engine.run.lockstep import Sample
-from engine.scenes import Scene
-from tui.cli.time_limit import limited
-from tui.drawing.picture import Picture
-from tui.playback.live import has_own
-from tui.playback.source import Source
-from tui.views.phase.viewport import Viewport
-from tui.views.reach import amplitude, reach
-from tui.views.view import Chooser
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.live import has_own
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.reach import amplitude, reach
+from pendu_tui.tui.views.view import Chooser
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
-    from engine.phase_space.area import Neighbourhood, Neighbours
+    from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
 
 DOTS = 4  # an arrow key moves the crosshair so far
 
@@ -75,8 +75,8 @@ class PhasePane(Chooser[State]):
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        from tui.views.phase.picture import caption, method_points, phase_picture
-        from tui.views.phase.portrait import Portrait
+        from pendu_tui.tui.views.phase.picture import caption, method_points, phase_picture
+        from pendu_tui.tui.views.phase.portrait import Portrait
 
         below = "wheel: zoom"
         if self.is_live:
@@ -93,7 +93,7 @@ class PhasePane(Chooser[State]):
         if not self.shown.ring or scene.why_no_ring or scene is self._ringless:
             self.neighbours = self.ring = None
             return
-        from engine.phase_space.area import Neighbours
+        from pendu_tui.engine.phase_space.area import Neighbours
 
         # large enough to see, small enough to stay a ring for a while
         radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)

@@ -7,22 +7,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import Method
-from engine.models.model import Model, State
-from engine.phase_space.area import Neighbourhood, Neighbours
-from engine.phase_space.section import Points, spread
-from engine.run.lockstep import Sample
-from engine.run.stepping import change_before
-from engine.scenes import Line
-from tui.drawing.axes import in_pi
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks, mark
-from tui.drawing.picture import Picture, Row
-from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.views.phase.portrait import Portrait, axes, write_words
-from tui.views.phase.viewport import Viewport
-from tui.words.numbers import energy_share, motion_text, regime, scientific
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Model, State
+from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
+from pendu_tui.engine.phase_space.section import Points, spread
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import change_before
+from pendu_tui.engine.scenes import Line
+from pendu_tui.tui.drawing.axes import in_pi
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks, mark
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.phase.portrait import Portrait, axes, write_words
+from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.words.numbers import energy_share, motion_text, regime, scientific
 
 SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
 BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.models.model import Model
-from tui.drawing.axes import nice, number_ticks, theta_ticks
-from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
-from tui.views.phase.viewport import Viewport
+from pendu_tui.engine.models.model import Model
+from pendu_tui.tui.drawing.axes import nice, number_ticks, theta_ticks
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
+from pendu_tui.tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Mask = NDArray[np.bool_]  # (dots down, dots right), or (rows, columns)

@@ -7,18 +7,18 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.reactive import var
 
-from engine.methods import Method
-from engine.models.model import Model, State
-from engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces
-from engine.run.lockstep import Sample
-from tui.drawing.palette import TEXT, inks
-from tui.drawing.picture import Picture
-from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.views.phase.pane import PhasePane
-from tui.views.phase.picture import Section, fact_rows, starts
-from tui.views.view import Pane, StudyView
-from tui.words.orbit import sentence
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models.model import Model, State
+from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.tui.drawing.palette import TEXT, inks
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.phase.pane import PhasePane
+from pendu_tui.tui.views.phase.picture import Section, fact_rows, starts
+from pendu_tui.tui.views.view import Pane, StudyView
+from pendu_tui.tui.words.orbit import sentence
 
 STARTS = 300  # orbits of a section
 ORBIT_STEPS = 2000  # they take a few ms

@@ -6,8 +6,8 @@ Its middle is the centre of its middle cell, so that theta = 0 and omega = 0 can
 import math
 from typing import Any, NamedTuple
 
-from engine.models.model import State
-from engine.scenes import Scene
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.scenes import Scene
 
 MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad from the left to the right edge
 

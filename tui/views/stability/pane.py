@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 from textual import events
 
-from engine.methods import Cast
-from engine.run.lockstep import Sample
-from engine.stability.grid import Grid, Piece, pieces
-from engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, is_lost
-from engine.stability.study import amplitude
-from tui.drawing.palette import TEXT, Palette, palette
-from tui.drawing.picture import Picture, Row
-from tui.playback.source import Source
-from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side
-from tui.views.view import Chooser, StudyView
+from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.stability.grid import Grid, Piece, pieces
+from pendu_tui.engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, is_lost
+from pendu_tui.engine.stability.study import amplitude
+from pendu_tui.tui.drawing.palette import TEXT, Palette, palette
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side
+from pendu_tui.tui.views.view import Chooser, StudyView
 
 PASSES = (300, 10_000)
 """Steps of each swing: first a quick map, then the final one."""

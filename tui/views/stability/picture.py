@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.style import Style
 
-from engine.methods import Method
-from engine.methods.euler import SYMPLECTIC_EULER
-from engine.methods.verlet import VELOCITY_VERLET
-from engine.stability.chaos import GREENE_Z
-from engine.stability.grid import Grid
-from engine.stability.outcomes import HELD, UNKNOWN, Cells
-from tui.drawing.axes import number_ticks
-from tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
-from tui.drawing.picture import Ink, Picture, Row
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.euler import SYMPLECTIC_EULER
+from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
+from pendu_tui.engine.stability.chaos import GREENE_Z
+from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.engine.stability.outcomes import HELD, UNKNOWN, Cells
+from pendu_tui.tui.drawing.axes import number_ticks
+from pendu_tui.tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
+from pendu_tui.tui.drawing.picture import Ink, Picture, Row
 
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}

@@ -5,17 +5,17 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from engine.accuracy.front import front
-from engine.accuracy.study import Study, ladder
-from engine.methods import GENERAL, USUAL_CAST
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
+from pendu_tui.engine.accuracy.front import front
+from pendu_tui.engine.accuracy.study import Study, ladder
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.views.accuracy.chart import MARKS
+from pendu_tui.tui.views.accuracy.pane import AccuracyPane
+from pendu_tui.tui.words.accuracy import COSTS, front_words
 from tests.tui.harness import until, view_of
-from tui.playback.live import Live
-from tui.screens.live import LiveScreen
-from tui.views.accuracy.chart import MARKS
-from tui.views.accuracy.pane import AccuracyPane
-from tui.words.accuracy import COSTS, front_words
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
@@ -23,7 +23,7 @@ VERLET = 2
 
 @pytest.fixture(autouse=True)
 def _few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tui.views.accuracy.pane.usual", lambda scene, all: (5.0, RUNGS))
+    monkeypatch.setattr("pendu_tui.tui.views.accuracy.pane.usual", lambda scene, all: (5.0, RUNGS))
 
 
 def words(pane: AccuracyPane) -> str:

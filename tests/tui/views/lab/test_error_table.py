@@ -4,15 +4,15 @@ import re
 
 import pytest
 
-from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.tui.drawing.palette import GOOD, WARN
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.views.lab.error_table import COLUMNS, ErrorTable, extra_columns, table
+from pendu_tui.tui.words.cards import head_text
 from tests.tui.harness import after
 from tests.tui.harness import lab as on_screen
-from tui.drawing.palette import GOOD, WARN
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.views.lab.error_table import COLUMNS, ErrorTable, extra_columns, table
-from tui.words.cards import head_text
 
 
 def rows(live: Live, width: int, shown: Shown | None = None) -> list[str]:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.geometry import Region
 
-from tui.views.lab.view import CHART, PANE, places
+from pendu_tui.tui.views.lab.view import CHART, PANE, places
 
 
 @given(st.integers(1, 400), st.integers(1, 150), st.integers(0, 6))

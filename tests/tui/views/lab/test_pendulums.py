@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.scenes import SCENES
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import EXACT
+from pendu_tui.tui.views.lab.pendulums import TOP, Bob, Pendulum, pendulum_picture
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, size
 from tests.tui.harness import lab, player, recorded
-from tui.drawing.palette import EXACT
-from tui.views.lab.pendulums import TOP, Bob, Pendulum, pendulum_picture
 
 GOLDEN = Path(__file__).with_name("pendulums.txt")
 

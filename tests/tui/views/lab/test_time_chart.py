@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from textual.events import MouseScrollUp
 
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES
-from recordings.recorder import LiveRecorder
-from recordings.recording import Recording
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.drawing.time_chart import time_chart
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
+from pendu_tui.tui.views.lab.time_chart import TimeChart, modified_energy_of, title
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_history import run
-from tui.drawing.time_chart import time_chart
-from tui.playback.live import Live
-from tui.playback.replay import Replay
-from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
-from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
 
 WHOLE = SCENES["drift"]
 

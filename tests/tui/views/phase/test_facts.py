@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from engine.methods import USUAL_CAST, method_of
-from engine.models.model import State
-from engine.phase_space.area import Neighbours
-from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.views.phase.picture import area_text, fact_rows, place_text
+from pendu_tui.engine.methods import USUAL_CAST, method_of
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.phase_space.area import Neighbours
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.views.phase.picture import area_text, fact_rows, place_text
 
 
 def followed(live, steps=200):

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.scenes import SCENES
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.drawing.palette import EXACT, FAINT
+from pendu_tui.tui.views.phase.picture import SPARSE, PhasePoint, phase_picture
+from pendu_tui.tui.views.phase.portrait import Portrait
+from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui.drawn import cells, places
-from tui.drawing.palette import EXACT, FAINT
-from tui.views.phase.picture import SPARSE, PhasePoint, phase_picture
-from tui.views.phase.portrait import Portrait
-from tui.views.phase.viewport import Viewport
 
 DRIFT = SCENES["drift"]
 SMALL = Viewport.portrait(46, 15, DRIFT)

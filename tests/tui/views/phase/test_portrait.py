@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.scenes import SCENES, Scene
-from tui.drawing.axes import in_pi, number_ticks, theta_ticks
-from tui.views.phase.portrait import Portrait
-from tui.views.phase.viewport import Viewport
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.drawing.axes import in_pi, number_ticks, theta_ticks
+from pendu_tui.tui.views.phase.portrait import Portrait
+from pendu_tui.tui.views.phase.viewport import Viewport
 
 DRIFT = SCENES["drift"]
 MODEL = DRIFT.equations

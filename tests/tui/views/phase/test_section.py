@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import USUAL_CAST, VELOCITY_VERLET
-from engine.models.model import State
-from engine.phase_space.section import iterate, orbit, pieces
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.methods import USUAL_CAST, VELOCITY_VERLET
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.phase_space.section import iterate, orbit, pieces
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.drawing.palette import FRAME, faint
+from pendu_tui.tui.views.phase.picture import Section, starts
+from pendu_tui.tui.views.phase.view import SectionPane
+from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui import drawn
 from tests.tui.drawn import places
 from tests.tui.harness import lab, until
-from tui.drawing.palette import FRAME, faint
-from tui.views.phase.picture import Section, starts
-from tui.views.phase.view import SectionPane
-from tui.views.phase.viewport import Viewport
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
 MODEL, H, START = SCENE.equations, SCENE.h, State(SCENE.theta, SCENE.omega)
@@ -74,7 +74,7 @@ def test_it_fits_every_size_and_method(method, size):
 
 @pytest.fixture(autouse=True)
 def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tui.views.phase.view.STARTS", 40)
+    monkeypatch.setattr("pendu_tui.tui.views.phase.view.STARTS", 40)
 
 
 async def section_of(theatre, *keys: str) -> SectionPane:

@@ -7,12 +7,12 @@ from contextlib import asynccontextmanager
 import pytest
 from textual import events
 
-from engine.phase_space.area import Neighbours
-from engine.scenes import SCENES, Scene
+from pendu_tui.engine.phase_space.area import Neighbours
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.screens.still import still
+from pendu_tui.tui.views.phase.pane import DOTS, PhasePane
+from pendu_tui.tui.views.phase.viewport import MIN_SPAN
 from tests.tui.harness import lab, until
-from tui.screens.still import still
-from tui.views.phase.pane import DOTS, PhasePane
-from tui.views.phase.viewport import MIN_SPAN
 
 DRIFT = SCENES["drift"]
 

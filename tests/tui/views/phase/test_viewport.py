@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from engine.scenes import SCENES, Scene
-from tui.views.phase.viewport import MIN_SPAN, Viewport, roundest
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.views.phase.viewport import MIN_SPAN, Viewport, roundest
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import USUAL_CAST
-from engine.stability import outcomes as fates
-from engine.stability.grid import Grid
-from tui.screens.lines import limit_warning
-from tui.views.stability.pane import note, verdict
+from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.stability import outcomes as fates
+from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.tui.screens.lines import limit_warning
+from pendu_tui.tui.views.stability.pane import note, verdict
 
 VERLET, RK4 = USUAL_CAST[2:]
 GRID = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]), 300, (RK4,))

@@ -6,19 +6,19 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 
-from engine.scenes import SCENES, Scene
-from engine.stability.outcomes import UNKNOWN
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.stability.outcomes import UNKNOWN
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.views.stability.pane import StabilityPane
 from tests.tui.harness import until, view_of
-from tui.playback.live import Live
-from tui.screens.live import LiveScreen
-from tui.views.stability.pane import StabilityPane
 
 VERLET = 2  # in USUAL_CAST
 
 
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tui.views.stability.pane.PASSES", (20, 60))
+    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", (20, 60))
 
 
 @asynccontextmanager
