@@ -1,20 +1,24 @@
 """Canvas: points, lines and words as characters.
 
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
-the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a
-cell, which takes the ink drawn last.  Points outside or not finite are not drawn.
-Pendulums have few dots: drawing them without NumPy is faster, and does not import it.
+the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Points outside or not finite are not
+drawn.  Pendulums have few dots: drawing them without NumPy is faster, and does not import it.
+
+A cell of a terminal has one colour, so it shows the dots of one ink only, and each dot in the ink
+it was set in.  Methods come before their faint inks, and these before all others, whatever the
+order of drawing.  Equals of the upper two ranks take turns: first those that have no other cell in
+the column, so that none vanishes.  Of the others the one drawn first lies below.
 """
 
 import codecs
 import copy
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
-from pendu_tui.tui.drawing.palette import NOBODY
+from pendu_tui.tui.drawing.palette import FAINT, NOBODY
 from pendu_tui.tui.drawing.picture import Picture, Row
 
 if TYPE_CHECKING:
@@ -26,6 +30,8 @@ if TYPE_CHECKING:
 _BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
 """The bits of Unicode's braille for a cell's dots, row by row."""
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
+_FLAT = {0x09: 0x01, 0x12: 0x02, 0x24: 0x04, 0xC0: 0x40}
+"""Both dots of a row of dots, and the left one of them."""
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
 """Cells of one ink and the blanks behind them, which look the same in any ink."""
 
@@ -38,33 +44,32 @@ class Canvas:
         self.rows = rows
         self.width = 2 * columns  # dots
         self.height = 4 * rows
-        self._bits = bytearray(columns * rows)  # the dots of each cell
-        self._inks = bytearray(columns * rows)  # above NOBODY
+        self._layers: dict[int, bytearray] = {}  # the dots of each cell, by ink
         self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
 
     def copy(self) -> Self:
         copied = copy.copy(self)
-        copied._bits = self._bits[:]
-        copied._inks = self._inks[:]
+        copied._layers = {ink: layer[:] for ink, layer in self._layers.items()}
         copied._letters = self._letters.copy()
         return copied
+
+    def _layer(self, ink: int) -> bytearray:
+        if ink not in self._layers:
+            self._layers[ink] = bytearray(self.columns * self.rows)
+        return self._layers[ink]
 
     def points(self, points: Iterable[tuple[float, float]], ink: int) -> None:
         columns = self.columns
         width = self.width
         height = self.height
-        bits = self._bits
-        inks = self._inks
-        colour = ink - NOBODY
+        layer = self._layer(ink)
         for x, y in points:
             if 0 <= x < width and 0 <= y < height:
                 i = int(x)
                 j = int(y)
-                cell = (j >> 2) * columns + (i >> 1)
-                bits[cell] |= _BITS[(j & 3) << 1 | i & 1]
-                inks[cell] = colour
+                layer[(j >> 2) * columns + (i >> 1)] |= _BITS[(j & 3) << 1 | i & 1]
 
-    def scatter(self, x: "Numbers", y: "Numbers", ink: "int | NDArray[np.intp]") -> None:
+    def scatter(self, x: "Numbers", y: "Numbers", ink: int) -> None:
         """Set the dots of arrays x and y; for many dots faster than `points`."""
         import numpy as np
 
@@ -73,9 +78,7 @@ class Canvas:
         j = y[inside].astype(np.intp)
         cells = (j >> 2) * self.columns + (i >> 1)
         dots = np.frombuffer(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
-        np.bitwise_or.at(np.frombuffer(self._bits, np.uint8), cells, dots)
-        colours = np.broadcast_to(ink, x.shape)[inside] - NOBODY
-        np.frombuffer(self._inks, np.uint8)[cells] = colours
+        np.bitwise_or.at(np.frombuffer(self._layer(ink), np.uint8), cells, dots)
 
     def line(
         self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False
@@ -158,30 +161,98 @@ class Canvas:
         for column, row in places:
             first = row * self.columns + column
             is_free = all(self.is_free(column + at, row) for at in range(len(text)))
-            if is_free and not any(self._bits[first : first + len(text)]):
+            end = first + len(text)
+            if is_free and not any(any(layer[first:end]) for layer in self._layers.values()):
                 self.label(column, row, text, ink)
                 return True
         return False
 
-    def ink_at(self, column: int, row: int) -> int:
-        """Return the ink of a cell, NOBODY where it is blank."""
+    def inks_at(self, column: int, row: int) -> set[int]:
+        """Return the inks that have dots in a cell, shown or not."""
         cell = row * self.columns + column
-        letter = self._letters.get(cell)
-        return self._inks[cell] + NOBODY if letter is None else letter[1]
+        return {ink for ink, layer in self._layers.items() if layer[cell]}
 
     def picture(self) -> Picture:
-        text, _ = codecs.charmap_decode(self._bits, "strict", _BRAILLE)
-        lettered = self._inks[:]
+        dots, inks = self._shown()
+        text, _ = codecs.charmap_decode(dots, "strict", _BRAILLE)
         pieces: list[str] = []
         end = 0
         for cell, (letter, ink) in sorted(self._letters.items()):
             pieces += text[end:cell], letter
             end = cell + 1
-            lettered[cell] = 0 if letter == " " else ink - NOBODY
+            inks[cell] = 0 if letter == " " else ink - NOBODY
         text = "".join([*pieces, text[end:]])
-        inks = bytes(lettered)
+        colours = bytes(inks)
         rows = [slice(self.columns * row, self.columns * (row + 1)) for row in range(self.rows)]
-        return Picture(tuple([_row(text[row], inks[row]) for row in rows]))
+        return Picture(tuple([_row(text[row], colours[row]) for row in rows]))
+
+    def _shown(self) -> tuple[bytearray, bytearray]:
+        """Return the dots that are shown and their ink above NOBODY, by cell."""
+        inks = sorted(ink for ink in self._layers if ink >= 0)
+        ranks = [[ink for ink in inks if ink < FAINT], [ink for ink in inks if ink >= FAINT]]
+        ranks += [[ink] for ink in reversed(self._layers) if ink < 0]
+        dots = 0
+        colours = 0
+        taken = 0
+        disputed: list[tuple[list[int], int]] = []
+        for rank in ranks:
+            seen = 0
+            shared = 0
+            layers = [(ink, _number(self._layers[ink].translate(_FULL))) for ink in rank]
+            for _, cells in layers:
+                shared |= seen & cells
+                seen |= cells
+            for ink, cells in layers:
+                alone = cells & ~(shared | taken)
+                dots |= alone & _number(self._layers[ink])
+                colours |= alone & _number(self._layers[ink].translate(_painted(ink)))
+            if shared := shared & ~taken:
+                disputed.append((rank, shared))
+            taken |= seen
+        size = self.columns * self.rows
+        all_dots = bytearray(dots.to_bytes(size, "little"))
+        all_colours = bytearray(colours.to_bytes(size, "little"))
+        for rank, shared in disputed:
+            self._take_turns(rank, shared.to_bytes(size, "little"), all_dots, all_colours)
+        return all_dots, all_colours
+
+    def _take_turns(
+        self, rank: Sequence[int], shared: bytes, dots: bytearray, colours: bytearray
+    ) -> None:
+        """Give each shared cell to one of its inks.
+
+        Flat lines at several heights of a cell become dotted: dashes that meet at their ends would
+        look like the steps of one line.
+        """
+        columns = self.columns
+        served: dict[int, set[int]] = {}  # by column: the inks that have a cell in it
+        for cell in [place for place, full in enumerate(shared) if full]:
+            row, column = divmod(cell, columns)
+            if column not in served:
+                served[column] = {colour + NOBODY for colour in colours[column::columns]}
+            inks = [ink for ink in rank if self._layers[ink][cell]]
+            first = [ink for ink in inks if ink not in served[column]] or inks
+            ink = first[(column + 3 * row // 5) % len(first)]
+            served[column].add(ink)
+            own = self._layers[ink][cell]
+            if any(self._layers[other][cell] != own for other in inks):
+                own = _FLAT.get(own, own)
+            dots[cell] = own
+            colours[cell] = ink - NOBODY
+
+
+_FULL = bytes([0, *[255] * 255])
+
+
+@lru_cache(maxsize=256)
+def _painted(ink: int) -> bytes:
+    """Return a table that translates a layer to the ink's number above NOBODY."""
+    return bytes([0, *[ink - NOBODY] * 255])
+
+
+def _number(layer: bytes | bytearray) -> int:
+    """Return a layer as one number, whose bits are combined much faster than bytes."""
+    return int.from_bytes(layer, "little")
 
 
 @lru_cache(maxsize=512)  # most rows are the same in the next frame

@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import NOBODY, TEXT
+from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, TEXT, faint
 from pendu_tui.tui.drawing.picture import Picture
+from tests.tui.drawn import cells
 
 DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit
 COLUMNS, ROWS = 10, 6
@@ -16,16 +17,18 @@ NEAR = st.integers(-240, 400).map(lambda eighths: eighths / 8)  # moving them by
 ENDS = st.tuples(NEAR, NEAR, NEAR, NEAR)
 
 
-def dots(picture):
-    """The dots of a picture, read back from its characters as Unicode defines them."""
+def dots_of(character, row, column):
+    """The dots of a cell, read back from its character as Unicode defines them."""
     return {
         (2 * column + right, 4 * row + down)
-        for row, line in enumerate(picture.text.split("\n"))
-        for column, character in enumerate(line)
-        if character != " "
         for bit, (right, down) in enumerate(DOTS)
         if (ord(character) - 0x2800) >> bit & 1
     }
+
+
+def dots(picture):
+    found = cells(picture).items()
+    return set().union(*(dots_of(character, *cell) for cell, (character, _) in found))
 
 
 def drawn(draw, columns=COLUMNS, rows=ROWS):
@@ -42,12 +45,91 @@ def test_points_outside_or_not_finite_are_the_only_ones_not_drawn(points):
     assert dots(drawn(lambda canvas: canvas.scatter(x, y, 0))) == inside
 
 
-def test_dots_of_several_inks_share_a_cell_which_has_the_last_one():
+METHODS = st.integers(0, 3)
+INKS = st.one_of(METHODS, METHODS.map(faint), st.sampled_from([EXACT, FRAME, TEXT]))
+SEVERAL = st.dictionaries(INKS, st.sets(st.tuples(st.integers(0, 19), st.integers(0, 23))))
+
+
+@given(SEVERAL)
+def test_every_dot_is_shown_in_its_own_ink_and_an_ink_alone_in_a_cell_is_whole(points):
+    canvas = Canvas(COLUMNS, ROWS)
+    for ink, some in points.items():
+        canvas.points(some, ink)
+    shown = cells(canvas.picture())
+    for cell in {(j // 4, i // 2) for some in points.values() for i, j in some}:
+        present = {
+            ink: own
+            for ink, some in points.items()
+            if (own := {(i, j) for i, j in some if (j // 4, i // 2) == cell})
+        }
+        character, ink = shown[cell]
+        assert dots_of(character, *cell) <= present[ink]
+        assert rank(ink) == max(map(rank, present))
+        if len([each for each in present if rank(each) == rank(ink)]) == 1 or ink < 0:
+            assert dots_of(character, *cell) == present[ink]
+
+
+def rank(ink):
+    """Methods, then their faint inks, then all others."""
+    return 0 if ink < 0 else 1 if ink >= FAINT else 2
+
+
+@given(SEVERAL, st.randoms())
+def test_the_order_of_drawing_changes_no_cell_of_methods(points, random):
+    pictures = []
+    for _ in range(2):
+        canvas = Canvas(COLUMNS, ROWS)
+        order = list(points)
+        random.shuffle(order)
+        for ink in order:
+            canvas.points(points[ink], ink)
+        drawn = cells(canvas.picture())
+        pictures.append({place: cell for place, cell in drawn.items() if cell[1] >= 0})
+    assert pictures[0] == pictures[1]
+
+
+HEIGHTS = st.lists(st.integers(0, 4 * ROWS - 1), min_size=2 * COLUMNS, max_size=2 * COLUMNS)
+
+
+@given(HEIGHTS, HEIGHTS)
+def test_two_lines_keep_half_of_their_columns_however_they_run(one, other):
+    canvas = Canvas(COLUMNS, ROWS)
+    for ink, heights in enumerate((one, other)):
+        canvas.points(enumerate(heights), ink)
+    columns = [column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 0]
+    others = [column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 1]
+    assert len(set(columns)) >= COLUMNS / 2
+    assert len(set(others)) >= COLUMNS / 2
+
+
+def test_a_line_is_whole_where_it_crosses_a_broad_band():
+    canvas = Canvas(COLUMNS, ROWS)
+    canvas.points([(i, j) for i in range(2 * COLUMNS) for j in range(4 * ROWS)], 0)
+    canvas.line(0, 2, 2 * COLUMNS, 22, 1)
+    columns = {column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 1}
+    assert columns == {*range(COLUMNS)}
+
+
+@pytest.mark.parametrize(
+    ("heights", "text"),
+    [((1, 1), "⠒⠒⠒⠒⠒⠒"), ((0, 3), "⠁⡀⠁⡀⠁⡀"), ((0, 1, 3), "⠁⠂⡀⠁⠂⡀")],
+)
+def test_flat_lines_in_a_row_of_cells_keep_their_heights_and_never_meet(heights, text):
+    canvas = Canvas(6, 1)
+    for ink, height in enumerate(heights):
+        canvas.line(0, height + 0.5, 12, height + 0.5, ink)
+    picture = canvas.picture()
+    assert picture.text == text
+    assert [ink for _, ink in picture.rows[0]] == [place % len(heights) for place in range(6)]
+
+
+def test_of_other_inks_the_one_drawn_first_lies_below():
     canvas = Canvas(2, 1)
-    canvas.points([(0, 0), (2, 0)], 0)
-    canvas.scatter(np.array([1]), np.array([3]), 1)
-    assert canvas.picture().rows == ((("⢁", 1), ("⠁", 0)),)
-    assert [canvas.ink_at(column, 0) for column in (0, 1)] == [1, 0]
+    canvas.points([(0, 0), (2, 0)], FRAME)
+    canvas.points([(1, 3)], TEXT)
+    canvas.points([(0, 1)], FRAME)
+    assert canvas.picture().rows == ((("⢀", TEXT), ("⠁", FRAME)),)
+    assert canvas.inks_at(0, 0) == {FRAME, TEXT}
 
 
 def test_a_row_has_as_few_spans_as_possible():
@@ -126,7 +208,6 @@ def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
     canvas.line(0, 0, 12, 0, 0)
     assert canvas.picture().rows == ((("⠉⠉⠉", 0), ("lab", 1)),)
     assert [canvas.is_free(column, 0) for column in (2, 3, 6)] == [True, False, False]
-    assert canvas.ink_at(3, 0) == 1
 
 
 def test_what_is_drawn_on_a_copy_is_not_on_the_original():

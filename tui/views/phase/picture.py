@@ -79,12 +79,10 @@ def phase_picture(
     """Draw trails, rings and points, and a crosshair, an orbit or a line if given."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
-    trails = [(point.trail, faint(point.ink)) for point in points if point.trail is not None]
-    if trails:
-        theta, omega = np.hstack([trail for trail, _ in trails])
-        ink = np.repeat([ink for _, ink in trails], [len(trail[0]) for trail, _ in trails])
-        thick = BLOCK if len(theta) <= SPARSE * len(trails) else BLOCK[:1]
-        _scatter(canvas, viewport, (theta, omega), ink, thick)
+    for point in points:
+        if point.trail is not None:
+            thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
+            _scatter(canvas, viewport, point.trail, faint(point.ink), thick)
     if line is not None and line.quantity == "omega":
         for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
             y = float(viewport.y(omega))
@@ -111,7 +109,7 @@ def _scatter(
     canvas: Canvas,
     viewport: Viewport,
     points: Points,
-    ink: int | NDArray[np.intp],
+    ink: int,
     dots: Sequence[tuple[int, int]],
 ) -> None:
     x = viewport.x(points[0])

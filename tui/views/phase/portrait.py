@@ -63,11 +63,11 @@ class Portrait:
 def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
     """Write words where they cover no point, ring or orbit; trails show between them."""
     for column, row, text, ink in words:
-        below = [canvas.ink_at(at, row) for at in range(column, column + len(text))]
-        if any(EXACT <= each < FAINT for each in below):
+        below = [canvas.inks_at(at, row) for at in range(column, column + len(text))]
+        if any(EXACT <= ink < FAINT for inks in below for ink in inks):
             continue
         for at, character in enumerate(text):
-            if character != " " or below[at] < EXACT:
+            if character != " " or all(ink < EXACT for ink in below[at]):
                 canvas.label(column + at, row, character, ink)
 
 

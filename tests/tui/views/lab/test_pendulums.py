@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import EXACT
+from pendu_tui.tui.drawing.palette import EXACT, FRAME
 from pendu_tui.tui.views.lab.pendulums import TOP, Bob, Pendulum, pendulum_picture
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, size
@@ -52,7 +52,7 @@ def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
     """So the pivot is exactly in the middle, for odd and even panes."""
     for columns, rows in ((16, 8), (17, 9)):
         right, left, up = (
-            dots(picture(columns, rows, Bob(angle, 0)))
+            dots(picture(columns, rows, Bob(angle, FRAME)))
             for angle in (theta, -theta, math.pi - theta)
         )
         assert left == {(2 * columns - 1 - x, y) for x, y in right}
