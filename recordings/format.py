@@ -27,7 +27,6 @@ from pendu_tui.recordings.events import (
 from pendu_tui.recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
 
 FORMAT_VERSION = "3"
-PROFILE = "pendu"  # in the file's header
 EVENTS = "/pendu/events"
 CLOCK_OFFSET = 1_000_000_000  # ns: log_time at clock 0, as several readers mishandle 0
 

@@ -1,13 +1,13 @@
 """Library: the folder of recordings, their names and locks.
 
-A writer locks a recording exclusively; readers share it.  A lock ends with its process, which
-tells leftovers from recordings in progress.  Only POSIX has such locks.
+A recorder locks its file, and the lock ends with its process: that tells unfinished recordings from
+those that are being made.  Only POSIX has such locks.
 """
 
 import os
+import struct
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from os.path import lexists
 from pathlib import Path
 from typing import IO, Any, BinaryIO, NamedTuple
@@ -20,10 +20,13 @@ from pendu_tui.recordings.files import is_stream
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording
 GOLDEN = Path(__file__).parent / "golden"
+MAGIC = b"\x89MCAP0\r\n"
+PROFILE = "pendu"  # in the file's header
+_HEADER = struct.Struct(f"<{len(MAGIC)}sBQI{len(PROFILE)}s")  # with the header's opcode and length
 
 
 class Item(NamedTuple):
-    """A finished recording in the library."""
+    """A recording in the library."""
 
     path: Path
     bytes: int
@@ -63,10 +66,12 @@ def new_path(where: Path | None = None) -> Path:
 
 
 def listing(where: Path | None = None) -> list[Item]:
-    """Return the finished recordings, newest first."""
+    """Return the recordings that no lab is making, finished or not, the newest first."""
     items = []
-    for path in _files(where or folder(), SUFFIX):
+    for path in _files(where):
         with suppress(OSError):  # deleted meanwhile
+            if path.suffix == PART and in_use(path):
+                continue
             status = path.stat()
             items.append(Item(path, status.st_size, status.st_mtime))
     return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
@@ -77,65 +82,63 @@ def golden_names() -> list[str]:
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
-def leftovers(where: Path | None = None, being_made: bool = False) -> list[Path]:
-    """Return the unfinished recordings that no lab is writing, or those that are being made."""
-    unfinished = _files(where or folder(), SUFFIX + PART)
-    return [path for path in unfinished if in_use(path) == being_made]
+def being_made(where: Path | None = None) -> list[Path]:
+    """Return the recordings that a lab is making."""
+    return [path for path in _files(where) if path.suffix == PART and in_use(path)]
 
 
-def _files(where: Path, suffix: str) -> list[Path]:
+def _files(where: Path | None) -> list[Path]:
+    """Return the files of a folder that are named and begin as recordings do."""
+    suffixes = (SUFFIX, SUFFIX + PART)
     try:
-        return [path for path in where.iterdir() if path.name.endswith(suffix) and path.is_file()]
+        paths = list((where or folder()).iterdir())
     except FileNotFoundError:
         return []
+    return [path for path in paths if path.name.endswith(suffixes) and _is_recording(path)]
 
 
-def hold(file: IO[Any], shared: bool = False) -> None:
-    """Lock an open file until it is closed, where the file system has locks.
+def _is_recording(path: Path) -> bool:
+    """Return whether a file begins with the header of an MCAP file of our profile."""
+    if not path.is_file():
+        return False
+    try:
+        with path.open("rb") as file:
+            magic, *_, profile = _HEADER.unpack(file.read(_HEADER.size))
+    except (OSError, struct.error):
+        return False
+    return bool(magic == MAGIC and profile == PROFILE.encode())
 
-    An exclusive lock waits for the probes of `in_use`; without a shared one a reader goes on.
-    """
+
+def hold(file: IO[Any]) -> None:
+    """Lock an open file until it is closed, where the file system has locks."""
     with suppress(OSError):
-        _lock(file, shared, wait=not shared)
+        _lock(file)
 
 
 def in_use(path: Path) -> bool:
-    """Return whether a recorder or a reader has this file open; if in doubt, True."""
+    """Return whether a program holds this file; if in doubt, True."""
     try:
         with path.open("rb") as file:
-            _lock(file, shared=False, wait=False)
+            _lock(file, probe=True)
     except OSError:
         return True
     return False
 
 
-@contextmanager
-def alone_with(path: Path) -> Iterator[None]:
-    """Lock the file.  Raises FileNotFoundError if whoever held the lock before moved the file."""
-    with path.open("rb") as file:
-        hold(file)
-        path.stat()
-        yield
-
-
 def open_file(path: Path) -> BinaryIO:
-    """Open a file to read, locked until it is closed."""
+    """Open a file to read."""
     if is_stream(path):
         raise RecordingError("this is a device or a pipe; save it as a file")
     try:
-        file = path.open("rb")
+        return path.open("rb")
     except OSError as error:
         raise RecordingError(error.strerror or str(error)) from error
-    hold(file, shared=True)
-    return file
 
 
-def _lock(file: IO[Any], shared: bool, wait: bool) -> None:
+def _lock(file: IO[Any], probe: bool = False) -> None:
+    """Lock a file, after waiting for probes; or with `probe`, raise OSError if it is locked."""
     try:
         import fcntl
     except ImportError:
         return
-    operation = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
-    if not wait:
-        operation |= fcntl.LOCK_NB
-    fcntl.flock(file, operation)
+    fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB if probe else fcntl.LOCK_EX)

@@ -20,8 +20,8 @@ from mcap.stream_reader import breakup_chunk
 
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
+from pendu_tui.recordings.library import MAGIC
 
-MAGIC = b"\x89MCAP0\r\n"
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
 MAX_SUMMARY = 1 << 26  # bytes; enough for four days

@@ -26,12 +26,11 @@ from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,
-    PROFILE,
     encode_event,
     encode_readings,
     topics_of,
 )
-from pendu_tui.recordings.library import free_path, hold, part_of
+from pendu_tui.recordings.library import PROFILE, free_path, hold, part_of
 
 FLUSH_EVERY = 0.7  # s of the recording clock; so kill -9 loses less than 1 s, slow frames included
 MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush in headless runs

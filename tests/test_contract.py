@@ -30,7 +30,6 @@ COMMANDS = {
     "recordings show of a cut recording": "recordings show cut.mcap",
     "recordings recover": "recordings recover cut.mcap -o saved.mcap",
     "recordings": "recordings",
-    "recordings prune": "recordings prune --keep 1",
     "scenes": "scenes",
     "methods": "methods",
     "methods --method": "methods --methods mine --method mine.py:mine",
@@ -42,7 +41,6 @@ SCHEMAS = {
     "recordings show": "recordings-show",
     "recordings show of a cut recording": "recordings-show",
     "recordings recover": "recordings-recover",
-    "recordings prune": "recordings-prune",
 }
 """Schemas that are not named after their command."""
 

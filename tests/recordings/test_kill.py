@@ -11,10 +11,9 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.recordings.events import remember
-from pendu_tui.recordings.library import leftovers
 from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recovery import recover
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.screens.launch import recover_leftover
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
 
@@ -46,7 +45,7 @@ def kill_one(folder, after):
     finally:
         lab.kill()
         lab.wait()
-    (part,) = leftovers(folder)
+    part = folder / "a.mcap.part"
     with Recording.open(part) as recording:
         assert not recording.complete
         assert not recording.damaged
@@ -58,9 +57,9 @@ def kill_one(folder, after):
             lost_at.append(float(when))
     loss = lost_at[-1] - lost_at[0] if lost_at else 0.0
     remember(OWN)
-    assert verify(part).identical
-    recover_leftover(part)
-    return loss, verify(folder / "a.mcap")
+    recover(part, folder / "saved.mcap")
+    assert verify(folder / "saved.mcap").complete
+    return loss, verify(part)
 
 
 def test_a_killed_lab_leaves_a_recording_that_verifies_and_lacks_less_than_a_second(tmp_path):
@@ -70,7 +69,6 @@ def test_a_killed_lab_leaves_a_recording_that_verifies_and_lacks_less_than_a_sec
         outcomes = list(pool.map(kill_one, (tmp_path / str(i) for i in range(KILLS)), moments))
     for loss, verification in outcomes:
         assert loss < 1.0
-        assert verification.complete
         assert verification.identical
 
 
@@ -83,7 +81,7 @@ def test_a_lab_killed_while_paused_has_every_single_step_on_disk(tmp_path):
         lab.run(0.5)
         lab.signal(signal.SIGKILL)
         assert lab.end() == -signal.SIGKILL
-    (part,) = leftovers(tmp_path)
+    part = tmp_path / "a.mcap.part"
     assert verify(part).identical
     with Recording.open(part) as recording:
         paused_at = next(event.step for _, event in recording.events if event.kind == "pause")

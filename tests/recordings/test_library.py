@@ -1,17 +1,16 @@
-"""The library: where recordings are, which one a name means, and which to prune."""
+"""The library: where recordings are, and which one a name means."""
 
 import os
 import time
-from pathlib import Path
 
 import pytest
+from mcap.writer import Writer
 
 from pendu_tui.recordings import library
 from pendu_tui.recordings.errors import RecordingError
-from pendu_tui.recordings.library import GOLDEN, leftovers, listing, new_path
+from pendu_tui.recordings.library import GOLDEN, being_made, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.commands.recordings import delete
 from tests.recordings.examples import start, tiny
 
 
@@ -50,7 +49,6 @@ def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
     old, new = fill(folder, old=100, new=1)
     (folder / "notes.txt").touch()
     (folder / "folder.mcap").mkdir()
-    (folder / "unfinished.mcap.part").touch()
     assert [item.path for item in listing()] == [new, old]
     assert listing()[0].bytes == new.stat().st_size
 
@@ -84,23 +82,20 @@ def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
     assert str(caught.value).isprintable()
 
 
-def test_a_recording_in_progress_is_not_a_leftover(folder):
+def test_a_recording_in_progress_is_not_listed_among_the_unfinished(folder):
     folder.mkdir()
-    (folder / "killed.mcap.part").touch()
+    killed = tiny(folder / "killed.mcap").rename(folder / "killed.mcap.part")
     with Recorder(folder / "running.mcap") as recorder:
         recorder.event(start(), 0.0)
-        assert leftovers() == [folder / "killed.mcap.part"]
+        recorder.flush()
+        assert [item.path for item in listing()] == [killed]
+        assert being_made() == [recorder.part]
 
 
-def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, monkeypatch):
-    stubborn, other = fill(folder, stubborn=1, other=2)
-    unlink = Path.unlink
-
-    def refuse(path, missing_ok=False):
-        if path == stubborn:
-            raise PermissionError(13, "Permission denied")
-        unlink(path, missing_ok)
-
-    monkeypatch.setattr(Path, "unlink", refuse)
-    assert [item.path for item in listing() if delete(item)] == [other]
-    assert list(folder.iterdir()) == [stubborn]
+def test_files_of_other_programs_are_not_listed(folder):
+    folder.mkdir()
+    for name in ("robot.mcap", "robot.mcap.part"):  # a browser's download is called so, too
+        with (folder / name).open("wb") as stream:
+            Writer(stream).start("ros2")
+    (folder / "empty.mcap.part").touch()
+    assert listing() == []

@@ -32,7 +32,7 @@ COMMANDS = {
     "judge": "judge the energies of another program, from a file or stdin; for CI",
     "verify": "re-simulate recordings and compare every bit",
     "export": "convert a recording to CSV or Parquet",
-    "recordings": "list the recordings, show, recover or delete them",
+    "recordings": "list the recordings, show or recover one",
     "scenes": "list the scenes, with what to watch",
     "methods": "list the methods with claimed and measured properties",
     "doctor": "check the environment and suggest fixes",

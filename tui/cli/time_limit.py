@@ -26,8 +26,8 @@ read -r _ || exit
 if [ "$(stty -g </dev/tty)" != "$state" ]
 then stty "$state" </dev/tty; printf '{PLAIN_SCREEN}' >/dev/tty
 fi
-echo "pendu-tui: ended, for your method's call in C did not return; the next lab recovers\
- the recording." >&3
+echo "pendu-tui: ended, for your method's call in C did not return; the recording is kept\
+ as a .part." >&3
 kill -KILL $PPID
 """
 

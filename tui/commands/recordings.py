@@ -1,15 +1,14 @@
-"""List the recordings, show the contents of one, recover a damaged one, or delete old ones."""
+"""List the recordings, show the contents of one, or recover a damaged one."""
 
 import argparse
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import check_free
-from pendu_tui.tui.cli.options import add_file, add_recording, count, resolve
+from pendu_tui.tui.cli.options import add_file, add_recording, resolve
 from pendu_tui.tui.cli.report import (
     Column,
     Report,
@@ -30,21 +29,18 @@ examples:
   pendu-tui recordings
   pendu-tui recordings show latest
   pendu-tui recordings recover swing.mcap.part -o saved.mcap
-  pendu-tui recordings prune --keep 20 --yes
 """
 
 OPTIONS = {
     "file": ("show", "recover"),
     "output": ("recover",),
     "force": ("recover",),
-    "keep": ("prune",),
-    "yes": ("prune",),
 }
 """Option -> the verbs that take it."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    verbs = ["list", "show", "recover", "prune"]
+    verbs = ["list", "show", "recover"]
     names = "|".join(verbs)
     what = "what to do (%(default)s)"
     parser.add_argument("verb", metavar=names, nargs="?", choices=verbs, default="list", help=what)
@@ -53,9 +49,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("recover")
     add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
     group.add_argument("--force", action="store_true", help="overwrite OUT")
-    group = parser.add_argument_group("prune")
-    group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument("--yes", action="store_true", help="delete the others, not only list them")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -65,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
             raise UserError(f"{option} belongs to pendu-tui recordings {' or '.join(verbs)}.")
     if options.verb in OPTIONS["file"] and options.file is None:
         raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
-    reports = {"list": _list, "show": _show, "recover": _recover, "prune": _prune}
+    reports = {"list": _list, "show": _show, "recover": _recover}
     reports[options.verb](options).show(form_of(options))
     return Exit.FINE
 
@@ -76,19 +69,14 @@ def _list(options: argparse.Namespace) -> Report:
     rows = [_facts(item) for item in library.listing()]
     folder = library.folder()
     notes = [
-        f"recording now: {printable(str(path.with_suffix('')))}"
-        for path in library.leftovers(being_made=True)
-    ]
-    notes += [
-        f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
-        for path in library.leftovers()
+        f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()
     ]
     if not (rows or notes):
         notes = [f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."]
     columns = (
         Column("recording, newest first", "file"),
-        Column("finished", "modified", _date),
-        Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
+        Column("last written", "modified", _date),
+        Column("scenes", _scenes),
         Column("length", "seconds", seconds),
         Column("size", "bytes", file_size),
     )
@@ -99,6 +87,11 @@ def _list(options: argparse.Namespace) -> Report:
         fields={"folder": str(folder), "recordings": rows},
         notes=notes,
     )
+
+
+def _scenes(row: dict[str, Any]) -> str:
+    parts = (", ".join(row["scenes"]), row["reason"])
+    return "; ".join(filter(None, parts))
 
 
 def _date(when: float) -> str:
@@ -185,30 +178,3 @@ def _recover(options: argparse.Namespace) -> Report:
     if result["runs_lost"]:
         notes.append(f"Runs not saved because their start is missing: {result['runs_lost']}.")
     return Report(name="recordings-recover", fields=result, notes=notes)
-
-
-def _prune(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings import library
-
-    if options.keep is None:
-        raise UserError("specify how many to keep: --keep 20 for the newest 20.")
-    old = library.listing()[options.keep :]
-    deleted = [item for item in old if options.yes and delete(item)]
-    freed = file_size(sum(item.bytes for item in deleted))
-    notes = [f"deleted {counted(len(deleted), 'recording')}, {freed}"]
-    if options.yes and len(deleted) < len(old):
-        notes.append(f"{len(old) - len(deleted)} more could not be deleted (in use?)")
-    elif old and not options.yes:
-        notes += [*(printable(str(item.path)) for item in old), "Add --yes to delete these."]
-    fields = {"deleted": [str(item.path) for item in deleted]}
-    return Report(name="recordings-prune", fields=fields, notes=notes)
-
-
-def delete(item: "Item") -> bool:
-    """Delete a recording unless it is in use; return whether it was deleted."""
-    from pendu_tui.recordings import library
-
-    with suppress(OSError):
-        if not library.in_use(item.path):
-            item.path.unlink()
-    return not item.path.exists()

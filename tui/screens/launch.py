@@ -5,8 +5,7 @@ import gc
 import os
 import shlex
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
@@ -74,12 +73,10 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
             path = free_path(path)
 
 
-def live_screen(
-    live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True
-) -> "LiveScreen":
+def live_screen(live: "Live", path: Path | None, or_next: bool = True) -> "LiveScreen":
     from pendu_tui.tui.screens.live import LiveScreen
 
-    return LiveScreen(live, prepare=partial(start_recording, live, path, or_next), notices=notices)
+    return LiveScreen(live, prepare=partial(start_recording, live, path, or_next))
 
 
 def open_recording(path: Path) -> "Recording":
@@ -161,76 +158,18 @@ def open_lab(
     lecture: "Mapping[str, Scene] | None" = None,
 ) -> int:
     path = None
-    notices: list[str] = []
     if not options.no_record:
         path = recording_path(options.record)
-        notices = recover_leftovers(path.parent)
-    for notice in notices:
-        warn(notice)
     or_next = options.record is None
     if options.plain:
         from pendu_tui.tui.words.plain_text import print_run, print_tour
 
         start_recording(live, path, or_next)
         return print_sentences(live, print_tour if with_tour else print_run)
-    screen = live_screen(live, path, notices, or_next)
+    screen = live_screen(live, path, or_next)
     screen.begins_with_tour = with_tour
     screen.lecture = lecture or screen.lecture
     return show(screen, options)
-
-
-def recover_leftovers(folder: Path) -> list[str]:
-    """Recover a folder's unfinished recordings; return a sentence on each, or its error."""
-    from pendu_tui.recordings.library import leftovers
-
-    sentences = []
-    for part in leftovers(folder):
-        from pendu_tui.recordings.errors import printable  # imports mcap
-
-        try:
-            sentence = recover_leftover(part)
-        except FileNotFoundError:
-            continue  # another lab recovers it
-        except OSError as error:
-            why = error.strerror or error
-            sentence = f"The unfinished recording {part} cannot be recovered now: {why}."
-        sentences.append(printable(sentence, limit=1000))
-    return sentences
-
-
-def recover_leftover(leftover: Path) -> str:
-    """Turn a leftover into a recording, and return a sentence about it.
-
-    If a part is lost, the leftover is kept, under a name that is not recovered again.
-    """
-    from pendu_tui.recordings.errors import NameTakenError, RecordingError
-    from pendu_tui.recordings.files import publish
-    from pendu_tui.recordings.library import PART, alone_with, free_path
-    from pendu_tui.recordings.recovery import recover
-
-    with alone_with(leftover):
-        name = leftover.with_name(leftover.name.removesuffix(PART))
-        aside = free_path(leftover.with_name(f"{leftover.name}.damaged"))
-        if not leftover.stat().st_size:
-            leftover.unlink()
-            return f"An unfinished recording was empty: {leftover}."
-        try:
-            with progress(f"recovering {leftover.name!r}") as show:
-                found = recover(leftover, free_path(name), show)
-        except RecordingError as error:
-            leftover.rename(aside)
-            return f"No recording can be recovered: {error} The original is kept as {aside}."
-        lost = ""
-        if found["damaged"]:
-            leftover.rename(aside)
-            lost = f" {found['entries_lost']} samples and events are lost; see also {aside}."
-        else:
-            leftover.unlink()
-        saved = Path(found["out"])
-        with suppress(NameTakenError):
-            publish(saved, name)
-            saved = name
-        return f"An unfinished recording was recovered: {saved}.{lost}"
 
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:

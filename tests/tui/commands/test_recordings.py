@@ -7,9 +7,8 @@ import pytest
 from mcap.writer import Writer
 
 from pendu_tui.recordings.recorder import Recorder
-from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from tests.recordings.examples import record, two_runs
+from tests.recordings.examples import record, start, two_runs
 from tests.tui.command_line import pendu
 
 
@@ -26,10 +25,6 @@ def library(tmp_path, monkeypatch):
 @pytest.fixture
 def whole(tmp_path):
     return record(tmp_path / "sitting.mcap", two_runs())
-
-
-def names(folder):
-    return sorted(path.name for path in folder.iterdir())
 
 
 def test_show_shows_what_a_recording_contains(whole):
@@ -62,49 +57,45 @@ def test_the_library_is_listed_newest_first(library):
     rows = pendu("recordings", "--json").json["recordings"]
     assert [row["file"] for row in rows] == [str(library / f"{name}.mcap") for name in "cba"]
     assert rows[0]["seconds"] == 4.0
-    with Recorder(library / "now.mcap"):
+    with Recorder(library / "now.mcap") as recorder:
+        recorder.event(start(), 0.0)
+        recorder.flush()
         out = pendu("recordings").out
     assert f"recording now: {library / 'now.mcap'}" in out
     assert out.index("c.mcap") < out.index("b.mcap") < out.index("a.mcap")
 
 
+def test_an_unfinished_recording_is_listed_shown_and_exported_as_it_is(library):
+    part = library / "killed.mcap.part"
+    whole = (library / "a.mcap").read_bytes()
+    part.write_bytes(whole[: len(whole) // 2])
+    assert pendu("recordings", "--json").json["recordings"][0]["file"] == str(part)
+    assert 0 < pendu("recordings", "show", "latest", "--json").json["samples"] < 10
+    assert pendu("export", "latest").out.count("\n") > 1
+    assert pendu("verify", "latest").code == 0
+    assert part.exists()
+
+
 def test_a_recording_that_cannot_be_read_is_listed_with_what_is_wrong(library):
-    (library / "a.mcap").write_bytes(b"")
+    cut = (library / "a.mcap").read_bytes()[:40]
+    (library / "a.mcap").write_bytes(cut)
     with (library / "b.mcap").open("wb") as stream:
         writer = Writer(stream, enable_data_crcs=True)
-        writer.start()
+        writer.start("pendu")
         schema = writer.register_schema("pendu.Event", "jsonschema", b"{}")
         writer.register_channel("/pendu/events", "json", schema, {"format": "2"})
         writer.finish()
     rows = pendu("recordings", "--json").json["recordings"]
     reasons = {row["file"].removeprefix(f"{library}/"): row["reason"] for row in rows}
-    assert "the file is empty" in reasons["a.mcap"]
+    assert "its end is missing" in reasons["a.mcap"]
     assert "it was made by 0.1; this version reads format 3" in reasons["b.mcap"]
-    assert "the file is empty" in pendu("recordings").out
+    assert "its end is missing" in pendu("recordings").out
 
 
 def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "nothing"))
     assert "No recordings in" in pendu("recordings").out
-    assert pendu("recordings", "prune", "--keep", 1, "--yes").code == 0
     assert not (tmp_path / "nothing").exists()
-
-
-def test_prune_keeps_the_newest_and_what_is_in_use_and_asks_for_a_yes(library):
-    listed = pendu("recordings", "prune", "--keep", 2).out
-    assert f"{library / 'a.mcap'}\nAdd --yes" in listed
-    assert len(names(library)) == 3
-    with Recording.open(library / "a.mcap"):
-        outcome = pendu("recordings", "prune", "--keep", 1, "--yes")
-    assert names(library) == ["a.mcap", "c.mcap"]
-    assert outcome.out.startswith("deleted 1 recording")
-    assert "1 more could not be deleted" in outcome.out
-
-
-@pytest.mark.parametrize("arguments", [("prune",), ("--keep", "1"), ("prune", "--keep", "0")])
-def test_prune_without_a_measure_deletes_nothing(library, arguments):
-    assert pendu("recordings", *arguments, "--yes").refused(2)
-    assert len(names(library)) == 3
 
 
 def test_export_to_stdout_is_the_file_and_parquet_has_the_same_rows(tmp_path):
