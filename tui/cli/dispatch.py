@@ -31,7 +31,7 @@ COMMANDS = {
     "run": "run a scene without the screen and judge each method; for CI",
     "judge": "judge the energies of another program, from a file or stdin; for CI",
     "verify": "re-simulate recordings and compare every bit",
-    "export": "convert a recording to CSV or Parquet",
+    "export": "convert a recording to CSV",
     "recordings": "list the recordings, show or recover one",
     "scenes": "list the scenes, with what to watch",
     "methods": "list the methods with claimed and measured properties",

@@ -11,6 +11,7 @@ DROPPED = {
     "info": "pendu-tui recordings show",
     "recover": "pendu-tui recordings recover",
     "completion": "pendu-tui --print-completion SHELL",
+    "export --format": "CSV, which DuckDB, polars and pandas read",
     "recordings prune": "rm; pendu-tui recordings lists the files, newest first",
     "diff": "pendu-tui verify, which names the first difference; or export both and compare",
 }
