@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import add_file, add_recording, positive, resolve
-from pendu_tui.tui.cli.scene import add_scene_options, read_scenes, scene_of
+from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
