@@ -5,9 +5,12 @@ The fields are those that `scenes --json` prints, and what differs in the shot; 
 """
 
 import argparse
+import json
+import math
 import re
 from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields as fields_of
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -219,3 +222,34 @@ def _methods(keys: Sequence[Any], folder: Path) -> Cast:
             raise ValueError(f"{key} is given twice")
         cast.append(found)
     return tuple(cast)
+
+
+def scene_text(scene: Scene) -> str:
+    """Return a scene as TOML, which `read_scenes` reads to the last bit."""
+    default = Shot()
+    shot = {each.name: getattr(scene.shot, each.name) for each in fields_of(Shot)}
+    shot = {name: value for name, value in shot.items() if value != getattr(default, name)}
+    methods = list(map(_method_text, scene.cast))
+    lines = _lines({**scene.fields(), "methods": methods, "speed": scene.speed})
+    if shot:
+        lines += ["", "[shot]", *_lines(shot)]
+    return "\n".join([*lines, ""])
+
+
+def _method_text(method: Method) -> str:
+    """Return a method's key, or FILE.py:KEY of a user's own."""
+    file = getattr(method, "file", "")
+    return f"{Path(file).absolute()}:{method.key}" if file else method.key
+
+
+def _lines(table: Mapping[str, Any]) -> list[str]:
+    return [f"{name} = {_toml(name, value)}" for name, value in table.items()]
+
+
+def _toml(name: str, value: Any) -> str:
+    """Return a value as TOML, which is JSON but for tables."""
+    if isinstance(value, Line):
+        return f"{{{', '.join(_lines(value._asdict()))}}}"
+    if name == "theta" and abs(value) > math.tau:
+        return f'"{value!r}rad"'  # without a unit it is refused: it may be meant in degrees
+    return json.dumps(value, ensure_ascii=False)

@@ -4,6 +4,7 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult
@@ -13,9 +14,10 @@ from textual.reactive import var
 from textual.widget import Widget
 
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.engine.scenes import MAX_METHODS, Scene
 from pendu_tui.recordings import library
 from pendu_tui.tui.cli.errors import explained
+from pendu_tui.tui.cli.scene_file import scene_text
 from pendu_tui.tui.playback.common import State, doubled
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
@@ -23,7 +25,6 @@ from pendu_tui.tui.screens.lines import InsightLine, KeyLine, SizedScreen, Statu
 from pendu_tui.tui.terminal.check import is_writing
 from pendu_tui.tui.views import VIEWS, create, following
 from pendu_tui.tui.views.view import Box, Pane, View, Zoomed
-from pendu_tui.tui.words.command_line import command, reproduces
 from pendu_tui.tui.words.events import event_lines, numbered
 from pendu_tui.tui.words.plain_text import description
 
@@ -343,11 +344,30 @@ class SourceScreen(SizedScreen[None]):
         else:
             self.notify(f"Saved {picture}")
 
-    def action_copy_command(self) -> None:
-        """Copy the command for this moment, and show it for terminals without a clipboard."""
-        text = command(self.source)
-        self.app.copy_to_clipboard(text)
-        notice = f"Copied: {text}"
-        if not reproduces(self.source):
-            notice += " (start values only; later changes of h are in the recording)"
-        self.notify(notice, timeout=15)
+    def action_save_scene(self) -> None:
+        """Save what is on the screen as a scene file, which a lecture may begin with."""
+        try:
+            path = library.free_path(library.folder() / "scene.toml")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(scene_text(self._seen()), encoding="utf-8")
+        except OSError as error:
+            self.warn(f"Scene not saved: {explained(error)}")
+        else:
+            self.notify(f"Saved {path}; open it with: pendu-tui {path}", timeout=15)
+
+    def _seen(self) -> Scene:
+        """Return the scene with the current step, and a shot of what is shown."""
+        scene = self.source.scene
+        front = [scene.cast[place].key for place in self.shown.places(scene.cast)]
+        shot = replace(
+            scene.shot,
+            view=self.view,
+            theta=self.shown.theta,
+            quantity=self.shown.quantity,
+            log=self.shown.log,
+            seconds=self.shown.seconds,
+            line=self.shown.line,
+            front=tuple(front) if self.shown.hidden else (),
+            ring=self.shown.ring,
+        )
+        return replace(scene, h=self.source.stepping.smallest, shot=shot)

@@ -35,8 +35,8 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
             done.add(binding.action)
             press = f"app.simulate_key({binding.key!r})"
             yield Entry(purpose(binding), press, key_text(binding))
-    if not screen.app.is_web:  # the command may name a file
-        yield Entry("copy the command for this moment", "copy_command")
+    if not screen.app.is_web:  # visitors write no files
+        yield Entry("save what I see as a scene file", "save_scene")
 
 
 class Commands(CommandPalette, Once[None]):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from pendu_tui.engine.scenes import SCENES, Line, Shot
-from pendu_tui.tui.cli.scene_file import read_scenes
+from pendu_tui.tui.cli.scene_file import read_scenes, scene_text
 from tests.tui.command_line import own_method, pendu
 
 
@@ -31,6 +31,13 @@ def test_the_fields_of_a_listed_scene_give_the_same_scene(mine, name):
     scene = read_scene(mine, toml(listed[name]))
     assert scene == replace(SCENES[name], often_said="")
     assert scene.speed == SCENES[name].speed
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_scene_that_is_written_is_read_to_the_last_bit_with_its_shot(mine, scene):
+    again = read_scene(mine, scene_text(scene))
+    assert again == replace(scene, often_said="")
+    assert (again.speed, again.shot) == (scene.speed, scene.shot)
 
 
 @pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "linear"])
@@ -77,6 +84,7 @@ def test_methods_of_ones_own_lie_beside_the_file(tmp_path, mine):
     own_method(tmp_path)
     scene = read_scene(mine, 'methods = ["rk4", "my methods.py:mine"]')
     assert [method.key for method in scene.cast] == ["rk4", "mine"]
+    assert read_scene(tmp_path / "elsewhere.toml", scene_text(scene)).cast == scene.cast
 
 
 LECTURE = """

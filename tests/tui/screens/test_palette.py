@@ -7,9 +7,9 @@ from textual.command import CommandList
 from textual.widgets import Input
 
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.drawing.palette import PALETTES
 from pendu_tui.tui.screens.palette import LabCommands, entries
-from pendu_tui.tui.words.command_line import command
 from tests.tui.harness import Theatre, lab
 
 
@@ -34,7 +34,7 @@ async def test_it_has_themes_and_scenes_first_then_keys_with_their_letters_and_a
         assert all(text.startswith("scene ") for text in texts[len(PALETTES) : first])
         keys = {entry.text: entry.key for entry in listed[first:]}
         assert (keys["larger step h"], keys["smaller step h"]) == ("+", "-")
-        assert {"view: Phase space", "copy the command for this moment"} <= keys.keys()
+        assert {"view: Phase space", "save what I see as a scene file"} <= keys.keys()
         assert len(texts) == len(set(texts))
 
 
@@ -68,7 +68,8 @@ async def test_an_entry_is_one_line_with_its_key_in_the_last_column(width):
         assert any(text.endswith("   ctrl+p") for text in texts)
 
 
-async def test_a_scene_a_theme_a_key_and_what_has_no_key_can_be_chosen():
+async def test_a_scene_a_theme_a_key_and_what_has_no_key_can_be_chosen(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     async with lab(size=(100, 30)) as theatre:
         await found(theatre, "scene crossover")
         assert theatre.source.scene == SCENES["crossover"]
@@ -77,5 +78,13 @@ async def test_a_scene_a_theme_a_key_and_what_has_no_key_can_be_chosen():
         assert theatre.app.theme == "light"
         await found(theatre, "double speed")
         assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed
-        await found(theatre, "copy the command")
-        assert theatre.app.clipboard == command(theatre.source)
+        await theatre.press("e", "y", "1", "-")
+        await found(theatre, "save what I see")
+        (scene,) = read_scenes(tmp_path / "scene.toml").values()
+        assert (scene.h, scene.cast) == (0.1, SCENES["crossover"].cast)
+        front = ("symplectic_euler", "velocity_verlet", "rk4")
+        assert (scene.shot.quantity, scene.shot.log, scene.shot.front) == (
+            "theta_error",
+            False,
+            front,
+        )

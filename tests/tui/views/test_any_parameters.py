@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.models import MODELS, PARAMETERS
 from pendu_tui.engine.scenes import LIMITS, SCENES, Scene
+from pendu_tui.tui.cli.scene_file import scene_text
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities
 from pendu_tui.tui.screens.lines import status_row
 from pendu_tui.tui.views.lab.error_table import table
 from pendu_tui.tui.views.phase.picture import fact_rows
-from pendu_tui.tui.words.command_line import scene_arguments
 from pendu_tui.tui.words.insight import insight_text, lasting, sentence
 from pendu_tui.tui.words.plain_text import description
 from tests.tui.command_line import pendu
@@ -75,9 +75,11 @@ def test_any_numbers_of_any_model_can_be_shown(model, data):
 @pytest.mark.parametrize("model", MODELS)
 @settings(max_examples=6)
 @given(data=st.data())
-def test_any_numbers_of_any_model_run_and_their_json_has_no_nan(model, data):
+def test_any_numbers_of_any_model_run_and_their_json_has_no_nan(model, data, tmp_path_factory):
     scene = data.draw(scenes(model))
-    outcome = pendu("run", *scene_arguments(scene), "--time", 5 * scene.h, "--json")
+    file = tmp_path_factory.mktemp("scene") / "any.toml"
+    file.write_text(scene_text(scene), encoding="utf-8")
+    outcome = pendu("run", "--scene", file, "--time", 5 * scene.h, "--json")
     assert outcome.code == 0
     assert outcome.json["scene"]["model"] == model
     assert np.isfinite([row["energy"] for row in outcome.json["methods"]]).all()
