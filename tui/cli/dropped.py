@@ -14,6 +14,7 @@ DROPPED = {
     "export --format": "CSV, which DuckDB, polars and pandas read",
     "recordings prune": "rm; pendu-tui recordings lists the files, newest first",
     "diff": "pendu-tui verify, which names the first difference; or export both and compare",
+    "live --ghost": "pendu-tui replay FILE; in the lab r keeps the run before it, dimmed",
 }
 """What to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option`."""
 

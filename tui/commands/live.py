@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.options import add_file, add_recording, positive, resolve
+from pendu_tui.tui.cli.options import add_file, positive
 from pendu_tui.tui.cli.scene import add_scene_options, scene_of
 from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.terminal.options import add_terminal_options
@@ -19,7 +18,6 @@ examples:
   pendu-tui
   pendu-tui live --scene crossover
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
-  pendu-tui live --ghost swing.mcap --h 0.05
   pendu-tui live --scene crossover --equal-cost
   pendu-tui live --plain --no-record
 """
@@ -35,8 +33,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     record = "record to FILE instead of the data folder"
     add_file(recording, "--record", metavar="FILE", type=Path, help=record)
     recording.add_argument("--no-record", action="store_true", help="do not record")
-    ghost = "show a recording dimmed behind the lab; without --scene, start as it did"
-    add_recording(parser, "--ghost", help=ghost)
     add_terminal_options(parser)
 
 
@@ -53,19 +49,9 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 def run(options: argparse.Namespace) -> int:
     from pendu_tui.tui.screens import launch
 
-    ghost = default = None
-    if options.ghost:
-        ghost = launch.open_ghost(resolve(options.ghost))
-        default = ghost.scene
-    scene = scene_of(options, default, lecture=True)
-    if ghost and ghost.scene.model != scene.model:
-        raise UserError(
-            f"--ghost: the recording has the model {ghost.scene.model}, the scene {scene.model}; "
-            "leave out --scene, or choose one of that model."
-        )
+    scene = scene_of(options, lecture=True)
     launch.check(options)
     live = lab_of(scene, options)
-    live.laid_under = ghost
     name = options.scene or options.scene_option or ""
     lecture = None
     if name.endswith(".toml"):

@@ -44,7 +44,7 @@ class RecordingStatus(NamedTuple):
 class RunState(NamedTuple):
     run: RewindableRun
     history: History
-    left: "Ghost | None"  # the previous run, if it is laid under this one
+    ghost: "Ghost | None"  # the previous run, if it is laid under this one
 
 
 class State(NamedTuple):

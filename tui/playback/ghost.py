@@ -1,18 +1,14 @@
-"""Ghost: an earlier run laid under the lab, at the same simulated time."""
+"""Ghost: the run before a restart, laid under the lab at the same simulated time."""
 
 import math
-from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pendu_tui.tui.playback.history import History, changes_of
+from pendu_tui.tui.playback.history import History
 
 if TYPE_CHECKING:
-    from pendu_tui.recordings.recording import Recording
     from pendu_tui.tui.playback.rows import Window
-
-MAX_ROWS = 1 << 14  # 9 minutes at the default rate, read in a second
 
 
 class Ghost:
@@ -28,19 +24,6 @@ class Ghost:
         self._thetas = np.where(failed, math.nan, recent["states"][:, :-1, 0])
         self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
         """The largest angle that it comes to [rad]."""
-
-    @classmethod
-    def recorded(cls, recording: "Recording") -> "Ghost":
-        """Return the longest run of a recording, up to MAX_ROWS or the reversal of time."""
-        run = max(recording.runs, key=lambda run: abs(run.t))
-        history = History(run.scene, changes_of(run), MAX_ROWS)
-        known = recording.samples_between(run.begin, run.end)
-        own = (sample for _, sample in known if sample.run == run.number)
-        for sample in islice(own, MAX_ROWS):
-            if history.step >= 0 and sample.t < history.sample.t:
-                break
-            history.add(sample)
-        return cls(recording.path.stem, history)
 
     def label(self, room: int) -> str:
         text = f"dim: {self._name}, {self._step}"

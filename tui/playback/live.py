@@ -30,7 +30,8 @@ ROW_RATE = 30  # rows of the history and samples of the recording per second
 class Live(Playback):
     kind: Literal["LIVE"] = "LIVE"
     _run: RewindableRun
-    _left: "Ghost | None" = None  # the run before a restart with another step
+    ghost: "Ghost | None" = None
+    """The run before a restart with another step."""
 
     def __init__(
         self,
@@ -42,7 +43,6 @@ class Live(Playback):
         """Begin a run, or continue the one in a history, which the lab then owns."""
         self.playhead = Playhead(speed=speed)
         self.recorder: LiveRecorder | None = None
-        self.laid_under: Ghost | None = None
         self._events: list[Event] = []
         self._recorded = 0.0  # s, the recording clock, which stops while the lab is paused
         self._clock = clock
@@ -67,13 +67,6 @@ class Live(Playback):
     @property
     def milestones(self) -> Sequence[Milestone]:
         return self._run.milestones
-
-    @property
-    def ghost(self) -> "Ghost | None":
-        ghost = self._left or self.laid_under
-        if ghost is None or ghost.scene.model != self.scene.model:
-            return None
-        return ghost
 
     @property
     def next_step(self) -> float:
@@ -194,7 +187,7 @@ class Live(Playback):
         with _limited(scene):
             run = RewindableRun(scene, self._runs, compiled_in_background)
         self.failure = None
-        self._left = None
+        self.ghost = None
         self._enter(run, History(scene, run.changes))
         if stepping.equal_cost:
             self.set_stepping(stepping)
@@ -207,15 +200,15 @@ class Live(Playback):
         if self.scene != before.scene:
             from pendu_tui.tui.playback.ghost import Ghost  # imports NumPy
 
-            self._left = Ghost(f"run {number}", before)
+            self.ghost = Ghost(f"run {number}", before)
 
     @property
     def run_state(self) -> RunState:
-        return RunState(self._run, self.history, self._left)
+        return RunState(self._run, self.history, self.ghost)
 
     def return_to(self, state: RunState) -> None:
         """Continue an earlier run from where it was left, as a new run that shares its past."""
-        self._left = state.left
+        self.ghost = state.ghost
         self._runs += 1
         state.run.branch(self._runs)
         self._enter(state.run, state.history)

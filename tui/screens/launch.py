@@ -18,7 +18,6 @@ from pendu_tui.tui.cli.report import progress, warn
 if TYPE_CHECKING:
     from pendu_tui.engine.scenes import Scene
     from pendu_tui.recordings.recording import Recording
-    from pendu_tui.tui.playback.ghost import Ghost
     from pendu_tui.tui.playback.live import Live
     from pendu_tui.tui.playback.replay import Replay
     from pendu_tui.tui.playback.source import Source
@@ -89,14 +88,6 @@ def open_recording(path: Path) -> "Recording":
         recording.close()
         raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
     return recording
-
-
-def open_ghost(path: Path) -> "Ghost":
-    """Open a recording to lay it under the lab.  Raises UserError if it is empty."""
-    from pendu_tui.tui.playback.ghost import Ghost
-
-    with open_recording(path) as recording:
-        return Ghost.recorded(recording)
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":

@@ -33,7 +33,7 @@ GLOSSARY = {
     "place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
-    "dim": "the run before r, or a recording laid under the lab (--ghost FILE)",
+    "dim": "the run before r, with its own step",
 }
 HEADS = {
     **GLOSSARY,

@@ -1,10 +1,9 @@
-"""A recording laid under the lab, at the same moment of simulated time."""
+"""The run before a restart, laid under the next one at the same moment of simulated time."""
 
 import numpy as np
 import pytest
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
-from pendu_tui.recordings.recording import Recording
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.palette import faint, ink_of
 from pendu_tui.tui.playback.ghost import Ghost
 from pendu_tui.tui.views.lab.time_chart import TimeChart
@@ -16,29 +15,13 @@ from tests.tui.harness import after, lab, recorded
 OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 
 
-@pytest.fixture
-def path(tmp_path):
-    """3 s at half the speed, and 6 s at twice the speed, after a pause: 15 s of simulated time in all."""
-    return recorded(
-        tmp_path / "swing.mcap",
-        lambda live: live.set_speed(0.5),
-        6.0,
-        lambda live: live.pause(True),
-        1.0,
-        lambda live: live.pause(False),
-        lambda live: live.set_speed(2.0),
-        6.0,
-        scene=OTHER_H,
-    )
+@pytest.fixture(scope="module")
+def found() -> Ghost:
+    """The ghost of a run of 15 s."""
+    return Ghost("run 1", after(OTHER_H, 15.0).history)
 
 
-def ghost(path) -> Ghost:
-    with Recording.open(path) as recording:
-        return Ghost.recorded(recording)
-
-
-def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
-    found = ghost(path)
+def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(found):
     for t in (1.0, 2.5, 3.0, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
         for method, reading in zip(OTHER_H.cast, readings, strict=True):
@@ -47,26 +30,18 @@ def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
     assert found.rods(16.0) == found.rods(-1.0) == {}
 
 
-def test_its_errors_end_where_the_lab_is(path):
-    found = ghost(path)
+def test_its_errors_end_where_the_lab_is(found):
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
     low = found.window(4.0).low["energy_error"][:, 0]
     high = found.window(10.0).high["energy_error"][:, 0]
     assert np.nanmax(high) > np.nanmax(low) > 0
 
 
-def test_of_a_recording_of_reversed_time_there_is_what_came_before(tmp_path):
-    def turn(live):
-        live.set_stepping(live.stepping.reversed())
-
-    found = ghost(recorded(tmp_path / "turned.mcap", 2.0, turn, 1.0))
-    assert found.window(10.0).x.max() == pytest.approx(2.0, abs=0.1)
-
-
-async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_has(path):
+async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_has():
     async with lab() as theatre:
-        theatre.source.laid_under = ghost(path)
         await theatre.run(5)
+        await theatre.press("+", "r")
+        await theatre.run(3)
         await theatre.settled()
         first = theatre.stage.query_one(LabView).pendulums[1]
         colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
@@ -74,9 +49,7 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         chart = theatre.stage.query(TimeChart).first()
         assert chart.plot is not None
         assert colour in inks(chart.plot.picture)
-        assert "dim: swing, h 0.1 s" in str(chart.border_subtitle)
-        theatre.stage.start(SCENES["stiff-slow"])
-        assert theatre.source.ghost is None  # another model
+        assert "dim: run 1, h 0.05" in str(chart.border_subtitle)
 
 
 def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_one_drops_it():
@@ -93,13 +66,4 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live.restart()
     assert live.ghost is None
     live.return_to(left)
-    assert live.ghost is left.left
-
-
-def test_what_is_no_recording_or_of_another_model_is_refused_in_a_sentence(tmp_path, path):
-    broken = tmp_path / "broken.mcap"
-    broken.write_bytes(b"nothing")
-    for ghost, words in ((broken, "broken.mcap"), (tmp_path / "none.mcap", "no recording")):
-        assert pendu("live", "--plain", "--no-record", "--ghost", ghost).refused(3, words)
-    other = pendu("live", "--ghost", path, "--scene", "stiff-limit")
-    assert other.refused(2, "--ghost", "model pendulum", "spring")
+    assert live.ghost is left.ghost

@@ -9,7 +9,6 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.library import GOLDEN
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.tui.playback.ghost import Ghost
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
@@ -79,13 +78,6 @@ def test_the_description_follows_changes(change, words):
     assert words not in " ".join(description(live))
     change(live)
     assert words in " ".join(description(live))
-
-
-def test_the_description_has_a_recording_under_the_lab():
-    live = after(DRIFT, 1)
-    with Recording.open(GOLDEN / "drift.mcap") as recording:
-        live.laid_under = Ghost.recorded(recording)
-    assert "Under it, dim: drift, h 0.05 s." in description(live)
 
 
 async def test_d_opens_the_description_and_closes_it():
