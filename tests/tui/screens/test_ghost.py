@@ -8,9 +8,8 @@ from pendu_tui.tui.drawing.palette import faint, ink_of
 from pendu_tui.tui.playback.ghost import Ghost
 from pendu_tui.tui.views.lab.time_chart import TimeChart
 from pendu_tui.tui.views.lab.view import LabView
-from tests.tui.command_line import pendu
 from tests.tui.drawn import inks
-from tests.tui.harness import after, lab, recorded
+from tests.tui.harness import after, lab
 
 OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 
