@@ -1,10 +1,9 @@
-"""Which method is the cheapest at each accuracy, and how errors grow with time, in words."""
+"""Which method is the cheapest at each accuracy, in words."""
 
 import math
 from collections.abc import Sequence
 
 from pendu_tui.engine.accuracy.front import Cheapest, Cost, ranges
-from pendu_tui.engine.accuracy.growth import PERIODS, Growth
 from pendu_tui.engine.accuracy.references import TAYLOR_20
 from pendu_tui.engine.accuracy.study import REASONS, ErrorKind, Point
 from pendu_tui.engine.methods.runge_kutta import RK4
@@ -59,26 +58,6 @@ def factor_words(found: Sequence[Cheapest]) -> str:
     if not savings:
         return ""
     return f"Times fewer force evaluations than RK4: {', '.join(savings)}."
-
-
-def growth_words(found: Sequence[Growth]) -> str:
-    """Write the measured powers of t with which theta errors grow; "" if there are none."""
-    named = ", ".join(growth.name for growth in found if growth.power is not None)
-    if not named:
-        return ""
-    return f"over up to {PERIODS} periods, the theta error grows as: {named}"
-
-
-def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
-    """Write the measured powers of t and, when `done`, which methods follow none."""
-    words = growth_words(found)
-    others = ", ".join(growth.method.label for growth in found if growth.power is None)
-    lines = []
-    if words:
-        lines.append(f"From the start, {words}")
-    if others and done:
-        lines.append(f"No single power of t: {others}")
-    return lines
 
 
 def _spans(found: Sequence[Cheapest]) -> str:

@@ -1,1 +1,1 @@
-"""Error over cost and over time (F4)."""
+"""Error over cost (F4)."""

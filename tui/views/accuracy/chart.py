@@ -1,10 +1,9 @@
-"""Log-log charts of an accuracy study: error over cost, and error over time."""
+"""The log-log chart of an accuracy study: error over cost."""
 
 import math
 from collections.abc import Sequence
 
 from pendu_tui.engine.accuracy.front import Cost, cost_of
-from pendu_tui.engine.accuracy.growth import Growth
 from pendu_tui.engine.accuracy.references import TAYLOR_20, References
 from pendu_tui.engine.accuracy.study import ErrorKind, Flaw, Point
 from pendu_tui.engine.methods import Cast
@@ -110,25 +109,3 @@ def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Seri
     errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
     return {order: Series(FRAME, f"slope {order}", ends, errors, dotted=True)}
 
-
-def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -> Picture:
-    """Draw errors in theta along a run as letters, and the powers of t they follow as dots."""
-    lines: list[Series] = []
-    slopes: dict[int, Series] = {}
-    for growth in found:
-        times = growth.times
-        errors = growth.errors
-        # about 12 points, evenly spaced in the logarithm
-        at = {round(len(times) ** (n / 12)) - 1 for n in range(13)} if times else ()
-        x = [times[n] for n in at]
-        y = [errors[n] for n in at]
-        lines.append(Series(ink_of(growth.method, cast), growth.method.letter, x, y))
-        if growth.power is not None:
-            power = round(growth.power)
-            ends = [times[0], times[-1]]
-            slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]
-            slopes.setdefault(power, Series(FRAME, f"slope {power}", ends, slope, dotted=True))
-    label = "theta error [rad], the largest of each period"
-    return loglog_chart(
-        [*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label
-    )

@@ -1,14 +1,13 @@
-"""AccuracyPane: error over cost and over time; h is chosen with keyboard or mouse."""
+"""AccuracyPane: error over cost; h is chosen with keyboard or mouse."""
 
 from collections.abc import Sequence
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
 
 from pendu_tui.engine.accuracy.front import front
-from pendu_tui.engine.accuracy.growth import Growth, growths
-from pendu_tui.engine.accuracy.study import Point, measured, usual, with_all_methods
+from pendu_tui.engine.accuracy.study import ErrorKind, Point, measured, usual, with_all_methods
 from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.picture import Picture
@@ -17,16 +16,11 @@ from pendu_tui.tui.views.accuracy.chart import (
     Placed,
     accuracy_chart,
     accuracy_series,
-    growth_chart,
     nearest,
     placed,
 )
 from pendu_tui.tui.views.view import Chooser, StepSizeChosen, StudyView
-from pendu_tui.tui.words.accuracy import front_words, growth_lines, point_words
-
-Chart = Literal["energy", "theta", "time"]
-"""Error over cost, or the theta error over time."""
-NEXT: dict[str, Chart] = {"time": "theta", "theta": "energy", "energy": "time"}
+from pendu_tui.tui.words.accuracy import front_words, point_words
 
 
 class AccuracyPane(Chooser[Point]):
@@ -35,7 +29,7 @@ class AccuracyPane(Chooser[Point]):
     BINDING_GROUP_TITLE = "Accuracy"
     HELP = "A click uses that point's h; the pointer reads points out."
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("e", "chart", "Over time", tooltip="next chart: time, theta, …"),
+        Binding("e", "chart", "Error", tooltip="error in theta or in energy"),
         Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or those shown"),
     ]
 
@@ -45,14 +39,12 @@ class AccuracyPane(Chooser[Point]):
         self.steps: Sequence[int] = ()  # a point of each method for each, ascending
         self.here: Sequence[int] = ()  # steps at the current h, by method of the run
         self.points: dict[tuple[str, int], Point] = {}  # by method's key and steps
-        self.growths: list[Growth] = []  # at the current h
         self.all = False  # whether to include methods outside the cast
-        self._chosen: Chart | None = None
+        self._chosen: ErrorKind | None = None
         self.placed: Placed = []
         self._chart = Picture()
         self._charted: object = None  # the state that the chart shows
         self._start: object = None
-        self._grown: object = None
 
     def _compute_missing(self, source: Source) -> None:
         scene = source.scene
@@ -60,7 +52,6 @@ class AccuracyPane(Chooser[Point]):
         start = (scene.theta, scene.omega, scene.equations, self.cast, self.all)
         if start != self._start:
             self._start = start
-            self._grown = None
             self.workers.cancel_node(self)
             self.time, self.steps = usual(scene, self.all)
             self.here = ()
@@ -75,16 +66,9 @@ class AccuracyPane(Chooser[Point]):
             wanted = [each for each in sorted({*here} - known) if 1 < each <= 2_000_000]
             if wanted:  # more steps would take too long
                 self.compute(measured, scene, self.time, wanted, group="here")
-        if self.chart == "time" and self._grown != (start, own):
-            self._grown = (start, own)
-            self.growths = []
-            self.compute(growths, scene, own, group="growth")
 
-    def add(self, result: Point | Growth) -> None:
-        if isinstance(result, Growth):
-            self.growths = [*self.growths, result]
-        else:
-            self.points[result.method.key, result.steps] = result
+    def add(self, result: Point) -> None:
+        self.points[result.method.key, result.steps] = result
 
     @property
     def cast(self) -> Cast:
@@ -94,7 +78,7 @@ class AccuracyPane(Chooser[Point]):
         return scene.cast
 
     @property
-    def chart(self) -> Chart:
+    def chart(self) -> ErrorKind:
         """The lab chart's error, until another is chosen."""
         return self._chosen or ("theta" if self.shown.quantity == "theta_error" else "energy")
 
@@ -124,7 +108,7 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def _state(self) -> object:
-        computed = self._start, self.here, len(self.points), len(self.growths)
+        computed = self._start, self.here, len(self.points)
         chosen = self.index, self.cursor, self.chart
         return computed, chosen, self.shown, self.room
 
@@ -142,20 +126,12 @@ class AccuracyPane(Chooser[Point]):
             if self.room.height >= 18:
                 words = 6 if self.all else 4  # `all` adds the letters of all methods
             self._draw_chart(self.room.width, max(self.room.height - words, 1))
-        if self.chart == "time":
-            self.write_titles("Theta error over time, at each method's h")
-        else:
-            left = f", computing, {self.missing} points left" if self.missing else ""
-            title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
-            self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
+        left = f", computing, {self.missing} points left" if self.missing else ""
+        title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
+        self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
         return Picture([*self._chart.rows, *self.words(*self._sentences())][: self.room.height])
 
     def _draw_chart(self, width: int, height: int) -> None:
-        self.placed = []
-        if self.chart == "time":
-            shown = [each for each in self.growths if each.method.key not in self.shown.hidden]
-            self._chart = growth_chart(shown, self.cast, width, height)
-            return
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
         marks = [("@", point) for place in self.places if (point := self.present(place))]
         if self.cursor is not None:
@@ -166,8 +142,6 @@ class AccuracyPane(Chooser[Point]):
         self.placed = placed(series, points, self.chart, width, height)
 
     def _sentences(self) -> list[str]:
-        if self.chart == "time":
-            return growth_lines(self.growths, done=len(self.growths) == len(self.here))
         words = ["the current h is not on this chart; the arrows choose another"]
         if self.missing:
             words = []
@@ -183,7 +157,7 @@ class AccuracyPane(Chooser[Point]):
         return words
 
     def action_chart(self) -> None:
-        self._chosen = NEXT[self.chart]
+        self._chosen = "energy" if self.chart == "theta" else "theta"
         self.draw()
 
     def action_all(self) -> None:

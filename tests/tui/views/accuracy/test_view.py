@@ -1,6 +1,5 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
-import re
 from contextlib import asynccontextmanager
 
 import pytest
@@ -129,14 +128,8 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         assert pane.pointer is None  # far from any point
 
 
-async def test_over_time_the_slopes_are_measured_and_described():
-    async with accuracy_view(SCENES["drift"].altered(theta=2.0, h=0.02)) as (pilot, pane, _live):
-        await pilot.press("e")
-        await until(pilot, lambda: pane.chart == "time" and pane.settled)
-        text = " ".join(pane.text.split())
-        powers = re.search(r"Velocity Verlet t\^(\S+), RK4 t\^(\S+) No single power", text)
-        assert [float(power) for power in powers.groups()] == pytest.approx([1, 2], abs=0.1)
-        assert all(word in text for word in ("slope 2", "time [s]", "theta error [rad]"))
+async def test_e_charts_the_other_error():
+    async with accuracy_view() as (pilot, pane, _live):
         for chart in ("theta error", "energy error"):
             await pilot.press("e")
             await until(pilot, lambda chart=chart: chart in str(pane.border_title))
