@@ -108,4 +108,3 @@ def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Seri
     ends = [min(costs), max(costs)]
     errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
     return {order: Series(FRAME, f"slope {order}", ends, errors, dotted=True)}
-
