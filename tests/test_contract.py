@@ -18,8 +18,6 @@ COMMANDS = {
     "accuracy --all": "accuracy --all --time 2 --h-values 0.4:0.01:4 --target 1e-3",
     "stability": "stability --steps 30 --z-values 0.5,2.5 --theta-values 1,2",
     "stability --scene linear": "stability --scene linear",
-    "stability --map": "stability --steps 9 --z-values 0.5,2.5 --theta-values 1 --map",
-    "stability --section": "stability --section --theta 1.25 --h 0.348 --steps 3000",
     "run": "run --time 2",
     "run of a method that diverges": "run --h 2 --length 0.1 --time 4000",
     "run of a list": "run --h 0.05,0.1 --time 2",
@@ -36,7 +34,6 @@ COMMANDS = {
     "doctor": "doctor",
 }
 SCHEMAS = {
-    "stability --section": "section",
     "run of a list": "runs",
     "recordings show": "recordings-show",
     "recordings show of a cut recording": "recordings-show",

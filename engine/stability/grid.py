@@ -10,13 +10,13 @@ from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.run.compiled import available
 from pendu_tui.engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
-STRIP = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
+PART = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
 COMPILED_FROM = 100_000_000  # steps of a method: they take as long as importing and compiling
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """The amplitudes, steps and methods of a map, or of a strip of one."""
+    """The amplitudes, steps and methods of a map, or of a part of one."""
 
     theta: Floats  # rad, amplitudes between 0 and pi
     z: Floats  # h·w0, above 0
@@ -49,28 +49,40 @@ class Grid:
         """Return cells of unknown outcome."""
         return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
 
-    def strips(self) -> list["Grid"]:
-        """Return the grid cut along z; the cells are the same to the bit.
+    def parts(self, width: int | None = None) -> list["Part"]:
+        """Return the grid cut into `width` z of one method; the cells are the same to the bit.
 
         They depend on `sin`, that is on processor, libm and Numba, so all workers must be alike.
         """
-        fast = self.compiled
-        width = max(1, STRIP // len(self.theta))
+        width = width or max(1, PART // len(self.theta))
+        whole = replace(self, fast=self.compiled)
+        zs = [slice(first, first + width) for first in range(0, len(self.z), width)]
         return [
-            replace(self, z=self.z[start : start + width], fast=fast)
-            for start in range(0, len(self.z), width)
+            Part(z, index, replace(whole, z=self.z[z], methods=(method,)))
+            for z, (index, method) in product(zs, enumerate(self.methods))
         ]
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
-    """A part of a map."""
+class Part:
+    """Some z of one method of a grid."""
 
     z: slice
     method: int  # index
-    cells: Cells  # (z, theta)
-    steps: int
-    done: float  # share of the map that is done with these steps
+    grid: Grid  # of these alone
+
+    def cells(self) -> Cells:
+        """Return the outcomes by (z, theta)."""
+        return self.grid.cells()[:, 0]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A computed part of a map, and the share of the map that is done with its steps."""
+
+    part: Part
+    cells: Cells
+    done: float
 
 
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
@@ -78,10 +90,7 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
 
     By default in NumPy, because compiling would delay the first piece.
     """
-    zs = [slice(first, first + width) for first in range(0, len(grid.z), width)]
-    places = list(product(zs, enumerate(grid.methods)))
-    grid = replace(grid, fast=bool(grid.fast))
     for steps in passes:
-        for done, (z, (index, method)) in enumerate(places, 1):
-            part = replace(grid, z=grid.z[z], methods=(method,), steps=steps)
-            yield Piece(z, index, part.cells()[:, 0], steps, done / len(places))
+        parts = replace(grid, steps=steps, fast=bool(grid.fast)).parts(width)
+        for done, part in enumerate(parts, 1):
+            yield Piece(part, part.cells(), done / len(parts))

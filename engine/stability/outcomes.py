@@ -119,16 +119,13 @@ class Failure:
     reason: str  # over the top | grows | loses | chaotic
 
 
-def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:
+def first_failure(z: Floats, cells: Cells) -> Failure | None:
     """Return the first failure on an ascending ladder of z; None if the swing is held on all of it.
 
-    `cells` are the outcomes on the ladder.  With `within`, only failures in so many steps count,
-    and chaos, which does not depend on steps.  Bisection would not do, because above the first
-    failure there are windows of z where the swing is held again.
+    `cells` are the outcomes on the ladder.  Bisection would not do, because above the first failure
+    there are windows of z where the swing is held again.
     """
     lost = is_lost(cells)
-    if within is not None:
-        lost &= (cells["steps"] < within) | (cells["fate"] == CHAOTIC)
     if not lost.any():
         return None
     first = int(np.argmax(lost))

@@ -26,7 +26,6 @@ class Row:
     method: Method
     theta: float  # rad
     failure: Failure | None  # None: holds on the whole ladder
-    early: Failure | None  # within a tenth of the steps
     here: Any  # the CELL at the scene's z
 
 
@@ -39,11 +38,6 @@ def amplitude(scene: Scene) -> float | None:
         return None
     angle = 2 * math.asin(math.sqrt(share))
     return angle if 0 < angle < math.pi else None
-
-
-def early_steps(steps: int) -> int:
-    """Return a tenth of the steps, whose limit shows whether it still moves with the steps."""
-    return max(1, round(0.1 * steps))
 
 
 def ladder_of(
@@ -78,10 +72,8 @@ def map_of(
 def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:
     """Return the first failure of each method at each amplitude, from the cells of a ladder."""
     here = int(np.searchsorted(grid.z, scene.z))
-    early = early_steps(grid.steps)
     rows = []
     for (m, method), (t, theta) in product(enumerate(grid.methods), enumerate(grid.theta.tolist())):
         column = cells[:, m, t]
-        first = first_failure(grid.z, column)
-        rows.append(Row(method, theta, first, first_failure(grid.z, column, early), column[here]))
+        rows.append(Row(method, theta, first_failure(grid.z, column), column[here]))
     return rows

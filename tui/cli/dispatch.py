@@ -27,7 +27,7 @@ COMMANDS = {
     "snapshot": "save the lab as an SVG image",
     "serve": "the lab in a browser",
     "accuracy": "speed against accuracy: which method, which h, at what cost",
-    "stability": "where each method becomes unstable; phase portrait of its own map",
+    "stability": "where each method becomes unstable",
     "run": "run a scene without the screen and judge each method; for CI",
     "judge": "judge the energies of another program, from a file or stdin; for CI",
     "verify": "re-simulate recordings and compare every bit",

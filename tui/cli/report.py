@@ -240,10 +240,12 @@ def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
 
 
 def form_of(options: argparse.Namespace) -> Form:
-    """Return the form that the options ask for."""
-    if options.json:
+    """Return the form that the options or the suffix of the -o file ask for."""
+    path: Path | None = getattr(options, "output", None)
+    suffix = path.suffix.lower() if path else ""
+    if options.json or suffix == ".json":
         return "json"
-    return "csv" if getattr(options, "csv", False) else "table"
+    return "csv" if path or getattr(options, "csv", False) else "table"
 
 
 def publish(report: Report, options: argparse.Namespace) -> None:
@@ -253,4 +255,4 @@ def publish(report: Report, options: argparse.Namespace) -> None:
         report.show(form_of(options))
         return
     with text_file(path, options.force) as out:
-        report.show("json" if path.suffix.lower() == ".json" else "csv", out)
+        report.show(form_of(options), out)

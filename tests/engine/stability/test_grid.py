@@ -6,7 +6,6 @@ import pytest
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.compiled import available
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.engine.stability import grid as stability_map
 from pendu_tui.engine.stability.grid import Grid, pieces
 from pendu_tui.engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
 from pendu_tui.engine.stability.study import map_of
@@ -29,24 +28,25 @@ def test_the_axes_of_cells_are_z_method_and_amplitude():
 
 
 @each_way
-@pytest.mark.parametrize("strip", [1, 50])
-def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip, fast, monkeypatch):
-    monkeypatch.setattr(stability_map, "STRIP", strip)
+@pytest.mark.parametrize("width", [1, 5, None])
+def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width, fast):
     grid = replace(GRID, fast=fast)
-    strips = [strip.cells() for strip in grid.strips()]
-    assert len(strips) == -(-13 // max(1, strip // 7))
-    assert np.concatenate(strips).tobytes() == grid.cells().tobytes()
+    whole = grid.unknown()
+    for part in grid.parts(width):
+        whole[part.z, part.method] = part.cells()
+    assert len(grid.parts(width)) == 2 * -(-13 // (width or 13))
+    assert whole.tobytes() == grid.cells().tobytes()
 
 
 @needs_numba
-def test_all_strips_of_a_large_map_are_compiled_and_none_of_a_small_one():
+def test_all_parts_of_a_large_map_are_compiled_and_none_of_a_small_one():
     for grid, fast in ((MAP, True), (GRID, False), (replace(GRID, fast=True), True)):
-        assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
+        assert {part.grid.compiled for part in grid.parts()} == {fast} == {grid.compiled}
 
 
 def test_a_map_computed_in_pieces_is_not_compiled():
     piece = next(pieces(MAP, [50]))
-    plain = replace(MAP, z=MAP.z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
+    plain = replace(MAP, z=MAP.z[piece.part.z], methods=USUAL_CAST[:1], steps=50, fast=False)
     assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
 
 

@@ -14,32 +14,31 @@ from pendu_tui.tui.cli.workers import workers_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
-SECTION = ("stability", "--section", "--steps", 200, "--starts", 60)
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 20)
 
 
 @pytest.fixture
-def small_strips(monkeypatch):
-    monkeypatch.setattr("pendu_tui.engine.stability.grid.STRIP", 6)
+def small_parts(monkeypatch):
+    monkeypatch.setattr("pendu_tui.engine.stability.grid.PART", 6)
 
 
-@pytest.mark.parametrize("command", [(*STABILITY, "--json", "--map"), (*RUNS, "--csv"), SECTION])
+@pytest.mark.parametrize("command", [(*STABILITY, "--csv"), (*RUNS, "--csv")])
 @pytest.mark.parametrize(
     "where",
     [("--workers", 2), ("--executor", "concurrent.futures:ThreadPoolExecutor")],
     ids=lambda where: where[0],
 )
-def test_the_answer_is_the_same_to_the_bit_whatever_computes_it(where, command, small_strips):
+def test_the_answer_is_the_same_to_the_bit_whatever_computes_it(where, command, small_parts):
     assert pendu(*command, *where).out == pendu(*command).out
 
 
 @pytest.mark.slow
-def test_so_it_is_on_a_dask_cluster(small_strips):
+def test_so_it_is_on_a_dask_cluster(small_parts):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
     ) as cluster:
-        for command in ((*STABILITY, "--json", "--map"), (*RUNS, "--csv")):
+        for command in ((*STABILITY, "--csv"), (*RUNS, "--csv")):
             there = pendu(*command, "--dask", cluster.scheduler_address)
             assert there.out == pendu(*command).out
 

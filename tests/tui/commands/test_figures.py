@@ -10,7 +10,6 @@ COMMANDS = {
     "run": ("run", "--time", "5"),
     "accuracy": ("accuracy", "--time", "1", "--h-values", "0.1:0.05:2"),
     "map": ("stability", "--steps", 20, "--z-values", "0.5,1", "--theta-values", "1,2"),
-    "section": ("stability", "--section", "--steps", 20, "--starts", 5),
 }
 
 

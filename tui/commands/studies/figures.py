@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from pendu_tui.engine.accuracy.study import Point
-    from pendu_tui.engine.phase_space.section import Points
     from pendu_tui.engine.run.lockstep import Sample
     from pendu_tui.engine.stability.grid import Grid
     from pendu_tui.engine.stability.outcomes import Cells
@@ -173,17 +172,3 @@ def draw_map(options: Namespace, grid: "Grid", cells: "Cells") -> None:
         figure.supxlabel("z = h ω₀   (grey: the swing is lost; dashed: linear limit)")
         figure.supylabel("amplitude / °")
         figure.colorbar(image, ax=list(panels), label="log₁₀ of the largest |ΔE / E₀|")
-
-
-def draw_section(
-    options: Namespace, title: str, orbits: Sequence["Points"], edges: tuple[float, float]
-) -> None:
-    import numpy as np
-
-    look = {"color": "black", "rasterized": True, "markersize": 0.5, "mew": 0}
-    with _figure(options) as figure:
-        axes = figure.add_subplot(xlabel="θ / rad", ylabel="ω / (rad/s)", title=title)
-        axes.set(xlim=(-edges[0], edges[0]), ylim=(-edges[1], edges[1]))
-        for theta, omega in orbits:
-            wrapped = np.remainder(theta + math.pi, 2 * math.pi) - math.pi
-            axes.plot(wrapped.ravel(), omega.ravel(), ".", **look)

@@ -94,13 +94,14 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return self._is_begun and not self.is_computing
 
     def add(self, result: Piece) -> None:
-        self.cells[result.z, result.method] = result.cells
+        part = result.part
+        self.cells[part.z, part.method] = result.cells
         self._is_begun = True
-        self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]"
+        self._title = f"Stability (F5), {part.grid.steps} steps: h [s], amplitude [°]"
         self._state = (
             f"Computing {100 * result.done:.0f} %. "  # as a title it would repaint the pane
         )
-        if result.done == 1 and result.steps == PASSES[-1]:
+        if result.done == 1 and part.grid.steps == PASSES[-1]:
             self._state = ""
 
     def here(self, index: int) -> tuple[float, float] | None:

@@ -17,7 +17,7 @@ from pendu_tui.engine.stability.grid import Grid
 from pendu_tui.engine.stability.outcomes import HELD, UNKNOWN, Cells
 from pendu_tui.tui.drawing.axes import number_ticks
 from pendu_tui.tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
-from pendu_tui.tui.drawing.picture import Ink, Picture, Row
+from pendu_tui.tui.drawing.picture import Ink, Row
 
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
@@ -37,15 +37,6 @@ def scores(cells: Cells, steps: int) -> Scores:
     digits = -np.log10(np.clip(cells["error"], 1e-12, 1)) / 12
     is_held = np.isin(cells["fate"], HELD)
     return np.select([cells["fate"] == UNKNOWN, is_held], [-1.0, 1 + digits], survived)
-
-
-def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> Picture:
-    """Draw all panels and the legend, `columns` wide; without a palette, in characters."""
-    across = 2 if columns >= 70 else 1
-    width = (columns - 2 * (across - 1)) // across
-    rows = max(6, (width - MARGIN) // 4)  # a cell is twice as high as wide, so panels are about 2:1
-    panels = [panel(grid, cells, index, width, rows, palette) for index in range(len(grid.methods))]
-    return Picture([*side_by_side(panels, across), *legend(grid.steps, palette, columns)])
 
 
 def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:

@@ -65,15 +65,6 @@ def test_theory_is_drawn_for_the_methods_that_it_is_about():
     assert signs["rk4"] == signs["forest_ruth"] == signs["blanes_moan_6"] == {limit}
 
 
-@pytest.mark.parametrize("palette", [None, *PALETTES.values()])
-def test_the_whole_picture_fits_eighty_columns_and_names_every_method(palette):
-    text = drawing.picture(GRID, half_lost(), 80, palette).text
-    assert max(map(len, text.splitlines())) <= 80
-    assert len(text.splitlines()) <= 24
-    for index, method in enumerate(GRID.methods, 1):
-        assert f"{index} {method.letter} {method.label}" in text
-
-
 @given(
     st.tuples(st.integers(1, 30), st.integers(1, 20)),
     st.tuples(st.integers(1, 40), st.integers(1, 30)),
