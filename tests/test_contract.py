@@ -106,7 +106,6 @@ JUDGE = "judge energies.csv --time t --energy E"
         (3, "recordings show absent.mcap"),
         (4, "live --no-record"),
         (4, "tour --no-record"),
-        (5, f"{JUDGE} --junit absent/judge.xml"),
         (5, "export whole.mcap -o absent/whole.csv"),
     ],
 )

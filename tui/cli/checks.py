@@ -1,4 +1,4 @@
-"""Checks: the expression of --fail-if, its exit code, and JUnit XML, which CI shows as tests.
+"""The expression of --fail-if, and its exit code.
 
 An expression, `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`, joins comparisons
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
@@ -19,19 +19,15 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.run.judgement import VERDICTS, Progress
-from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.files import text_file
-from pendu_tui.tui.cli.options import Suggestions, add_file, did_you_mean
-from pendu_tui.tui.cli.report import MAX_CELL, warn
+from pendu_tui.tui.cli.options import Suggestions, did_you_mean
+from pendu_tui.tui.cli.report import warn
 
 FIELDS = (
     *NUMBERS,
@@ -183,43 +179,24 @@ def _quoted(text: str) -> str:
 
 
 class Check(NamedTuple):
-    """A check that passed, or failed with a sentence."""
+    """The gate of one run or record."""
 
     name: str
-    said: str  # what was found
-    failure: str | None
+    failure: str  # the values that trip it, "" if it passes
 
 
-def add_check_options(parser: argparse.ArgumentParser, names: Iterable[str], meaning: str) -> None:
-    """Add --fail-if, whose comparisons have these names, and --junit, for `conclude`."""
+def add_gate_option(parser: argparse.ArgumentParser, names: Iterable[str], meaning: str) -> None:
+    """Add --fail-if, whose comparisons have these names."""
     parser.add_argument("--fail-if", metavar="EXPR", choices=Suggestions(names), help=meaning)
-    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML")
 
 
-def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -> Exit:
-    """Report failed checks, write the XML if asked for, and return the exit code."""
-    failed = [check for check in checks if check.failure is not None]
-    if failed:
-        where = ""
-        if len(checks) > 1:
-            where = f" in {len(failed)} of {len(checks)} runs, first at {failed[0].name}"
-        warn(f"the check failed{where}: {options.fail_if} ({failed[0].failure})")
-    if options.junit:
-        write_junit(options.junit, suite, checks)
-    return Exit.CHECK_FAILED if failed else Exit.FINE
-
-
-def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:
-    """Write a file with a test for each check; it replaces an earlier report."""
-    name = printable(suite, MAX_CELL)
-    failures = sum(check.failure is not None for check in checks)
-    counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "skipped": "0"}
-    root = Element("testsuite", {"name": name, **counts})
-    for check in checks:
-        case = SubElement(root, "testcase", classname=name, name=printable(check.name, MAX_CELL))
-        if check.failure is not None:
-            SubElement(case, "failure", message=printable(check.failure, MAX_CELL))
-        SubElement(case, "system-out").text = printable(check.said, MAX_CELL)
-    indent(root)
-    with text_file(path, force=True) as out:
-        ElementTree(root).write(out, encoding="unicode", xml_declaration=True)
+def conclude(expression: str, checks: Sequence[Check]) -> Exit:
+    """Warn of the checks that failed, and return the exit code."""
+    failed = [check for check in checks if check.failure]
+    if not failed:
+        return Exit.FINE
+    where = ""
+    if len(checks) > 1:
+        where = f" in {len(failed)} of {len(checks)} runs, first at {failed[0].name}"
+    warn(f"the check failed{where}: {expression} ({failed[0].failure})")
+    return Exit.CHECK_FAILED

@@ -13,6 +13,8 @@ DROPPED = {
     "stability --section": "pendu-tui live, and there F3 and the key x",
     "stability --starts": "pendu-tui live, and there F3 and the key x",
     "stability --map": "-o map.csv or -o map.svg; pendu-tui live draws it with F5",
+    "run --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    "judge --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
     "completion": "pendu-tui --print-completion SHELL",
     "export --format": "CSV, which DuckDB, polars and pandas read",
     "recordings prune": "rm; pendu-tui recordings lists the files, newest first",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pendu_tui.engine.run.judgement import DEFINITIONS, FALSE_ALARMS, Progress
 from pendu_tui.recordings.errors import printable
-from pendu_tui.tui.cli.checks import Check, add_check_options, conclude, parse
+from pendu_tui.tui.cli.checks import Check, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import add_file, count, positive
 from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, publish
@@ -25,7 +25,7 @@ EXAMPLES = """\
 examples:
   pendu-tui judge energy.csv --time t --energy total
   pendu-tui judge energy.xvg --time 1 --energy "Total Energy" --fail-if 'verdict != bounded'
-  pendu-tui judge log.lammps --time Step --energy KinEng+PotEng --scale std --junit judge.xml
+  pendu-tui judge log.lammps --time Step --energy KinEng+PotEng --scale std
   pendu-tui judge md.csv --time 'Time (ps)' --energy total --atoms 648 --temperature 300
   pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
@@ -77,7 +77,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--steps", metavar="H,H", type=steps, default=[], help=sizes)
     names = (*FIELDS, "verdict")
     meaning = f"exit with 1 if the expression is true; fields: {', '.join(names)}"
-    add_check_options(parser, names, meaning)
+    add_gate_option(parser, names, meaning)
     add_report_options(parser)
 
 
@@ -129,12 +129,8 @@ def run(options: argparse.Namespace) -> int:
         for result in results:
             skipped = sum(result["skipped"].values())  # rows, for whatever reason
             failures.append(gate({"": result | orders | {"skipped": skipped}}))
-    check = Check(
-        f"{options.energy}: {options.fail_if or 'no check'}",
-        "; ".join(lines),
-        "; ".join(filter(None, dict.fromkeys(failures))) or None,
-    )
-    code = conclude(options, f"pendu-tui judge {' '.join(options.files)}", [check])
+    failure = "; ".join(filter(None, dict.fromkeys(failures)))
+    code = conclude(options.fail_if, [Check("", failure)])
     if any(result["verdict"] == "failed" for result in results):
         return Exit.CHECK_FAILED
     return code

@@ -6,7 +6,7 @@ from pathlib import Path
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.judgement import DEFINITIONS
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.cli.checks import FIELDS, add_check_options, parse
+from pendu_tui.tui.cli.checks import FIELDS, add_gate_option, parse
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import add_file, count, duration
 from pendu_tui.tui.cli.report import add_report_options
@@ -45,7 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "exit with 1 if the expression is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == "
         "grows; fields: those of --json"
     )
-    add_check_options(parser, names, meaning)
+    add_gate_option(parser, names, meaning)
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
     add("--resume", action="store_true", help="continue the list of runs in FILE.csv.partial")

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -244,14 +243,10 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
         ),
     ],
 )
-def test_a_gate_gives_the_values_and_junit_has_it_as_a_test(expression, found):
-    outcome = judge(table(), "--fail-if", expression, "--junit", "judge.xml")
+def test_a_gate_gives_the_values(expression, found):
+    outcome = judge(table(), "--fail-if", expression)
     assert outcome.code == bool(found)
     assert f"({found})" in outcome.err or not found
-    suite = ElementTree.parse("judge.xml").getroot()
-    assert (suite.attrib["tests"], suite.attrib["failures"]) == ("1", str(outcome.code))
-    assert "bounded" in suite.findtext("testcase/system-out")
-    assert suite.find("testcase").attrib["name"].endswith(expression)
 
 
 @pytest.mark.parametrize(

@@ -226,12 +226,10 @@ def test_ctrl_c_keeps_the_rows_that_are_done(part):
     assert not list(part.parent.iterdir())
 
 
-def test_the_gate_is_that_of_every_run(tmp_path):
-    path = tmp_path / "report.xml"
-    outcome = pendu(*LIST, "--fail-if", "rk4.max_energy_error > 1e-4", "--junit", path)
+def test_the_gate_is_that_of_every_run():
+    outcome = pendu(*LIST, "--fail-if", "rk4.max_energy_error > 1e-4")
     assert outcome.code == 1
     assert "in 2 of 4 runs, first at theta 0.523599, h 0.1" in outcome.err
-    assert path.read_text().count("<failure") == 2
 
 
 @pytest.mark.parametrize(

@@ -79,8 +79,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    check = check_of(f"{scene.name}: {options.fail_if or 'no check'}", rows, gate)
-    return conclude(options, f"pendu-tui run {scene.name}", [check])
+    return conclude(options.fail_if, [check_of(scene.name, rows, gate)])
 
 
 def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
@@ -160,9 +159,8 @@ def _evaluations(
 
 
 def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
-    verdicts = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
-    failure = gate and gate({row["method"]: row for row in rows})
-    return Check(name, verdicts, failure or None)
+    failure = gate({row["method"]: row for row in rows}) if gate else ""
+    return Check(name, failure)
 
 
 def _report(
@@ -381,7 +379,7 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
     if kept:
         publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
     if ended is None:
-        return conclude(options, f"pendu-tui run, {runs} runs", checks)
+        return conclude(options.fail_if, checks)
     if not done:
         raise ended
     where = ""
