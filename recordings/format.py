@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from typing import Any, get_args
 
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from pendu_tui.engine.run.judgement import VERDICTS, Milestone, MilestoneKind
+from pendu_tui.engine.run.judgement import Milestone, MilestoneKind
 from pendu_tui.engine.run.lockstep import Reading, Sample
+from pendu_tui.engine.run.verdicts import VERDICTS, word_of_before
 from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
 from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.recordings.events import (
@@ -150,11 +151,13 @@ def _scene(fields: dict[str, Any]) -> Scene:
 
 def _milestone(fields: dict[str, Any]) -> Milestone:
     kind = fields["milestone"]
-    verdict = fields["verdict"]
+    method = method_named(fields["method"])
+    rises = fields["energy_error"] > 0
+    verdict = word_of_before(fields["verdict"], rises, method.symplectic)
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
     values = {name: fields[name] for name in Milestone._fields if name in fields}
-    values |= {"kind": kind, "method": method_named(fields["method"])}
+    values |= {"kind": kind, "method": method, "verdict": verdict}
     if kind == "errors cross":
         values["other"] = method_named(fields["other"])
     return Milestone(**values)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from pendu_tui.engine import judge
-from pendu_tui.engine.run.judgement import VERDICTS
+from pendu_tui.engine.run.verdicts import BOUNDED, VERDICTS
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.verification import verify
 
@@ -31,7 +31,7 @@ class EnergyDrift:
         self,
         times: "ArrayLike",
         energies: "ArrayLike",
-        verdict: str = "bounded",
+        verdict: str = BOUNDED,
         max_drift: float | None = None,
         scale: float | str = "std",
     ) -> "Judged":
@@ -41,7 +41,7 @@ class EnergyDrift:
         """
         __tracebackhide__ = True
         if verdict not in VERDICTS:
-            pytest.fail(f"there is no verdict {verdict!r}")
+            pytest.fail(f"there is no verdict {verdict!r}; choose from {', '.join(VERDICTS)}")
         try:
             judged = judge(times, energies, scale)
         except ValueError as error:

@@ -26,19 +26,19 @@ _Z = """
 Z = tuple(map(float, _Z.split()))
 
 ALLOWED: dict[str, set[tuple[str, ...]]] = {
-    # the verdicts that may follow each other; "too early" may come before or instead of any
+    # the verdicts that may follow each other; "undecided" may come before or instead of any
     "b": {("bounded",)},
     # slow chaos, seen late or not at all
-    "s": {("bounded",), ("bounded", "chaotic"), ("chaotic",), ("chaotic", "wanders")},
+    "s": {("bounded",), ("bounded", "chaotic"), ("chaotic",)},
     "c": {("chaotic",)},  # within bounds
-    "w": {("chaotic",), ("chaotic", "wanders"), ("wanders",)},
+    "w": {("chaotic",)},
     "g": {("grows",)},
     "d": {("loses",)},
-    "k": {("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
+    "k": {("grows",), ("loses",)},
     # in a band that holds the start
-    "K": {("bounded",), ("grows", "caught"), ("loses", "caught"), ("caught",)},
+    "K": {("bounded",), ("grows",), ("loses",)},
     # moves by less than 1e-10, or by little beside its oscillation
-    "B": {("bounded",), ("loses",), ("grows",), ("caught",)},
+    "B": {("bounded",), ("loses",), ("grows",)},
 }
 
 
@@ -81,4 +81,5 @@ def watch(scene: Scene) -> int:
 
 def is_true(letter: str, course: Course) -> bool:
     """Return whether the truth allows these verdicts; none are always allowed."""
-    return not course or tuple(verdict for verdict, *_ in course) in ALLOWED[letter]
+    words = tuple(verdict for verdict, *_ in course if verdict != "undecided")
+    return not words or words in ALLOWED[letter]

@@ -18,7 +18,7 @@ import numpy as np
 
 from pendu_tui.engine.run import judgement as limits
 from pendu_tui.engine.run.bands import MAX_BINS
-from pendu_tui.engine.run.judgement import Judgement, Progress
+from pendu_tui.engine.run.verdicts import Judgement, Progress, in_todays_words
 
 # correlation times over the record's length: noise with the first walks, others have a level
 _TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])
@@ -31,6 +31,13 @@ _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that end within t
 def judge_record(
     times: Any, energies: Any, failed: bool = False, absolute: bool = True
 ) -> Judgement:
+    """Judge as `_judge_record` does, in today's words."""
+    judgement = _judge_record(times, energies, failed, absolute)
+    rises = bool(energies[-1] > energies[0])
+    return in_todays_words(judgement, rises, symplectic=False)
+
+
+def _judge_record(times: Any, energies: Any, failed: bool, absolute: bool) -> Judgement:
     """Judge arrays of finite `energies` at increasing `times`; the slope has their units.
 
     `failed`: nan or inf came after the last of them.  `absolute`: zero is the least possible

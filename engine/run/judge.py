@@ -30,15 +30,9 @@ from pendu_tui.engine.run.bands import (
     one_way_share,
     typical_width,
 )
-from pendu_tui.engine.run.judgement import (
-    Judgement,
-    LookPoint,
-    Milestone,
-    MilestoneKind,
-    Progress,
-    Verdict,
-)
+from pendu_tui.engine.run.judgement import LookPoint, Milestone, MilestoneKind
 from pendu_tui.engine.run.tangent import Stretching, at_bottom
+from pendu_tui.engine.run.verdicts import Judgement, Progress, in_todays_words
 
 
 def stride(period: float, h: float) -> int:
@@ -54,7 +48,7 @@ class Judge:
 
     def __init__(self, h: float, period: float, method: Method, model: Model) -> None:
         """`h` [s] is the method's step; `period` [s] as in `stride`."""
-        self.judgement = Judgement()
+        self.judgement = Judgement("too early")  # in the words of before
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
         self._period = period
@@ -111,6 +105,12 @@ class Judge:
         self.judgement = Judgement("failed", periods=steps * self._h / self._period)
 
     @property
+    def shown(self) -> Judgement:
+        """The judgement in today's words."""
+        rises = self._last is not None and self._last.error > 0
+        return in_todays_words(self.judgement, rises, symplectic=self._orbit is not None)
+
+    @property
     def _steps(self) -> int:
         return self._last.step if self._last else 0
 
@@ -162,7 +162,7 @@ class Judge:
             return None
         return Progress(int(self._periods), math.ceil(need), "swings")
 
-    def _trend(self, verdict: Verdict) -> Judgement:
+    def _trend(self, verdict: str) -> Judgement:
         """Return a judgement with the recent slope, if there is evidence for one.
 
         Where a line fits the logarithm of the energy better than the energy, the slope is the
@@ -201,7 +201,7 @@ class Judge:
         """Return ln(E/E0) if energy was gained, else the error; small errors hardly change."""
         return math.log1p(error) if self._conserved and error > 0 else error
 
-    def _verdict_of_bands(self, previous: Verdict) -> Verdict:
+    def _verdict_of_bands(self, previous: str) -> str:
         """Return the verdict by the last quarter of the bins, the present band.
 
         Errors are relative to the start, so the start is at 0.
@@ -233,7 +233,7 @@ class Judge:
         straight = len(bins) >= limits.STRAIGHT_BINS and one_way_share(bins) >= limits.MIN_ONE_WAY
         return distance >= 1 and straight
 
-    def _settled(self, previous: Verdict, distance: float, width: float) -> Verdict | None:
+    def _settled(self, previous: str, distance: float, width: float) -> str | None:
         """Return `caught` if the second half lies in a band elsewhere, `wanders` if in none."""
         half = self._bands.recent(0.5)
         early = previous in ("grows", "loses") and len(half) >= MAX_BINS / 4
@@ -295,7 +295,7 @@ class _Orbit(Stretching):
         fenced = self._z <= limits.FENCED_Z and self._swing < limits.NEAR_TOP
         return fenced or self._z <= limits.REGULAR_Z
 
-    def verdict(self, previous: Verdict, peak: float, periods: float) -> Verdict:
+    def verdict(self, previous: str, peak: float, periods: float) -> str:
         """Return the verdict; `peak` is the largest |energy error| so far.
 
         Neighbours on regular orbits separate in proportion to time, and by about 1/k'² in the
@@ -336,7 +336,7 @@ class Judges:
     @property
     def judgements(self) -> list[Judgement]:
         """The judgements since the last change of the stepping, in the order of the cast."""
-        return [judge.judgement for judge in self._judges]
+        return [judge.shown for judge in self._judges]
 
     def copy(self) -> Self:
         """Return other judges that go on from here."""
@@ -363,9 +363,9 @@ class Judges:
         for method, judge, point in zip(self._cast, self._judges, points, strict=True):
             if point is None:
                 continue
-            previous = judge.judgement.verdict
+            previous = judge.shown.verdict
             judge.look(point)
-            now = judge.judgement
+            now = judge.shown
             if now.verdict != previous:
                 verdict = Milestone("verdict", method, step, t, point.error, now.verdict)
                 self.milestones.append(verdict._replace(trend=now.slope, lyapunov=now.lyapunov))

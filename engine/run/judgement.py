@@ -1,36 +1,10 @@
-"""Verdicts and their definitions, all thresholds, and what judges take and return."""
+"""All thresholds, and what judges take and note."""
 
 import math
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method
-
-Verdict = Literal[
-    "bounded", "grows", "loses", "chaotic", "caught", "wanders", "failed", "too early"
-]
-VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
-
-DEFINITIONS: dict[Verdict, str] = {
-    "bounded": "the energy stays in a band around its start, without a trend",
-    "grows": "the energy rises and no longer comes back to its start",
-    "loses": "the energy falls and no longer comes back to its start",
-    "chaotic": "nearby starts separate exponentially, and the energy stays in a band",
-    "caught": "the energy has left its start and stays in another band",
-    "wanders": "the energy goes far up and down, without a trend and in no band",
-    "failed": "the numbers have ended: nan, infinite, or too large for a double",
-    "too early": "the data do not support one of these yet",
-}
-"""One definition of each verdict, for the help, the README and every judge."""
-
-FALSE_ALARMS: dict[Verdict, float] = {
-    "bounded": 0.6,
-    "grows": 0.5,
-    "loses": 0.4,
-    "caught": 0.8,
-    "wanders": 6.3,
-}
-"""Percentage of wrong verdicts of each kind on energies alone, by tests/bench/foreign.py."""
-
+from pendu_tui.engine.run.verdicts import UNDECIDED
 
 # Thresholds for a method in a run.  z is h·w0 times the longest substep; errors are relative energy
 # errors.
@@ -97,37 +71,6 @@ class LookPoint(NamedTuple):
     energy: float = 1.0  # s⁻²
 
 
-class Progress(NamedTuple):
-    """How far it is to a verdict: "4 of 8 swings"."""
-
-    have: int
-    need: int
-    unit: str  # "swings", "steps", "independent samples"
-
-    def __str__(self) -> str:
-        return f"{self.have} of {self.need} {self.unit}"
-
-
-class Judgement(NamedTuple):
-    """A verdict on energies so far, and their slope if there is evidence for one."""
-
-    verdict: Verdict = "too early"
-    slope: float | None = None  # mean change of the relative energy error per unit of time [1/s]
-    uncertainty: float | None = None  # standard deviation of the slope
-    periods: float = 0.0  # how many periods the verdict rests on
-    lyapunov: float | None = None  # 1/s, where the verdict rests on it
-    progress: Progress | None = None  # while it is too early
-    growth: float | None = None  # 1/s, of the logarithm of the error, beyond E0
-    # Of a whole record, in its own units:
-    transient: float = 0.0  # time at the start that was left out
-    first: int = 0  # the index of the first sample that was judged
-    independent: float = 0.0  # correlation times in the record
-    fluctuation: float | None = None  # standard deviation about a line
-
-    def __str__(self) -> str:
-        return f"{self.verdict}: {self.progress}" if self.progress else self.verdict
-
-
 MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
 
 
@@ -139,7 +82,7 @@ class Milestone(NamedTuple):
     step: int
     t: float  # s, simulated
     energy_error: float  # relative, at this step
-    verdict: Verdict = "too early"
+    verdict: str = UNDECIDED
     other: Method | None = None  # whose error was passed
     # of a new verdict:
     trend: float | None = None  # 1/s

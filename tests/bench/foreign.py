@@ -1,7 +1,7 @@
-"""`judge` on series of known truth: how often its verdict is wrong, or `too early` without need.
+"""`judge` on series of known truth: how often its verdict is wrong, or `undecided` without need.
 
 Each kind of series is made with 100 to 6000 samples, random scales and random zeros of energy.
-`too early` is never wrong; it is counted where the effect has at least five standard deviations and
+`undecided` is never wrong; it is counted where the effect has at least five standard deviations and
 the record at least 50 independent samples.
 """
 
@@ -235,7 +235,7 @@ def measure(share: float) -> dict[str, Any]:
             energies = np.round((zero + series.energies) * scale, 8)
             kept = np.isfinite(energies)
             verdict = judge_record(times[kept], energies[kept]).verdict
-            is_early = verdict == "too early"
+            is_early = verdict == "undecided"
             wrong = not is_early and verdict not in series.truth
             kinds[series.kind][verdict] += 1
             kinds[series.kind]["wrong"] += wrong

@@ -53,7 +53,7 @@ def truth_table(share: float) -> dict[str, Any]:
 
 
 def contradictions() -> list[tuple[str, str, str, str]]:
-    """Return where the verdicts on a run and on its energies alone differ, "too early" apart."""
+    """Return where the verdicts on a run and on its energies alone differ, "undecided" apart."""
     different = []
     for scene in SCENES.values():
         lockstep = Lockstep(scene, judged=True)
@@ -72,7 +72,7 @@ def contradictions() -> list[tuple[str, str, str, str]]:
             failed = len(readings) < len(samples)
             alone = judge_record(times, energies, failed=failed).verdict
             both = (judgement.verdict, alone)
-            if judgement.verdict != alone and "too early" not in both:
+            if judgement.verdict != alone and "undecided" not in both:
                 different.append((scene.name, scene.cast[index].key, *both))
     return different
 

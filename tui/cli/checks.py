@@ -5,7 +5,7 @@ by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes na
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
 (None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it is;
 None means that the method never failed.  `verdict` is compared by == or != with a verdict, such as
-too_early, so `!= bounded` is strict.
+grows, so `!= bounded` is strict.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
@@ -22,7 +22,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
-from pendu_tui.engine.run.judgement import VERDICTS, Progress
+from pendu_tui.engine.run.verdicts import VERDICTS, Progress
 from pendu_tui.recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -62,8 +62,6 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
     source = " ".join(text.split())
     if len(source) > 10_000:
         raise UserError("--fail-if: it is longer than 10,000 characters.")
-    for verdict in VERDICTS:
-        source = source.replace(verdict, verdict.replace(" ", "_"))
     source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
     grammar = _Grammar(fields, cast)
     if "#" in source:  # a comment would hide what follows
@@ -119,8 +117,8 @@ class _Grammar:
 def _verdict(sign: ast.cmpop, node: ast.expr) -> str:
     if not isinstance(sign, ast.Eq | ast.NotEq):
         raise UserError("--fail-if: verdicts have no order: compare them with == or !=.")
-    word = ast.unparse(node).strip("'").replace("_", " ")
-    _check("verdict", word, VERDICTS)
+    word = ast.unparse(node).strip("'")
+    _check("verdict", word, tuple(VERDICTS))
     return word
 
 

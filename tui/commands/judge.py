@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
-from pendu_tui.engine.run.judgement import DEFINITIONS, FALSE_ALARMS, Progress
+from pendu_tui.engine.run.verdicts import CHAOTIC, FAILED, LEAVES, VERDICTS, Progress
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.checks import Check, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -30,11 +30,9 @@ examples:
   pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
-verdicts, and in parentheses how many of 100 were wrong on series with a known answer:
+verdicts:
 """ + "\n".join(
-    f"  {verdict}: {text}" + (f" ({FALSE_ALARMS[verdict]})" if verdict in FALSE_ALARMS else "")
-    for verdict, text in DEFINITIONS.items()
-    if verdict != "chaotic"
+    f"  {each.word}: {each.meaning}" for each in VERDICTS.values() if each.word != CHAOTIC
 )
 
 FIELDS = (
@@ -131,7 +129,7 @@ def run(options: argparse.Namespace) -> int:
             failures.append(gate({"": result | orders | {"skipped": skipped}}))
     failure = "; ".join(filter(None, dict.fromkeys(failures)))
     code = conclude(options.fail_if, [Check("", failure)])
-    if any(result["verdict"] == "failed" for result in results):
+    if any(result["verdict"] == FAILED for result in results):
         return Exit.CHECK_FAILED
     return code
 
@@ -286,9 +284,7 @@ def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict
     The drift has no order unless it is significant at each step size.
     """
     fluctuations = [fields["fluctuation"] for fields in results]
-    drifts = [
-        fields["absolute_trend"] for fields in results if fields["verdict"] in ("grows", "loses")
-    ]
+    drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
     return {"fluctuation_order": _power(steps, fluctuations), "drift_order": _power(steps, drifts)}
 
 

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.engine.run.judgement import DEFINITIONS
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.checks import FIELDS, add_gate_option, parse
 from pendu_tui.tui.cli.errors import UserError
@@ -26,7 +26,7 @@ examples:
 drift_per_second: the slope of the relative energy error, or null without evidence for a trend
 
 verdicts:
-""" + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
+""" + "\n".join(f"  {each.word}: {each.meaning}" for each in VERDICTS.values())
 
 MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
 

@@ -98,17 +98,6 @@ PALETTES = {
     ),
 }
 
-SIGNS = {
-    "bounded": "=",
-    "grows": "+",
-    "loses": "-",
-    "caught": "=",
-    "wanders": "~",
-    "chaotic": "!",
-    "failed": "!",
-}
-"""Signs before verdicts, for those who cannot tell the colours."""
-
 
 def palette(theme: str) -> Palette:
     """Return the palette of a theme; for Textual's own, guess it from the name."""

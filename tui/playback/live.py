@@ -7,10 +7,11 @@ from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, Literal
 
 from pendu_tui.engine.methods.own import OwnMethod, OwnMethodError
-from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Judgement
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import Event, EventKind, noticed
 from pendu_tui.tui.cli.time_limit import limited

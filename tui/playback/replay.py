@@ -8,9 +8,10 @@ from copy import copy
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
-from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
+from pendu_tui.engine.run.verdicts import FAILED, Judgement
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus
 from pendu_tui.tui.playback.history import History, changes_of
@@ -70,7 +71,7 @@ class Replay(Playback):
         }
         for method, reading in zip(self.scene.cast, self.sample.readings, strict=True):
             if reading.diverged_at is not None:
-                given[method] = Judgement("failed")
+                given[method] = Judgement(FAILED)
         return [given.get(method, Judgement()) for method in self.scene.cast]
 
     @property

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.model import EnergyError
-from pendu_tui.engine.run.judgement import DEFINITIONS
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import SCENES, UNITS, Scene
-from pendu_tui.tui.drawing.palette import SIGNS
 from pendu_tui.tui.words.numbers import counted, motion_text, z_text
 
 WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
@@ -28,7 +27,7 @@ GLOSSARY = {
     "evals/step": "force evaluations a step: what the method costs",
     "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns "
     "(rotation)",
-    **{f"{SIGNS.get(word, '')} {word}".strip(): DEFINITIONS[word] for word in DEFINITIONS},
+    **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its "
     "place and its key",
     "×": "in the chart: one error passes another, and stays above it",

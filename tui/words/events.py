@@ -5,20 +5,10 @@ from typing import Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.run.judgement import Milestone
+from pendu_tui.engine.run.verdicts import FAILED, VERDICTS
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import energy_ratio, short_name
 from pendu_tui.tui.words.numbers import start, two_digits
-
-VERDICTS: dict[str, str] = {
-    "bounded": "stays bounded",
-    "loses": "loses energy",
-    "grows": "gains energy",
-    "chaotic": "turns chaotic",
-    "caught": "is caught",
-    "wanders": "wanders",
-    "failed": "failed",
-    "too early": "is undecided again",
-}
 
 
 class EventLine(NamedTuple):
@@ -87,7 +77,8 @@ def _milestone(milestone: Milestone, conserved: bool) -> str:
     if milestone.other:
         return f"{name}'s error > {short_name(milestone.other)}'s"
     if milestone.kind != "over the top":
-        return f"{name} {VERDICTS.get(milestone.kind, VERDICTS[milestone.verdict])}"
+        verdict = FAILED if milestone.kind == FAILED else milestone.verdict
+        return f"{name} {VERDICTS[verdict].event}"
     text = f"{name} over the top"
     if ratio := energy_ratio(milestone, conserved):
         unit = "E0" if conserved else "E(t)"

@@ -10,29 +10,33 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Method
-from pendu_tui.engine.run.judgement import Judgement, Milestone
+from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import SteppingChange
+from pendu_tui.engine.run.verdicts import (
+    BOUNDED,
+    CHAOTIC,
+    FAILED,
+    LEAVES,
+    LOSES,
+    VERDICTS,
+    Judgement,
+)
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.numbers import about, two_digits
 
 SENTENCES = {
+    **{each.word: each.sentence for each in VERDICTS.values()},
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0; off in angle and speed [rad]: {misses}.",
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
-    "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s{energy}.",
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
-    "bounded": "{names} bounded; no trend over {seconds:about}.",
-    "chaotic": "{0} is chaotic: nearby starts separate {seconds:tenfold}.",
-    "wanders": "{0} wanders: its energy goes up and down, without a trend and in no band.",
-    "caught": "{0} has settled at an energy error of about {error:+.3g}.",
+    "rests": "{0} has settled at an energy error of about {error:+.3g}.",
     "lost": "{0} has lost {share:percent} of its energy.",
-    "gains": "{0} gains {rate:share} of {unit} per s.",
     "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
-    "loses": "{0} loses {rate:share} of {unit} per s.",
     "will pass": (
         "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}."
     ),
@@ -49,8 +53,8 @@ TURN = 8.0  # s of the clock for each of the lasting insights
 UNCHANGED = 0.05  # a smaller change of the energy is not worth mentioning
 MAX_BAND = 0.2  # of the energy; larger losses change the rate of loss
 MAX_PERIOD = 2.0  # small swings; near the separatrix the rate of loss depends on the energy
-PRIORITY = ("failed", "over the top", "errors cross", "verdict")
-IRREGULAR = ("chaotic", "wanders", "caught")
+PRIORITY = (FAILED, "over the top", "errors cross", "verdict")
+IRREGULAR = (CHAOTIC, "rests")
 """Kinds that are also worth stating of a method that went over the top."""
 
 
@@ -149,7 +153,7 @@ def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | No
         if milestone.kind != "verdict":
             return milestone_insight(milestone, _is_conserved(source))
         found = drift(source, source.scene.cast.index(milestone.method))
-        if milestone.verdict == "bounded":
+        if milestone.verdict == BOUNDED:
             found = bounded(source, hidden)
         if found:
             return found
@@ -168,7 +172,7 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     """Return all insights on the methods shown, the most important first; at least one."""
     ended = {at: each for at, each in endings(source).items() if each.method.key not in hidden}
-    first = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
+    first = sorted(ended.values(), key=lambda each: (each.kind != FAILED, each.step))
     found = [milestone_insight(each, _is_conserved(source)) for each in first]
     if staying := bounded(source, hidden):
         found.append(staying)
@@ -187,8 +191,8 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
 
 def endings(source: Source) -> dict[int, Milestone]:
     """Return the milestones of failed methods and those over the top, by index."""
-    ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
-    ended.sort(key=lambda each: each.kind == "failed")
+    ended = [each for each in source.milestones if each.kind in ("over the top", FAILED)]
+    ended.sort(key=lambda each: each.kind == FAILED)
     return {source.scene.cast.index(each.method): each for each in ended}
 
 
@@ -222,21 +226,22 @@ def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
 def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     """Return the insight on the bounded methods, if there are any."""
     judged = zip(source.scene.cast, source.judgements, strict=True)
-    found = {m: j.periods for m, j in judged if j.verdict == "bounded" and m.key not in hidden}
+    found = {m: j.periods for m, j in judged if j.verdict == BOUNDED and m.key not in hidden}
     if not found:
         return None
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
-    return Insight("bounded", tuple(found), {"seconds": min(found.values()) * period})
+    return Insight(BOUNDED, tuple(found), {"seconds": min(found.values()) * period})
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
-    """Return the insight on a chaotic, wandering or caught method; None for other verdicts."""
-    if judgement.verdict not in IRREGULAR:
+    """Return the insight on a method that is chaotic or rests elsewhere; None for others."""
+    kind = "rests" if judgement.rests else judgement.verdict
+    if kind not in IRREGULAR:
         return None
     values = {"error": error, "seconds": None}
     if judgement.lyapunov:
         values["seconds"] = math.log(10) / judgement.lyapunov
-    return Insight(judgement.verdict, (method,), values)
+    return Insight(kind, (method,), values)
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -247,24 +252,25 @@ def drift(source: Source, index: int) -> Insight | None:
     if found := irregular(method, judgement, error):
         return found
     conserved = _is_conserved(source)
-    loses = judgement.verdict == "loses"
+    loses = judgement.verdict == LOSES
     if conserved and loses and -error > 0.5:  # the share lost is more telling than the rate
         return Insight("lost", (method,), {"share": -error})
-    sign, kind = {"grows": (1, "gains"), "loses": (-1, "loses")}.get(judgement.verdict, (0, ""))
-    rate = sign * (judgement.slope or 0.0)
-    if rate <= 0:
+    rate = judgement.slope or 0.0
+    if loses:
+        rate = -rate
+    if judgement.verdict not in LEAVES or rate <= 0:
         return None
     if judgement.growth and not loses:
         return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
     unit = "E0" if conserved else "the true energy"
-    values = {"rate": rate, "unit": unit, "gains": kind}
+    values = {"rate": rate, "unit": unit, "gains": "loses" if loses else "gains"}
     if ahead := forecast(source, index):
         seconds, other = ahead
         return Insight("will pass", (method, other), values | {"seconds": seconds})
     smallest, other = next(iter(_bands(source)), (0.0, method))
     if abs(error) > smallest > 0:
         return Insight("exceeds", (method, other), values | {"ratio": abs(error) / smallest})
-    return Insight(kind, (method,), values)
+    return Insight(judgement.verdict, (method,), values)
 
 
 def forecast(source: Source, index: int) -> tuple[float, Method] | None:
@@ -277,7 +283,7 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     judgement = source.judgements[index]
     error = source.sample.readings[index].energy_error
     rate = -(judgement.slope or 0.0)
-    if judgement.verdict != "loses" or judgement.uncertainty is None:
+    if judgement.verdict != LOSES or judgement.uncertainty is None:
         return None
     if rate <= 10 * judgement.uncertainty:
         return None
@@ -297,9 +303,7 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
 def _bands(source: Source) -> list[tuple[float, Method]]:
     """Return the largest energy error of each bounded method, smallest first."""
     each = zip(source.scene.cast, source.sample.readings, source.judgements, strict=True)
-    bands = [
-        (now.max_energy_error, one) for one, now, judged in each if judged.verdict == "bounded"
-    ]
+    bands = [(now.max_energy_error, one) for one, now, judged in each if judged.verdict == BOUNDED]
     return sorted(bands, key=lambda band: band[0])
 
 

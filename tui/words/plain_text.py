@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 
 from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.run.verdicts import BOUNDED
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Source
@@ -68,7 +69,7 @@ def method_sentence(source: Source, index: int) -> str:
         conserved = source.scene.equations.energy_error.conserved
         irregular = insight.irregular(method, judgement, reading.energy_error)
         found = [insight.milestone_insight(milestone, conserved), irregular]
-    elif judgement.verdict == "bounded":
+    elif judgement.verdict == BOUNDED:
         error = reading.max_energy_error
         return f"{method.label} stays bounded: its largest energy error is {error:.2g}."
     if sentences := " ".join(insight.sentence(each) for each in found if each):

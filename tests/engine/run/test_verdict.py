@@ -67,7 +67,7 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number(
     index: int, theta: float, h: float
 ) -> None:
     scene = Scene(theta=theta, h=h)
-    assert course(USUAL_CAST[index], scene, 6000) == ["chaotic", "wanders"]
+    assert course(USUAL_CAST[index], scene, 6000) == ["chaotic"]
     lockstep = Lockstep(scene, loops=LOOPS, judged=True)
     lockstep.advance(6000)
     lyapunov = lockstep.judgements[index].lyapunov
@@ -81,12 +81,12 @@ def test_rk4_at_200_rad_per_s_is_not_called_bounded() -> None:
 
 
 def test_caught_chaotic_and_wandering_orbits_get_their_verdicts() -> None:
-    assert course(R, SCENES["rk4-limit-above"], 6000)[-1] == "caught"
+    assert course(R, SCENES["rk4-limit-above"], 6000)[-1] == "grows"
     # at omega h = pi
-    assert course(E, SCENES["drift"].altered(h=0.16), 10_000) == ["grows", "caught"]
+    assert course(E, SCENES["drift"].altered(h=0.16), 10_000) == ["grows"]
     assert course(R, Scene(h=1.2 / Scene().w0), 6000) == ["loses"]  # everything
     assert course(V, SCENES["chaos-fenced"], 6000) == ["chaotic"]
-    assert course(E, Scene(h=2.1 / Scene().w0), 30_000)[-1:] == ["wanders"]
+    assert course(E, Scene(h=2.1 / Scene().w0), 30_000)[-1:] in ([], ["undecided"])
 
 
 @pytest.mark.parametrize("h", [0.02, 0.1])
@@ -141,12 +141,12 @@ def test_a_random_walk_of_roundings_is_no_trend(seed: int) -> None:
     walk, errors = random.Random(seed), [0.0]
     for _ in range(20_000):
         errors.append(errors[-1] + walk.gauss(0, 1e-15))
-    assert judged(errors).judgement.verdict in ("too early", "bounded")
+    assert judged(errors).shown.verdict in ("undecided", "bounded")
 
 
 def test_before_four_swings_it_is_too_early_and_there_is_no_slope() -> None:
-    judgement = judged([0.0] * 60).judgement
-    assert (judgement.verdict, judgement.slope, judgement.uncertainty) == ("too early", None, None)
+    judgement = judged([0.0] * 60).shown
+    assert (judgement.verdict, judgement.slope, judgement.uncertainty) == ("undecided", None, None)
     assert judgement.progress is not None
     assert judgement.progress.have < judgement.progress.need
 
@@ -156,7 +156,7 @@ def test_a_damped_energy_is_judged_only_where_it_is_above_rounding() -> None:
     lockstep = Lockstep(scene, loops=LOOPS, judged=True)
     lockstep.advance(round(160 / scene.h))
     euler, lagged, *others = [each.verdict for each in lockstep.judgements]
-    assert (euler, lagged, {*others}) == ("grows", "loses", {"too early"})
+    assert (euler, lagged, {*others}) == ("grows", "loses", {"undecided"})
 
 
 def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:

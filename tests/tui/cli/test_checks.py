@@ -1,14 +1,13 @@
 import math
 import operator
 import time
-from typing import get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.run.judgement import Verdict
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.tui.cli.checks import FIELDS, parse
 from pendu_tui.tui.cli.errors import UserError
 
@@ -88,10 +87,10 @@ def test_the_time_of_divergence_can_be_asked_for():
 
 
 @pytest.mark.parametrize("quote", ["", " ", "'", '"'])
-@pytest.mark.parametrize("word", get_args(Verdict))
+@pytest.mark.parametrize("word", list(VERDICTS))
 def test_a_verdict_is_compared_with_one_of_its_words(word, quote):
     written = f"{quote}{word}{quote}" if quote else word.replace(" ", "_")
-    for verdict in get_args(Verdict):
+    for verdict in list(VERDICTS):
         values = reading(verdict=verdict)
         assert bool(parse(f"rk4.verdict == {written}")(values)) is (verdict == word)
         assert bool(parse(f"rk4.energy > 1 or rk4.verdict!={written}")(values)) is (verdict != word)

@@ -205,7 +205,7 @@ def test_rows_of_other_arguments_are_not_resumed(other, whole, part):
 
 
 def test_rows_that_other_code_computed_or_another_process_writes_are_not_resumed(whole, part):
-    part.write_bytes(whole.replace(b"early", b"late"))
+    part.write_bytes(whole.replace(b"undecided", b"unknown"))
     assert resumed(part).refused(2, "other numbers")
     with part.open("wb") as file:
         hold(file)

@@ -222,7 +222,7 @@ def test_it_shows_the_milestones_and_verdicts_of_the_lab_and_jumps_to_them(lab):
     assert "bounded" in table.verdicts
     replay.seek(1.0)
     assert list(replay.milestones) == []
-    assert set(table.verdicts) == {"too early"}
+    assert set(table.verdicts) == {"undecided"}
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
@@ -236,12 +236,12 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
                 recorder.sample(value, clock)
                 continue
             if value.milestone == said:
-                value = value._replace(milestone=said._replace(verdict="wanders"))
+                value = value._replace(milestone=said._replace(verdict="chaotic"))
             recorder.event(value, clock)
     assert verify(tmp_path / "other.mcap").identical
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
-    assert table.verdicts[table.replay.scene.cast.index(said.method)] == "wanders"
+    assert table.verdicts[table.replay.scene.cast.index(said.method)] == "chaotic"
 
 
 def test_a_closed_replay_stands_still(table):

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.engine.run.judgement import VERDICTS
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.words.cards import WIDTH, glossary, method_card, scene_card
 

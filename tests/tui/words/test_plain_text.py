@@ -48,7 +48,7 @@ def test_the_default_scene_after_twenty_seconds():
     for index, number in enumerate(("7.15 s", "0.079", "0.0057", "31 min")):
         assert number in method_sentence(live, index)
     error = after(DRIFT, 3).sample.readings[3].energy_error
-    assert f"{error:+.2g}; too early: 1 of 5 swings" in method_sentence(after(DRIFT, 3), 3)
+    assert f"{error:+.2g}; undecided: 1 of 5 swings" in method_sentence(after(DRIFT, 3), 3)
 
 
 def test_every_method_has_a_sentence_at_any_time_of_any_scene():

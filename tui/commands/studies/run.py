@@ -21,8 +21,8 @@ from typing import IO, Any
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run import compiled, loops
-from pendu_tui.engine.run.judgement import Judgement, Progress
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
+from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable, writing
 from pendu_tui.recordings.fields import NUMBERS, OPTIONAL

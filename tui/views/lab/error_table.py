@@ -8,10 +8,10 @@ from textual import events
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import ExtraColumn, Model
-from pendu_tui.engine.run.judgement import Judgement
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.stepping import change_before
-from pendu_tui.tui.drawing.palette import GOOD, QUIET, SIGNS, TEXT, WARN, inks, mark
+from pendu_tui.engine.run.verdicts import FAILED, VERDICTS, Judgement
+from pendu_tui.tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
 from pendu_tui.tui.drawing.picture import Picture, Row
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
@@ -47,13 +47,17 @@ def _omega(line: TableLine, width: int) -> str:
     return decimal(line.reading.omega, width, max(width - 8, 3))
 
 
-def _verdict(line: TableLine, width: int) -> str:
-    """Return a verdict: "+ grows", or "too early 4/8" where there is room."""
-    judgement = line.judgement
+def _judgement(line: TableLine) -> Judgement:
     if line.reading.diverged_at is not None:
-        judgement = Judgement("failed")
+        return Judgement(FAILED)
+    return line.judgement
+
+
+def _verdict(line: TableLine, width: int) -> str:
+    """Return a verdict: "+ grows", or "undecided 4/8" where there is room."""
+    judgement = _judgement(line)
     far = "{}/{}".format(*judgement.progress or ("", ""))
-    text = f"{SIGNS.get(judgement.verdict, '')} {judgement.verdict} {far}".strip(" /")
+    text = f"{VERDICTS[judgement.verdict].sign} {judgement.verdict} {far}".strip(" /")
     if len(text) > width:
         return judgement.verdict
     return text
@@ -141,15 +145,14 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
         row = [(names[place].ljust(room), inks(cast)[place])]
         for column in columns:
             text = column.cell(line, column.width)
-            row.append((gap + text.rjust(column.width), _ink(column, text, line)))
+            row.append((gap + text.rjust(column.width), _ink(column, line)))
         rows.append(row)
     return list[Row](rows)
 
 
-def _ink(column: Column, text: str, line: TableLine) -> int:
+def _ink(column: Column, line: TableLine) -> int:
     if column.head == "verdict":
-        inks = {"=": GOOD} | dict.fromkeys("+-!~", WARN)
-        return inks.get(text[0], QUIET)
+        return {"good": GOOD, "warn": WARN, "quiet": QUIET}[VERDICTS[_judgement(line).verdict].ink]
     if line.reading.diverged_at is not None:
         return WARN
     return TEXT

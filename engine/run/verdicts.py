@@ -1,0 +1,139 @@
+"""The verdicts on energies: their words, how they are shown, and what a judge returns.
+
+This is the only place that spells a verdict; everything else names its constant or reads VERDICTS.
+"""
+
+from typing import Final, Literal, NamedTuple
+
+BOUNDED: Final = "bounded"
+GROWS: Final = "grows"
+LOSES: Final = "loses"
+CHAOTIC: Final = "chaotic"
+FAILED: Final = "failed"
+UNDECIDED: Final = "undecided"
+
+LEAVES = (GROWS, LOSES)
+"""The verdicts on an energy that has left its start for good."""
+
+
+class Verdict(NamedTuple):
+    """A verdict, and how it is shown."""
+
+    word: str
+    sign: str  # before the word, for those who cannot tell colours
+    ink: Literal["good", "warn", "quiet"]
+    meaning: str
+    event: str  # in the list of events, after the method's name
+    sentence: str  # a format of method names {0}, {names} and the judgement's numbers
+
+
+VERDICTS: dict[str, Verdict] = {
+    verdict.word: verdict
+    for verdict in (
+        Verdict(
+            BOUNDED,
+            sign="=",
+            ink="good",
+            meaning="the energy stays in a band; a drift is smaller than the band, and bounded",
+            event="stays bounded",
+            sentence="{names} bounded; no trend over {seconds:about}.",
+        ),
+        Verdict(
+            GROWS,
+            sign="+",
+            ink="warn",
+            meaning="the energy rises for good; if it rests elsewhere now, its slope is that of rest",
+            event="gains energy",
+            sentence="{0} gains {rate:share} of {unit} per s.",
+        ),
+        Verdict(
+            LOSES,
+            sign="-",
+            ink="warn",
+            meaning="the energy falls for good; if it rests elsewhere now, its slope is that of rest",
+            event="loses energy",
+            sentence="{0} loses {rate:share} of {unit} per s.",
+        ),
+        Verdict(
+            CHAOTIC,
+            sign="!",
+            ink="warn",
+            meaning="nearby starts of a symplectic method separate exponentially",
+            event="turns chaotic",
+            sentence="{0} is chaotic: nearby starts separate {seconds:tenfold}.",
+        ),
+        Verdict(
+            FAILED,
+            sign="!",
+            ink="warn",
+            meaning="the numbers have ended: nan, infinite, too large, or a step without solution",
+            event="failed",
+            sentence="{0} failed at {t:.4g} s: its energy error is no longer finite.",
+        ),
+        Verdict(
+            UNDECIDED,
+            sign="",
+            ink="quiet",
+            meaning="the data support none of these; the reason says what is missing",
+            event="is undecided again",
+            sentence="{0} is undecided: {reason}.",
+        ),
+    )
+}
+
+
+def word_of_before(word: str, rises: bool, symplectic: bool) -> str:
+    """Return today's word for a verdict of an older recording; other words as they are."""
+    if word == "caught":
+        return GROWS if rises else LOSES
+    if word == "wanders":
+        return CHAOTIC if symplectic else UNDECIDED
+    if word == "too early":
+        return UNDECIDED
+    return word
+
+
+class Progress(NamedTuple):
+    """How far it is to a verdict: "4 of 8 swings"."""
+
+    have: int
+    need: int
+    unit: str  # "swings", "steps", "samples"
+
+    def __str__(self) -> str:
+        return f"{self.have} of {self.need} {self.unit}"
+
+
+class Judgement(NamedTuple):
+    """A verdict on energies so far, with the slope of their mean, and what is known about it.
+
+    Slopes are relative energy errors per second in a run, and in a record's own units.
+    """
+
+    verdict: str = UNDECIDED
+    slope: float | None = None
+    uncertainty: float | None = None  # of the slope: 68 % lie within
+    periods: float = 0.0  # how many periods the verdict rests on
+    lyapunov: float | None = None  # 1/s, where the verdict rests on it
+    progress: Progress | None = None  # while it is known what is missing
+    growth: float | None = None  # 1/s, of the logarithm of the error, beyond E0
+    bound: float | None = None  # |slope| is below it with a probability of 99 %
+    share: float | None = None  # what the slope adds up to so far, over the width of the band
+    reason: str = ""  # of `undecided`: what is missing, and whether a longer record helps
+    rests: bool = False  # the energy has left its start and stays in another band
+    independent: float = 0.0  # samples
+    fluctuation: float | None = None  # standard deviation about a line
+    transient: float = 0.0  # time at the start that was left out
+    first: int = 0  # the index of the first sample that was judged
+
+    def __str__(self) -> str:
+        missing = self.progress or self.reason
+        return f"{self.verdict}: {missing}" if missing else self.verdict
+
+
+def in_todays_words(judgement: Judgement, rises: bool, symplectic: bool) -> Judgement:
+    """Return a judgement in the words of before in those of today."""
+    return judgement._replace(
+        verdict=word_of_before(judgement.verdict, rises, symplectic),
+        rests=judgement.verdict == "caught",
+    )
