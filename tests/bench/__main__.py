@@ -21,6 +21,7 @@ BENCHES = (
     "damage",
     "foreign",
     "hostile",
+    "ink",
     "judging",
     "kill",
     "monkey",

@@ -7,7 +7,8 @@ drawn.  Pendulums have few dots: drawing them without NumPy is faster, and does 
 A cell of a terminal has one colour, so it shows the dots of one ink only, and each dot in the ink
 it was set in.  Methods come before their faint inks, and these before all others, whatever the
 order of drawing.  Equals of the upper two ranks take turns: first those that have no other cell in
-the column, so that none vanishes.  Of the others the one drawn first lies below.
+the column, and of these the ones hidden in most columns, so that none vanishes.  Of the others the
+one drawn first lies below.
 """
 
 import codecs
@@ -225,20 +226,25 @@ class Canvas:
         look like the steps of one line.
         """
         columns = self.columns
-        served: dict[int, set[int]] = {}  # by column: the inks that have a cell in it
+        kept: dict[int, list[bool]] = {}  # by ink: the columns in which it has a cell
+        poor = set()  # inks with a cell in less than half of their columns
+        for ink in rank:
+            own = colours.translate(bytes([each + NOBODY == ink for each in range(256)]))
+            layer = self._layers[ink]
+            kept[ink] = [any(own[column::columns]) for column in range(columns)]
+            if 2 * sum(kept[ink]) < sum(any(layer[column::columns]) for column in range(columns)):
+                poor.add(ink)
         for cell in [place for place, full in enumerate(shared) if full]:
             row, column = divmod(cell, columns)
-            if column not in served:
-                served[column] = {colour + NOBODY for colour in colours[column::columns]}
             inks = [ink for ink in rank if self._layers[ink][cell]]
-            first = [ink for ink in inks if ink not in served[column]] or inks
-            ink = first[(column + 3 * row // 5) % len(first)]
-            served[column].add(ink)
-            own = self._layers[ink][cell]
-            if any(self._layers[other][cell] != own for other in inks):
-                own = _FLAT.get(own, own)
-            dots[cell] = own
+            unseen = [ink for ink in inks if not kept[ink][column]]
+            turns = poor.intersection(unseen) or unseen or inks
+            ink = sorted(turns)[(column + 3 * row // 5) % len(turns)]
+            kept[ink][column] = True
+            dots[cell] = self._layers[ink][cell]
             colours[cell] = ink - NOBODY
+            if any(self._layers[other][cell] != dots[cell] for other in inks):
+                dots[cell] = _FLAT.get(dots[cell], dots[cell])
 
 
 _FULL = bytes([0, *[255] * 255])
