@@ -69,7 +69,7 @@ def budget(text: str) -> int:
 def run(options: argparse.Namespace) -> int:
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
-    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
+    if options.cost == "seconds" and (options.workers > 1 or options.dask):
         raise UserError("seconds are measured in this process; use workers for evaluations only.")
     if options.safety < 1:
         raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")

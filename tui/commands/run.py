@@ -48,7 +48,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_gate_option(parser, names, meaning)
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
-    add("--resume", action="store_true", help="continue the list of runs in FILE.csv.partial")
     add_worker_options(parser)
 
 

@@ -1,4 +1,4 @@
-"""`pendu-tui run`: one scene, or every combination of a list, kept as they come, and resumed."""
+"""`pendu-tui run`: one scene, or every combination of a list."""
 
 import csv
 import math
@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -15,10 +16,9 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import count_evaluations
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
-from pendu_tui.recordings.library import hold
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.commands.studies.run import partial_of
+from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.words.numbers import about, file_size
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
@@ -158,28 +158,14 @@ def test_other_models_have_the_numbers_and_the_heads_of_their_own():
     assert "ln(E/E_true)" in pendu("run", *damped).out
 
 
+LOST = UserError("the workers are lost.", Exit.INPUT_UNREADABLE)
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
 
 
-@pytest.fixture
-def whole(tmp_path):
-    path = tmp_path / "whole.csv"
-    assert pendu(*LIST, "-o", path).code == 0
-    return path.read_bytes()
-
-
-@pytest.fixture
-def part(tmp_path):
-    return partial_of(tmp_path / "some.csv")
-
-
-def resumed(part: Path, *more: object):
-    return pendu(*LIST, *more, "-o", part.with_suffix(""), "--resume")
-
-
-def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run(whole):
+def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run(tmp_path):
+    assert pendu(*LIST, "-o", tmp_path / "whole.csv").code == 0
     text = pendu(*LIST, "--csv").out
-    assert whole.decode() == text
+    assert (tmp_path / "whole.csv").read_text(encoding="utf-8") == text
     rows = list(csv.DictReader(text.splitlines()))
     assert len({(row["start_theta"], row["h"], row["method"]) for row in rows}) == 2 * 2 * 2
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
@@ -188,42 +174,17 @@ def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run(whole):
     assert pendu(*LIST).out.split()[:3] == ["start_theta", "h", "method"]  # which vary
 
 
-@pytest.mark.parametrize("cut", [0, 40, 1500])
-def test_what_was_interrupted_is_resumed_to_the_same_bytes(cut, whole, part):
-    part.write_bytes(whole[:cut])
-    assert pendu(*LIST, "-o", part.with_suffix("")).refused(5, "--resume", "--force")
-    assert resumed(part).code == 0
-    assert part.with_suffix("").read_bytes() == whole
-    assert not part.exists()
+@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (LOST, 3)])
+def test_an_interrupt_and_lost_workers_keep_the_rows_that_are_done(monkeypatch, error, code):
+    def run(function, tasks):
+        yield function(next(tasks))
+        raise error
 
-
-@pytest.mark.parametrize("other", [("--time", 3), ("--methods", "rk4"), ("--h", 0.05)])
-def test_rows_of_other_arguments_are_not_resumed(other, whole, part):
-    part.write_bytes(whole)
-    assert resumed(part, *other).refused(2, "other arguments")
-    assert part.read_bytes() == whole
-
-
-def test_rows_that_other_code_computed_or_another_process_writes_are_not_resumed(whole, part):
-    part.write_bytes(whole.replace(b"undecided", b"unknown"))
-    assert resumed(part).refused(2, "other numbers")
-    with part.open("wb") as file:
-        hold(file)
-        assert resumed(part).refused(5, "another process")
-
-
-@pytest.mark.slow
-def test_ctrl_c_keeps_the_rows_that_are_done(part):
-    short = ("--h", "0.01:0.02:2000", "--time", "2", "-o", str(part.with_suffix("")))
-    code, _, err = stopped(*short, number=signal.SIGINT, part=part, bytes=2000)
-    assert code == 130
-    assert "--resume continues" in err
-    assert part.read_bytes().endswith(b"\n")
-    part.unlink()
-    endless = ("--h", "0.05,0.1", "--time", "1e8", "--no-compiled", *short[4:])
-    code, _, err = stopped(*endless, number=signal.SIGINT, part=part, bytes=0)
-    assert (code, err) == (130, "pendu-tui: interrupted.\n")
-    assert not list(part.parent.iterdir())
+    workers = "pendu_tui.tui.commands.studies.run.workers_of"
+    monkeypatch.setattr(workers, lambda options: nullcontext(run))
+    outcome = pendu(*LIST, "--csv")
+    assert (outcome.code, outcome.out.count("\n")) == (code, 1 + 2)
+    assert "1 of 4 runs" in outcome.err
 
 
 def test_the_gate_is_that_of_every_run():
@@ -236,8 +197,6 @@ def test_the_gate_is_that_of_every_run():
     ("arguments", "words"),
     [
         (("--record", "x.mcap"), ("--record", "one run")),
-        (("--resume",), ("-o FILE.csv",)),
-        (("-o", "x.csv", "--resume", "--fail-if", "rk4.energy > 1"), ("leave out",)),
         (("--h", "0.05,5"), ("--time 2", "5 s")),
     ],
 )

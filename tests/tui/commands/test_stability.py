@@ -2,6 +2,7 @@
 
 import csv
 import io
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.stability.grid import Grid
 from pendu_tui.engine.stability.outcomes import FATES
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.workers import Workers
 from tests.tui.command_line import pendu
 
 SMALL = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -20,11 +20,12 @@ KEYS = [method.key for method in USUAL_CAST]
 def stops_after_a_part(monkeypatch, error):
     monkeypatch.setattr("pendu_tui.engine.stability.grid.PART", 10)  # swings: 5 z of a method
 
-    def map_(self, function, tasks):
+    def run(function, tasks):
         yield function(tasks[0])
         raise error
 
-    monkeypatch.setattr(Workers, "map", map_)
+    workers = "pendu_tui.tui.commands.studies.stability.workers_of"
+    monkeypatch.setattr(workers, lambda options: nullcontext(run))
 
 
 def line_of(out, *words):

@@ -99,8 +99,8 @@ def measure(results: Results) -> None:
         _search(results, study_loops, timed_loops)
     tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
     done = 0
-    with workers_of(results.options) as workers, progress("measuring") as show:
-        for point in workers.map(partial(measured_point, scene, results.time, study_loops), tasks):
+    with workers_of(results.options) as run, progress("measuring") as show:
+        for point in run(partial(measured_point, scene, results.time, study_loops), tasks):
             if results.clock:
                 point = timed(point, scene, results.clock, timed_loops)
             results.points.append(point)

@@ -1,22 +1,13 @@
-"""One run, or a list of runs with every combination of the scene's numbers.
+"""One run, or a list of runs with every combination of the scene's numbers."""
 
-With `-o FILE.csv`, rows of a list are appended to FILE.csv.partial, which is renamed at the end.
-Each row begins with all numbers of its scene and the time, so that --resume can check that the
-file belongs to its arguments.
-"""
-
-import io
 import math
-import os
 import time
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
@@ -24,12 +15,9 @@ from pendu_tui.engine.run import compiled, loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import printable, writing
+from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.fields import NUMBERS, OPTIONAL
-from pendu_tui.recordings.files import is_stream
-from pendu_tui.recordings.files import publish as give_name
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
-from pendu_tui.recordings.library import hold, in_use
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.checks import Check, Gate, conclude
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
@@ -43,7 +31,6 @@ from pendu_tui.tui.cli.report import (
     publish,
     scene_line,
     warn,
-    write_records,
 )
 from pendu_tui.tui.cli.scene import SceneList
 from pendu_tui.tui.cli.time_limit import limited_steps
@@ -263,129 +250,32 @@ def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
         yield Task(scene, options.time, steps, not options.no_compiled)
 
 
-def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
-    out = io.StringIO()
-    write_records(for_csv(rows), out)
-    text = out.getvalue()
-    if not with_head:
-        text = text.partition("\n")[2]
-    return text.encode()
-
-
-def partial_of(path: Path) -> Path:
-    """Return the name of the file until all its rows are there."""
-    return path.with_name(f"{path.name}.partial")
-
-
-@contextmanager
-def _opened(options: Namespace) -> Iterator[IO[bytes] | None]:
-    """Yield FILE.csv.partial, or None without one.  Raises UserError if it is taken."""
-    path: Path | None = options.output
-    if path is None or path.suffix.lower() != ".csv" or is_stream(path):
-        yield None
-        return
-    part = partial_of(path)
-    is_there = part.exists()
-    if is_there and in_use(part):
-        raise UserError(f"{printable(str(part))} is being written by another process.", Exit.DISK)
-    if is_there and not (options.resume or options.force):
-        raise UserError(
-            f"{printable(str(part))} exists: --resume continues it, --force starts again.",
-            Exit.DISK,
-        )
-    with writing(part), part.open("a+b") as file:
-        hold(file)
-        file.seek(0)
-        if not options.resume:
-            file.truncate()
-        yield file
-
-
-def _resumed(file: IO[bytes], tasks: Iterator[Task], runs: int) -> int:
-    """Return the number of whole runs in a file, and cut it after them.
-
-    Raises UserError if its rows belong to other tasks, or if repeating the last run gives other
-    numbers.
-    """
-    name = printable(file.name)
-    head = file.readline()
-    end = 0
-    done = 0
-    last: tuple[Task, bytes] | None = None
-    for task in tasks:
-        lines = [file.readline() for _ in task.scene.cast]
-        if not lines[-1].endswith(b"\n"):
-            break
-        for method, line in zip(task.scene.cast, lines, strict=True):
-            start = ",".join(map(str, (*task.start.values(), method.key, "")))
-            if not line.startswith(start.encode()):
-                raise UserError(f"{name} was begun with other arguments; {start} is missing.")
-        end = file.tell()
-        done += 1
-        last = task, b"".join(lines)
-    if done == runs and file.readline():
-        raise UserError(f"{name} was begun with other arguments; it has more runs.")
-    if last is not None and _text_of(last[0].rows(), with_head=True) != head + last[1]:
-        raise UserError(
-            f"repeating the last run in {name} gives other numbers, so its method, this machine or "
-            "pendu-tui has changed; start again with --force."
-        )
-    file.seek(end)
-    file.truncate()
-    return done
-
-
-def _check(options: Namespace, is_figure: bool) -> None:
+def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+    """Run every combination and print the rows; an interrupt keeps those that are there."""
     if options.record:
         raise UserError("--record is for one run; leave it out, or give each number one value.")
     if is_figure:
         raise UserError("a figure shows one run; write a .csv, or give each number one value.")
-    is_csv = options.output and options.output.suffix.lower() == ".csv"
-    if options.resume and not is_csv:
-        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
-    if options.resume and options.fail_if:
-        raise UserError("--fail-if cannot check the earlier runs; leave out --resume or --fail-if.")
-
-
-def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
-    """Run every combination, and print the rows or append them to the file as they come."""
-    _check(options, is_figure)
     runs = len(scenes)
     kept: list[Row] = []
     checks: list[Check] = []
     ended = None
-    with _opened(options) as file:
-        done = _resumed(file, _tasks(scenes, options), runs) if file else 0
-        rest = islice(_tasks(scenes, options), done, None)
-        try:
-            with workers_of(options) as workers, progress(f"{runs:,} runs") as show:
-                for rows in workers.map(Task.rows, rest):
-                    if file:
-                        file.write(_text_of(rows, with_head=not done))
-                        file.flush()
-                    else:
-                        kept += rows
-                    done += 1
-                    show(done, runs)
-                    if gate:
-                        checks.append(check_of(_place(scenes, rows[0]), rows, gate))
-        except (KeyboardInterrupt, UserError, OwnMethodError) as error:
-            ended = explained(error)
-        if file and done == runs:
-            os.fsync(file.fileno())
-            give_name(partial_of(options.output), options.output, options.force)
-        elif file and not done:
-            partial_of(options.output).unlink()
-    if kept:
-        publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
+    done = 0
+    try:
+        with workers_of(options) as run, progress(f"{runs:,} runs") as show:
+            for rows in run(Task.rows, _tasks(scenes, options)):
+                kept += rows
+                done += 1
+                show(done, runs)
+                checks.append(check_of(_place(scenes, rows[0]), rows, gate))
+    except (KeyboardInterrupt, UserError, OwnMethodError) as error:
+        if not done:
+            raise
+        ended = explained(error)
+    publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
     if ended is None:
         return conclude(options.fail_if, checks)
-    if not done:
-        raise ended
-    where = ""
-    if not kept:
-        where = f" and kept in {printable(str(partial_of(options.output)))}; --resume continues"
-    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done{where}.")
+    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done and kept.")
     return ended.code
 
 

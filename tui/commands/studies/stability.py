@@ -67,8 +67,8 @@ def compute(grid: Grid, options: Namespace) -> tuple[Cells, UserError | None]:
     parts = grid.parts()
     done = 0
     try:
-        with workers_of(options) as workers, progress("stability") as show:
-            for computed in workers.map(Part.cells, parts):
+        with workers_of(options) as run, progress("stability") as show:
+            for computed in run(Part.cells, parts):
                 part = parts[done]
                 cells[part.z, part.method] = computed
                 done += 1
