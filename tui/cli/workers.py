@@ -22,7 +22,6 @@ from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import interruptible
-from pendu_tui.tui.cli.install import install_advice
 from pendu_tui.tui.cli.options import count
 
 Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
@@ -102,8 +101,7 @@ def _client(address: str) -> Any:
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        advice = install_advice("distributed", "cluster")
-        raise UserError(f"--dask needs the package distributed: {advice}.") from None
+        raise UserError("--dask needs an extra: pip install 'pendu-tui[cluster]'.") from None
     except (OSError, ValueError) as error:
         raise UserError(
             f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?"

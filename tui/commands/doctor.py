@@ -11,7 +11,6 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.install import install_advice
 from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
 from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
 from pendu_tui.tui.words.numbers import file_size
@@ -57,8 +56,7 @@ def _findings() -> Iterator[tuple[str, str, str]]:
     try:
         yield "numba", version("numba"), ""
     except PackageNotFoundError:
-        advice = f"speeds up long runs: {install_advice('numba', 'fast')}"
-        yield "numba", "not installed", advice
+        yield "numba", "not installed", "speeds up long runs: pip install 'pendu-tui[fast]'"
 
 
 def _lab() -> tuple[str, str]:

@@ -5,7 +5,6 @@ import os
 from pathlib import Path
 
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.install import install_advice
 from pendu_tui.tui.cli.options import add_file, count
 from pendu_tui.tui.cli.report import warn
 from pendu_tui.tui.cli.scene import add_scene_options, scene_of
@@ -39,9 +38,8 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     try:
         from pendu_tui.tui.commands.web.server import serve
-    except ImportError as error:
-        advice = install_advice("textual-serve", "web")
-        raise UserError(f"serve needs {error.name}: {advice}.") from None
+    except ImportError:
+        raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.") from None
     folder: Path | None = options.record
     if folder is not None:
         folder.mkdir(exist_ok=True)

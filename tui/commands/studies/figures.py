@@ -12,7 +12,6 @@ from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.files import check_free, whole_file
-from pendu_tui.tui.cli.install import install_advice
 from pendu_tui.tui.drawing.palette import PALETTES, Palette, inks
 
 if TYPE_CHECKING:
@@ -74,8 +73,7 @@ def check_output(options: Namespace) -> bool:
     check_free(path, options.force)
     is_figure = path.suffix.lower() in SUFFIXES
     if is_figure and find_spec("matplotlib") is None:
-        advice = install_advice("matplotlib", "plot")
-        raise UserError(f"{path.suffix} files need Matplotlib: {advice}.")
+        raise UserError(f"{path.suffix} files need an extra: pip install 'pendu-tui[plot]'.")
     return is_figure
 
 
