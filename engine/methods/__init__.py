@@ -9,7 +9,7 @@ floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The meth
 import copyreg
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from pendu_tui.engine.methods import (
     adaptive,
@@ -87,5 +87,17 @@ def simplified(name: str) -> str:
 
 _BY_KEY = {method.key: method for method in METHODS}
 
-# Methods are pickled by key: the generator functions of builders have no importable name.
-copyreg.pickle(Method, lambda method: (method_of, (method.key,)))
+
+def _by_key(method: Method) -> tuple[Callable[[str], Method], tuple[str]]:
+    """Pickle a method of METHODS by its key: builders' functions have no importable name."""
+    if method.key not in _BY_KEY:
+        from pendu_tui.engine.methods.own import OwnMethodError
+
+        raise OwnMethodError(
+            f"It needs the file of the method {method.key}: give it with --method "
+            f"FILE.py:{method.key}."
+        )
+    return method_of, (method.key,)
+
+
+copyreg.pickle(Method, _by_key)

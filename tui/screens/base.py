@@ -307,6 +307,7 @@ class SourceScreen(SizedScreen[None]):
             each.display = each.id == name
         self.view = name
         self._view_in_front = self.query_one(f"#{name}", View)
+        self._view_in_front.retry()
         self.refresh_bindings()
         self.show_now()
 

@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any
 
+from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.time_limit import limited_steps
 
 
@@ -19,7 +20,8 @@ async def computed(
 ) -> AsyncIterator[Any]:
     """Yield what function(*arguments) yields in another process.
 
-    The process is killed when this task is cancelled, and ends with this process.
+    The process is killed when this task is cancelled, and ends with this process.  Raises
+    UserError if something else ends it, and what the function raises.
     """
     os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
     context = multiprocessing.get_context("spawn")
@@ -34,7 +36,7 @@ async def computed(
                 raise result
             yield result
     except EOFError:
-        raise RuntimeError("The process that computes for this view has ended.") from None
+        raise UserError("The process that computes for this view was ended.") from None
     finally:
         process.kill()
         process.join()

@@ -15,10 +15,10 @@ from textual.message import Message
 from textual.worker import Worker, WorkerState
 
 from pendu_tui.engine.methods import Cast
-from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.drawing.palette import TEXT
 from pendu_tui.tui.drawing.picture import Picture, Row
@@ -93,6 +93,10 @@ class View(Box):
     def zoom(self, factor: float) -> None:
         """Zoom the chart over time, if the view has one."""
 
+    def retry(self) -> None:
+        for pane in self._panes:
+            pane.retry()
+
 
 class Pane(CellWidget):
     MOVES: ClassVar[bool] = False
@@ -104,6 +108,8 @@ class Pane(CellWidget):
     """Set by its view or screen."""
     shown = Shown()
     sample: Sample | None = None
+    failure = ""
+    """Why the picture cannot be computed, in a sentence."""
     _titles = ("", "")
 
     def follow(self, sample: Sample, shown: Shown) -> None:
@@ -131,11 +137,16 @@ class Pane(CellWidget):
             self.border_subtitle = Content(below)
 
     def draw(self) -> None:
+        """Draw the picture, or say why it cannot be computed."""
         sample = self.sample
         if sample is None or not self.drawable:
             return
-        if sample.run == self.source.sample.run:  # a new run may have other methods
-            self.show(self.picture(self.source, sample))
+        if sample.run != self.source.sample.run:
+            return  # a new run may have other methods
+        picture = self.picture(self.source, sample)
+        if self.failure:
+            picture = Picture(self.words(self.failure))
+        self.show(picture)
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         raise NotImplementedError
@@ -150,9 +161,15 @@ class Pane(CellWidget):
         else:
             self.post_message(SceneChosen(scene))
 
+    def words(self, *texts: str) -> list[Row]:
+        width = max(self.room.width - 2, 1)
+        return [[(f" {line}", TEXT)] for text in texts for line in wrap(text, width)]
+
+    # Computing in another process
+
     def compute(
         self, function: Callable[..., Iterator[Any]], *arguments: object, group: str = "default"
-    ) -> Worker[None]:
+    ) -> None:
         """Compute in another process and `add` the results; cancel the group's earlier work."""
         from pendu_tui.tui.views.background import computed  # not needed for the first paint
 
@@ -161,7 +178,8 @@ class Pane(CellWidget):
             async for result in computed(function, *arguments):
                 self.add(result)
 
-        return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
+        self.failure = ""
+        self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def add(self, result: Any) -> None:
         """Keep a result of `compute`, to be drawn with one of the next samples."""
@@ -172,11 +190,26 @@ class Pane(CellWidget):
         return any(worker.node is self and not worker.is_finished for worker in self.workers)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Show an error of the user's own method; any other error ends the program."""
-        if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
-            if not isinstance(error, OwnMethodError):
-                raise error
-            self.border_subtitle = Content(str(error))
+        """Show why a computation failed; the lab goes on."""
+        error = event.worker.error
+        if error is not None and event.state is WorkerState.ERROR:
+            self.failure = f"{computing_failed(error)} Show this view again, and it tries again."
+
+    def retry(self) -> None:
+        """Compute again what failed."""
+        if self.failure:
+            self.failure = ""
+            self.forget()
+
+    def forget(self) -> None:
+        """Forget what has been computed, and what has been asked for."""
+
+
+def computing_failed(error: BaseException) -> str:
+    try:
+        return str(explained(error))
+    except BaseException:
+        return f"This view cannot be computed: {type(error).__name__}: {error}."
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
@@ -207,10 +240,6 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         shown = self.places or range(len(self.cast))
         described = (place for place in shown if self.cast[place].key == self.described)
         return next(described, shown[0])
-
-    def words(self, *texts: str) -> list[Row]:
-        width = max(self.room.width - 2, 1)
-        return [[(f" {line}", TEXT)] for text in texts for line in wrap(text, width)]
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("choose", "cancel"):

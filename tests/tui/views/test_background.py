@@ -80,7 +80,7 @@ async def test_it_starts_where_stderr_has_no_file_number_and_is_deaf_to_ctrl_c(m
 async def test_a_computation_that_fails_or_is_killed_is_an_error_here():
     async with aclosing(computed(forever)) as found:
         os.kill(await anext(found), signal.SIGKILL)
-        with pytest.raises(Exception, match="has ended"):
+        with pytest.raises(Exception, match="was ended"):
             await anext(found)
 
 

@@ -67,6 +67,9 @@ class AccuracyPane(Chooser[Point]):
             if wanted:  # more steps would take too long
                 self.compute(measured, scene, self.time, wanted, group="here")
 
+    def forget(self) -> None:
+        self._start = None
+
     def add(self, result: Point) -> None:
         self.points[result.method.key, result.steps] = result
 

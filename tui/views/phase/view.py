@@ -82,6 +82,9 @@ class SectionPane(PhasePane):
             where = f"{self.aim.theta:g}, {self.aim.omega:g}"
         return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
 
+    def forget(self) -> None:
+        self._section = None
+
     def add(self, result: Points) -> None:
         assert self._section is not None
         self._section.add(result)

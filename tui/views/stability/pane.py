@@ -93,6 +93,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return True
         return self._is_begun and not self.is_computing
 
+    def forget(self) -> None:
+        self._begin(())
+
     def add(self, result: Piece) -> None:
         part = result.part
         self.cells[part.z, part.method] = result.cells
