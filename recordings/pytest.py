@@ -1,7 +1,7 @@
 """A pytest plugin: a check of energies, and recordings as tests.
 
-Load it with `-p pendu_tui.recordings.pytest` in addopts, or with `pytest_plugins = ["pendu_tui.recordings.pytest"]` in
-the root conftest.py.  It is not loaded by being installed.
+It is loaded by being installed (entry point `pytest11`), so it imports NumPy and the engine only when
+a test uses it.
 """
 
 from collections.abc import Callable
@@ -9,11 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-
-from pendu_tui.engine import judge
-from pendu_tui.engine.run.verdicts import BOUNDED, VERDICTS
-from pendu_tui.recordings.errors import RecordingError
-from pendu_tui.recordings.verification import verify
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -31,7 +26,7 @@ class EnergyDrift:
         self,
         times: "ArrayLike",
         energies: "ArrayLike",
-        verdict: str = BOUNDED,
+        verdict: str = "bounded",
         max_drift: float | None = None,
         scale: float | str = "std",
     ) -> "Judged":
@@ -40,6 +35,9 @@ class EnergyDrift:
         The trend is that of the energies over the scale, per unit of time.
         """
         __tracebackhide__ = True
+        from pendu_tui.engine import judge
+        from pendu_tui.engine.run.verdicts import VERDICTS
+
         if verdict not in VERDICTS:
             pytest.fail(f"there is no verdict {verdict!r}; choose from {', '.join(VERDICTS)}")
         try:
@@ -79,6 +77,9 @@ def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
 
 def _flaw(path: Path) -> str:
     """Return what is wrong with a recording; "" if nothing is."""
+    from pendu_tui.recordings.errors import RecordingError
+    from pendu_tui.recordings.verification import verify
+
     try:
         verification = verify(path)
     except RecordingError as error:
