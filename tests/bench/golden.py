@@ -94,7 +94,13 @@ COMMAND_LINES = [
     "snapshot --size 10x10",
     "snapshot -o lab.png",
 ]
-VIEWS = {"lab": [], "phase": ["f3"], "accuracy": ["f4"], "stability": ["f5"], "help": ["question_mark"]}
+VIEWS = {
+    "lab": [],
+    "phase": ["f3"],
+    "accuracy": ["f4"],
+    "stability": ["f5"],
+    "help": ["question_mark"],
+}
 SIZES = ((60, 16), (80, 24), (120, 40))
 
 MASKS = (
@@ -109,9 +115,13 @@ MASKS = (
 def prepare(folder: Path) -> None:
     """Write the inputs that the command lines name."""
     for name, every in (("fine.csv", 1), ("energy.csv", 2)):
-        rows = [f"{step * every},{10 + every**2 * (step * 7919 % 101) / 1e5!r}" for step in range(2000)]
+        rows = [
+            f"{step * every},{10 + every**2 * (step * 7919 % 101) / 1e5!r}" for step in range(2000)
+        ]
         (folder / name).write_text("t,E\n" + "\n".join(rows) + "\n")
-    (folder / "scene.toml").write_text('model = "pendulum"\ntheta = 2.0\nh = 0.1\nmethods = ["rk4"]\n')
+    (folder / "scene.toml").write_text(
+        'model = "pendulum"\ntheta = 2.0\nh = 0.1\nmethods = ["rk4"]\n'
+    )
     (folder / "broken.toml").write_text('model = "pendulum"\ntheta = "west"\n')
     own_method(folder)
 
@@ -130,12 +140,22 @@ def said_by(line: str) -> str:
         prepare(folder)
         given = set(folder.iterdir())
         library = folder / "library"
-        environment = {**os.environ, "PENDU_RECORDINGS": str(library), "COLUMNS": "100", "LINES": "40"}
+        environment = {
+            **os.environ,
+            "PENDU_RECORDINGS": str(library),
+            "COLUMNS": "100",
+            "LINES": "40",
+        }
         command = [sys.executable, "-m", "pendu_tui.tui", *shlex.split(line)]
         done = subprocess.run(
             command, cwd=folder, env=environment, capture_output=True, check=False, timeout=300
         )
-        parts = [f"exit code {done.returncode}", done.stdout.decode(), "stderr:", done.stderr.decode()]
+        parts = [
+            f"exit code {done.returncode}",
+            done.stdout.decode(),
+            "stderr:",
+            done.stderr.decode(),
+        ]
         for path in sorted(set(folder.iterdir()) - given - {library}):
             content = path.read_text("utf-8") if path.suffix in (".csv", ".svg", ".json") else ""
             parts += [f"file {path.name}:", content]
@@ -156,8 +176,7 @@ def pictures() -> Iterator[tuple[str, str]]:
 
 def everything() -> Iterator[tuple[str, str]]:
     with ThreadPoolExecutor(PROCESSES) as pool:
-        for line, said in zip(COMMAND_LINES, pool.map(said_by, COMMAND_LINES), strict=True):
-            yield line, said
+        yield from zip(COMMAND_LINES, pool.map(said_by, COMMAND_LINES), strict=True)
         from pendu_tui.recordings.library import GOLDEN
 
         bundled = [f"export {path.stem}" for path in sorted(GOLDEN.glob("*.mcap"))]
@@ -181,9 +200,7 @@ def golden(folder: Path, compare: bool) -> int:
             path.write_text(said, encoding="utf-8")
             continue
         before = path.read_text(encoding="utf-8") if path.exists() else ""
-        changes = list(
-            difflib.unified_diff(before.split("\n"), said.split("\n"), n=0, lineterm="")
-        )
+        changes = list(difflib.unified_diff(before.split("\n"), said.split("\n"), n=0, lineterm=""))
         if changes:
             differs = True
             print(f"## {title}", *changes[2:], sep="\n")
