@@ -1,7 +1,6 @@
 """Fields: the names and units of all that a recording holds.
 
-Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use them.  To record another
-value of a reading, add it to `Reading` and to READING.
+Messages, their schemas, tables and `verify` use them.
 """
 
 import math
@@ -9,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, get_args
 
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.quantities import RECORDED
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.recordings.events import EventKind
@@ -74,16 +74,9 @@ def _optional(type: str, *names: str) -> tuple[Field, ...]:
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
 """The run and the time of a sample or an event."""
 
-READING = (
-    Field("theta", "rad"),
-    Field("omega", "rad/s"),
-    Field("energy", "s^-2"),
-    Field("energy_error", about="(E - E0) / E0"),
-    Field("max_energy_error", about="over every step so far"),
-    Field("energy_error_low", about="since the sample before", required=False),
-    Field("energy_error_high", about="since the sample before", required=False),
-    Field("diverged_at", "s", required=False),
-    Field("max_invariant_error", about="over every step so far", required=False),
+READING = tuple(
+    Field(each.name, _ascii(each.unit), each.about, required=each.recorded == "always")
+    for each in RECORDED
 )
 """The attributes of a Reading except `extra`."""
 
@@ -113,13 +106,6 @@ EVENT = (
     Field("lyapunov", "s^-1", required=False),
 )
 """The kind of an event, and the fields of all kinds."""
-
-NUMBERS = tuple(field.name for field in READING if field.required)
-EXTREMES = ("energy_error_low", "energy_error_high")
-OPTIONAL = tuple(
-    field.name for field in READING if not field.required and field.name not in EXTREMES
-)
-EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
 
 
 def values_of(reading: Reading) -> dict[str, float | None]:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any, get_args
 
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.quantities import EXTREMES
 from pendu_tui.engine.run.judgement import Milestone, MilestoneKind
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, word_of_before
@@ -25,7 +26,7 @@ from pendu_tui.recordings.events import (
     name_of,
     noticed,
 )
-from pendu_tui.recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
+from pendu_tui.recordings.fields import EVENT, EXTRA, MOMENT, READING, Field
 
 FORMAT_VERSION = "3"
 EVENTS = "/pendu/events"

@@ -22,22 +22,16 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.quantities import QUANTITIES
 from pendu_tui.engine.run.verdicts import VERDICTS, Progress
-from pendu_tui.recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import Suggestions, did_you_mean
 from pendu_tui.tui.cli.report import warn
 
-FIELDS = (
-    *NUMBERS,
-    *OPTIONAL,
-    "log_energy_error",
-    *EXTRA_NAMES,
-    "theta_error",
-    "drift_per_second",
-    "force_evaluations",
-)
+_OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
+FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
