@@ -38,6 +38,7 @@ class Shown(NamedTuple):
     overview: bool = False  # all angles, pendulums not enlarged
     ring: bool = False
     line: Line | None = None
+    held: float | None = None  # rad, where the user holds the pendulums; then there is no run
 
     def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
         """Return these settings with a shot, by default the scene's."""
