@@ -181,7 +181,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         if flaw == "rounding":
             factor = 2.0
         elif flaw is None:  # the order of the method predicts the steps
-            needed = (point.error(kind) / target) ** (1 / method.order)
+            needed = (point.error(kind) / target) ** (1 / max(1, method.order))
             if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
                 about = method.evaluations(round(needed * steps))
                 return Attempt(method, point, f"needs about {about:.1e} evaluations")

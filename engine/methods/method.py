@@ -40,7 +40,7 @@ class Method:
     hue: int | None = None  # its number on every palette; None: the next free one of the cast
     phases: Phases
     formula: str
-    order: int  # global order on the nonlinear pendulum, over at most one period
+    order: int  # global order on the nonlinear pendulum, over at most one period; 0: none
     force_evaluations: int  # a step
     # the last force of a step is the first of the next, so a run needs one more at its start
     first_same_as_last: bool = False

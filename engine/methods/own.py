@@ -66,7 +66,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: "Measure
         letter=letter,
         phases=phases,
         formula=(phases.__doc__ or "").strip().partition("\n")[0],
-        order=max(1, round(measured.order or 1)),
+        order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),
         first_same_as_last=measured.more_at_the_start > 0,
         symplectic=measured.symplectic,

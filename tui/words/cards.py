@@ -57,13 +57,16 @@ def method_card(method: Method) -> str:
         stable = "at any h (small swings)"
     elif limit:
         stable = f"up to z = h w0 = {limit:.4g} (small swings)"
+    order = "none: the error does not fall with h, it solves another equation"
+    if method.order:
+        order = f"{method.order}: as a rule, over one swing half of h divides the error by "
+        order += f"{2**method.order}"
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
     symplectic = "yes: conserves phase-space area"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
-        "order": f"{method.order}: as a rule, over one swing half of h divides the error by "
-        f"{2**method.order}",
+        "order": order,
         "costs": f"about {costs}" if method.varies else costs,
         "symplectic": symplectic if method.symplectic else "no: phase-space area changes",
         "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
