@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     from pendu_tui.engine.accuracy.recommend import Attempt
     from pendu_tui.engine.accuracy.study import ErrorKind
+    from pendu_tui.engine.methods.measure import Measured
+    from pendu_tui.engine.methods.method import Phases
+    from pendu_tui.engine.run.order import Order
 
     Floats = NDArray[np.float64]
 
@@ -170,20 +173,14 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
 
     t = _finite("times", _array("times", times))
     e = _array("energies", energies)
-    if len(t) != len(e):
-        raise ValueError(f"{len(t)} times and {len(e)} energies do not belong together.")
+    _same_length(t, e)
     finite = int(np.isfinite(e).cumprod().sum())
     failed = 0 < finite < len(e)
     if failed:
         t = t[:finite]
         e = e[:finite]
     e = _finite("energies", e)
-    later = np.diff(t) > 0
-    if not later.all():
-        place = int(np.argmin(later)) + 1
-        raise ValueError(
-            f"times must increase, and times[{place}] is not later than the one before."
-        )
+    _increasing(t)
     judgement = judge_record(t, e, failed=failed, absolute=scale != "std")
     e = e[judgement.first :]
     size = _size(e, scale)
@@ -200,6 +197,45 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         scale=size,
         progress=str(judgement.progress or ""),
     )
+
+
+def measure(step: "Phases") -> "Measured":
+    """Return the measured properties of a method: order, cost, symplectic, reversible, limit.
+
+    `step(force, phase, h)` is a generator function that yields the phase (q, p) after one step of
+    h, after two, and so on; q'' = force(q).
+    """
+    from pendu_tui.engine.methods.examine import properties
+    from pendu_tui.engine.methods.own import OwnMethodError
+
+    if not callable(step):
+        raise ValueError(f"{step!r} is no function; give a generator function (force, phase, h).")
+    try:
+        return properties(step)
+    except OwnMethodError as error:
+        raise ValueError(str(error)) from None
+
+
+def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "Order":
+    """Return the power of h with which the energy fluctuates in runs (h, times, energies).
+
+    The runs differ in their step size h alone.  The energies of a method of order 2 that solves the
+    right equation fluctuate as h².
+    """
+    from pendu_tui.engine.run.order import fluctuation, order_of
+
+    steps = []
+    fluctuations = []
+    for h, times, energies in runs:
+        steps.append(_number("h", h))
+        t = _increasing(_finite("times", _array("times", times)))
+        e = _finite(f"energies at h = {h:g}", _array("energies", energies))
+        _same_length(t, e)
+        try:
+            fluctuations.append(fluctuation(t, e))
+        except ValueError as error:
+            raise ValueError(f"h = {h:g}: {error}") from None
+    return order_of(steps, fluctuations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -369,6 +405,23 @@ def _finite(name: str, array: "Floats") -> "Floats":
         place = int(np.argmin(np.isfinite(array)))
         raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
     return array
+
+
+def _same_length(times: "Floats", energies: "Floats") -> None:
+    if len(times) != len(energies):
+        raise ValueError(f"{len(times)} times and {len(energies)} energies do not belong together.")
+
+
+def _increasing(times: "Floats") -> "Floats":
+    import numpy as np
+
+    later = np.diff(times) > 0
+    if not later.all():
+        place = int(np.argmin(later)) + 1
+        raise ValueError(
+            f"times must increase, and times[{place}] is not later than the one before."
+        )
+    return times
 
 
 def _size(energies: Any, scale: float | str) -> float:

@@ -111,7 +111,7 @@ def own_phases(source: str, name: str, file: str) -> Phases:
         if functions := [key for key in others if key[:1] != "_"]:
             why += f"; it has {', '.join(functions[:6])}"
         raise OwnMethodError(f"{why}.")
-    return _guarded(function, name, source, file)
+    return guarded(function, name, source, file)
 
 
 def _check_caught(tree: ast.AST, file: str) -> None:
@@ -132,7 +132,7 @@ def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
     print(*values, file=file, **settings)
 
 
-def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
+def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
     """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
     where = file
     if code := getattr(function, "__code__", None):
