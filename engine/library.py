@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pendu_tui.engine import methods as listed
 from pendu_tui.engine import scenes
-from pendu_tui.engine.methods import Cast, Method, matching
+from pendu_tui.engine.methods import Cast, Method, matching, named
 from pendu_tui.engine.scenes import Scene
 
 if TYPE_CHECKING:
@@ -287,7 +287,6 @@ def recommend(
     time: float | None = None,
     methods: Methods | None = None,
     error: "ErrorKind" = "theta",
-    safety: float = 1.0,
     **numbers: float,
 ) -> "list[Attempt]":
     """Return the cheapest run of each method with an error up to `target`, the cheapest first.
@@ -295,7 +294,7 @@ def recommend(
     By default all general methods are tried, over ten small swings.  Look at `method.key`,
     `point.h` [s], `point.z`, `point.steps_per_swing`, `point.force_evaluations` and `times`, the
     cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
-    end); a `safety` of 2 halves the target.  Raises ValueError if no method reaches the target.
+    end).  Raises ValueError if no method reaches the target.
     """
     from pendu_tui.engine.accuracy.recommend import least_cost
     from pendu_tui.engine.accuracy.study import Study, usual
@@ -306,12 +305,12 @@ def recommend(
         raise ValueError("the pendulum hangs at rest; use another theta or omega.")
     if error not in ("theta", "energy", "final"):
         raise ValueError(f"error = {error!r} is none of theta, energy and final.")
-    wanted = _number("target", target) / max(_number("safety", safety), 1e-300)
+    wanted = _number("target", target)
     seconds, _ = usual(chosen)
     if time is not None:
         seconds = _number("time", time)
-    if not 0 < wanted <= target or seconds <= 0:
-        raise ValueError("target and time must be above zero, and safety 1 or more.")
+    if wanted <= 0 or seconds <= 0:
+        raise ValueError("target and time must be above zero.")
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
     successes = [attempt for attempt in attempts if attempt.succeeded]
     if not successes:
@@ -366,13 +365,7 @@ def _method(name: str | Method) -> Method:
     """Return the method of a name or of the start of a key; methods of one's own as they are."""
     if isinstance(name, Method) and name.key not in set(METHODS):
         return name
-    matches = matching(getattr(name, "key", str(name)))
-    if len(matches) == 1:
-        return matches[0]
-    if matches:
-        keys = " or ".join(method.key for method in matches)
-        raise ValueError(f"{name!r} may be {keys}; write more of it.")
-    raise ValueError(f"there is no method {name!r}; choose from {', '.join(METHODS)}.")
+    return named(getattr(name, "key", str(name)))
 
 
 def _number(name: str, value: Any) -> float:

@@ -165,7 +165,8 @@ class Scene:
         """Why studies and maps do not apply to this scene, as a sentence; "" if they do."""
         if why := self.equations.without_force:
             return why
-        names = ", ".join(method.label for method in self.cast if not method.general)
+        counted = [method for method in self.cast if method.force_evaluations]
+        names = ", ".join(method.label for method in counted if not method.general)
         return names and f"Maps and studies are for methods that take any force, not for {names}."
 
     @property

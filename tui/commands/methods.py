@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping
 from itertools import groupby
 from typing import Any
 
-from pendu_tui.engine.methods import METHODS, Method, simplified
+from pendu_tui.engine.methods import METHODS, Method, family_of, simplified
 from pendu_tui.engine.scenes import MAX_METHODS
-from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
+from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of
 from pendu_tui.tui.cli.checks import Check, Gate, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.options import Suggestions
