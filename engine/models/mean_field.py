@@ -25,9 +25,9 @@ from pendu_tui.engine.models.model import (
     Rates,
     Sine,
     State,
+    Variable,
 )
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
-from pendu_tui.engine.quantities import Chart, Quantity
 
 STEP = 0.4  # of the reference, times the fastest frequency
 
@@ -58,13 +58,14 @@ class MeanField(Model):
     second_order = False
     counted_parts = ("kick",)
     variables = (
-        Quantity("sx", about="of the Bloch vector"),
-        Quantity("sy", about="of the Bloch vector"),
-        Quantity("sz", about="of the Bloch vector"),
-        Quantity(
+        Variable("sx", about="of the Bloch vector"),
+        Variable("sy", about="of the Bloch vector"),
+        Variable("sz", about="of the Bloch vector"),
+        Variable(
             "probability_error",
             about="length of the Bloch vector - 1, which the true motion keeps at 0",
-            chart=Chart("probability error"),
+            label="probability error",
+            is_state=False,
         ),
     )
     extra_columns = (

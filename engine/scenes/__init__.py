@@ -4,6 +4,7 @@ from pendu_tui.engine.scenes.listed import DEFAULT_SCENE, GROUPS, SCENES
 from pendu_tui.engine.scenes.scene import (
     LIMITS,
     MAX_METHODS,
+    QUANTITIES,
     UNITS,
     Z_LIMITS,
     Line,
@@ -18,6 +19,7 @@ __all__ = [
     "GROUPS",
     "LIMITS",
     "MAX_METHODS",
+    "QUANTITIES",
     "SCENES",
     "UNITS",
     "Z_LIMITS",

@@ -1,33 +1,34 @@
 """Judge the energies of another program: does its integrator gain or lose energy?
 
-A table is a CSV, a GROMACS .xvg, a log of LAMMPS or Amber, JSON lines, an .npz or the like.
-Results have the units in its heads, such as Time (ps).  A verdict of failed is exit code 1.
+FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
+.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
+certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
 """
 
 import argparse
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.engine.run.verdicts import CHAOTIC, FAILED, LEAVES, VERDICTS, Progress
 from pendu_tui.recordings.errors import printable
+from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import Check, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import add_file, count, positive
+from pendu_tui.tui.cli.options import add_file, count, did_you_mean, number, positive
 from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, publish
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
-    from pendu_tui.tui.cli.columns import Table
+    from pendu_tui.tui.cli.tables import Series
 
 EXAMPLES = """\
 examples:
-  pendu-tui judge energy.csv --time t --energy total
-  pendu-tui judge energy.xvg --time 1 --energy "Total Energy" --fail-if 'verdict != bounded'
-  pendu-tui judge log.lammps --time Step --energy KinEng+PotEng --scale std
-  pendu-tui judge md.csv --time 'Time (ps)' --energy total --atoms 648 --temperature 300
-  pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
+  pendu-tui judge energy.xvg
+  pendu-tui judge md.log.gz --fail-if 'verdict != bounded' --atoms 648 --temperature 300
+  pendu-tui judge log.lammps --energy KinEng+PotEng --step 1fs --units energy=kcal/mol
+  pendu-tui judge a.csv b.csv --steps 1,2 --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
 verdicts:
@@ -41,34 +42,30 @@ FIELDS = (
     *("independent_samples", "fluctuation_order", "drift_order"),
 )
 MAX_ERROR = 1e300  # JSON has no infinity
-NANOSECONDS = {"fs": 1e-6, "ps": 1e-3, "ns": 1.0, "us": 1e3, "µs": 1e3, "ms": 1e6, "s": 1e9}
-BOLTZMANN = {  # per kelvin, in the 2019 SI
-    "ev": 8.617333262e-5,
-    "mev": 8.617333262e-2,
-    **dict.fromkeys(("kj/mol", "kj/mole"), 8.31446261815324e-3),
-    **dict.fromkeys(("kcal/mol", "kcal/mole"), 1.987204258640832e-3),
-    **dict.fromkeys(("hartree", "ha", "a.u.", "au"), 3.166811563e-6),
-    "j": 1.380649e-23,
-    "k": 1.0,
-}
+MAX_LISTED = 30
+CHOOSE = "choose with --time COLUMN and --energy COLUMN"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    table = "a table of times and energies; - for stdin"
+    table = "the log or table of a program; - for stdin"
     add_file(parser, "files", metavar="FILE", nargs="+", help=table)
     add = parser.add_argument
-    times = "the column of times, by name or number from 1"
-    add("--time", metavar="COLUMN", required=True, help=times)
-    energies = "the column of total energies, or several joined by +"
-    add("--energy", metavar="COLUMN", required=True, help=energies)
+    times = "the column of times or steps, by name or number from 1 (default: a guess)"
+    add("--time", metavar="COLUMN", help=times)
+    energies = "the column of total energies, or several joined by + (default: a guess)"
+    add("--energy", metavar="COLUMN", help=energies)
     add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    start = "ignore rows before time T"
-    add("--from", metavar="T", dest="start", type=float, default=-math.inf, help=start)
+    step = "the time of a step, or of a row if there is no column of times, such as 0.5fs"
+    add("--step", metavar="TIME", type=units.quantity, help=step)
+    owned = "the units, where the file does not name them: time=ps,energy=kJ/mol"
+    add("--units", metavar="UNITS", type=units.assignments, default={}, help=owned)
+    add("--from", metavar="T", dest="start", type=_time, default=-math.inf, help="begin at time T")
+    add("--to", metavar="T", dest="end", type=_time, default=math.inf, help="end at time T")
     divisor = (
         "divide errors by the first energy (first), the standard deviation (std), the mean of a "
-        "column (kinetic:COLUMN) or a number; default: first"
+        "column (kinetic:COLUMN) or a number; default: first, and 1 for relative errors"
     )
-    add("--scale", type=scale, default="first", help=divisor)
+    add("--scale", type=scale, help=divisor)
     add("--atoms", metavar="N", type=count, help="print the trend per ns and atom, too")
     add("--temperature", metavar="K", type=positive, help="with --atoms: and in kT")
     sizes = "the step size of each file, to see how the errors scale with it"
@@ -77,6 +74,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     meaning = f"exit with 1 if the expression is true; fields: {', '.join(names)}"
     add_gate_option(parser, names, meaning)
     add_report_options(parser)
+
+
+def _time(text: str) -> float:
+    value = number(text)
+    if math.isnan(value):
+        raise argparse.ArgumentTypeError("nan is not a time")
+    return value
 
 
 def scale(text: str) -> float | str:
@@ -104,6 +108,8 @@ def _check(options: argparse.Namespace) -> None:
         )
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
+    if options.start > options.end:
+        raise UserError(f"there is no time from {options.start:g} to {options.end:g}.")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -121,7 +127,7 @@ def run(options: argparse.Namespace) -> int:
         for name, order in orders.items():
             text = "no clear power of h" if order is None else f"goes as h^{order:.2f}"
             lines.append(_line(name.removesuffix("_order"), text))
-    publish(Report(name="judge", notes=lines, fields=fields), options)
+    publish(Report(name="judge", version=2, notes=lines, fields=fields), options)
     failures: list[str] = []
     if gate:
         for result in results:
@@ -136,28 +142,119 @@ def run(options: argparse.Namespace) -> int:
 
 def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one file; - is stdin.  Raises UserError."""
+    shown = "stdin" if name == "-" else printable(name)
+    try:
+        seen = read(name, options)
+        series = choose(seen, options)
+        if series is None:
+            fields = {"file": name, "seen": [_seen(each) for each in seen]}
+            publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
+            doubt = seen[-1].choice.doubt or "the total energy"
+            raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
+        fields = {"file": name, **_judged(series, options)}
+    except UserError as error:
+        raise UserError(f"{shown}: {error}", error.code) from None
+    except OSError as error:
+        why = f"{shown}: {error.strerror or error}."
+        raise UserError(why, Exit.INPUT_UNREADABLE) from None
+    is_guess = options.time is None or options.energy is None
+    return fields | {"is_guess": is_guess, "seen": [_seen(each) for each in seen]}
+
+
+def read(name: str, options: argparse.Namespace) -> "list[Series]":
+    """Return all tables of a file.  Raises UserError if there is none."""
+    from pendu_tui.tui.cli.choice import Wanted
+    from pendu_tui.tui.cli.reader import read_sheets, unreadable
+
+    kinetic = None
+    if str(options.scale).startswith("kinetic:"):
+        kinetic = options.scale.partition(":")[2]
+    wanted = Wanted(options.time, options.energy, kinetic, options.units, options.step)
+    source = 0 if name == "-" else name
+    with open(source, "rb", closefd=source != 0) as stream:
+        sheets = read_sheets(stream, wanted, name)
+    found = [series for sheet in sheets for series in sheet.series()]
+    if not found:
+        raise unreadable("no row of numbers is in it.")
+    for place, series in enumerate(found, 1):
+        series.number = place
+        series.count = len(found)
+    return found
+
+
+def choose(seen: "Sequence[Series]", options: argparse.Namespace) -> "Series | None":
+    """Return the table to judge, None if that is not certain.  Raises UserError."""
+    from pendu_tui.tui.cli.reader import unreadable
+
+    if options.table and options.table > len(seen):
+        raise unreadable(f"there is no table {options.table}; the input has {len(seen)}.")
+    some = seen
+    if options.table:
+        some = [seen[options.table - 1]]
+    named = [series for series in some if series.sheet.choice]
+    if not named:
+        raise _missing(some, [options.time, options.energy])
+    certain = [series for series in named if series.choice.energy and not series.choice.doubt]
+    return certain[-1] if certain else None
+
+
+def _missing(seen: "Sequence[Series]", wanted: Sequence[str | None]) -> UserError:
+    """Return the error that a wanted column is missing."""
+    from pendu_tui.tui.cli.choice import find
+    from pendu_tui.tui.cli.reader import unreadable
+
+    names = [name for name in seen[-1].sheet.names if name]
+    parts = [part.strip() for each in wanted if each for part in each.split("+")]
+    lost = [each for each in parts if not each.isdecimal() and not find(names, each)]
+    if not lost:
+        return unreadable("no row has a number in each column; columns count from 1.")
+    present = [printable(name, 40) for name in names[:20]]
+    advice = did_you_mean(lost[0], present) or f"; choose from {', '.join(present)}."
+    if not present:
+        advice = "; give columns by number, from 1."
+    return UserError(f"there is no column {printable(lost[0], 40)!r}{advice}")
+
+
+def _seen(series: "Series") -> dict[str, Any]:
+    """Return a table as it is listed."""
+    names = zip(series.sheet.names, series.sheet.units, strict=True)
+    times = series.times[[0, -1]] if series.rows else ()
+    return {
+        "table": series.number,
+        "rows": series.rows,
+        "span": [float(time) for time in times],
+        "columns": [{"name": printable(name), "unit": printable(unit)} for name, unit in names],
+        "time": printable(series.named(series.choice.time)),
+        "energy": printable(series.named(series.choice.energy)),
+    }
+
+
+def _judged(series: "Series", options: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields of the result for one table.  Raises UserError."""
     import numpy as np
 
     from pendu_tui.engine.run.energies import judge_record
 
-    table = _read(name, options)
-    times, energies, *_ = map(np.asarray, table.columns)
+    _finish(series, options)
+    times = series.times
+    energies = series.energies
     # relative to the standard deviation, no result may depend on the zero of energy
     is_absolute = options.scale != "std"
     judgement = judge_record(
-        times, energies, failed=table.failed_at is not None, absolute=is_absolute
+        times, energies, failed=series.failed_at is not None, absolute=is_absolute
     )
     rest = energies[judgement.first :]
-    size = _size(table, rest, options.scale)
+    size = _size(series, rest, options.scale)
     with np.errstate(over="ignore"):
         errors = np.clip((rest - rest[0]) / size, -MAX_ERROR, MAX_ERROR)
     fields = {
-        "file": name,
-        "table": table.number,
-        "tables": table.count,
+        "table": series.number,
+        "tables": series.count,
+        "time": printable(series.named(series.choice.time)),
+        "energy": printable(series.named(series.choice.energy)),
         **fields_of(judgement, "verdict", "transient", "fluctuation"),
         "progress": judgement.progress and judgement.progress._asdict(),
-        **_trend(table, judgement.slope, judgement.uncertainty, size),
+        **_trend(series, judgement.slope, judgement.uncertainty, size),
         "independent_samples": judgement.independent,
         "max_energy_error": float(np.abs(errors).max()),
         "energy_error": float(errors[-1]),
@@ -168,54 +265,49 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
         "samples": len(times),
         "first_time": float(times[0]),
         "last_time": float(times[-1]),
-        "diverged_at": table.failed_at,
-        "skipped": table.skipped,
+        "diverged_at": series.failed_at,
+        "skipped": series.skipped,
     }
     if options.atoms is not None:
         fields |= _per_atom(fields, options.atoms, options.temperature)
     return fields
 
 
-def _read(name: str, options: argparse.Namespace) -> "Table":
-    """Return the table of a file.  Raises UserError if it has nothing to judge."""
-    from pendu_tui.tui.cli.columns import read_table
+def _finish(series: "Series", options: argparse.Namespace) -> None:
+    """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
+    from pendu_tui.tui.cli.choice import Wanted
+    from pendu_tui.tui.cli.reader import unreadable
 
-    wanted = [options.time, options.energy]
-    if str(options.scale).startswith("kinetic:"):
-        wanted.append(options.scale.partition(":")[2])
-    source = 0 if name == "-" else name
-    try:
-        with open(source, "rb", closefd=source != 0) as stream:
-            table = read_table(stream, wanted, options.table, options.start)
-    except OSError as error:
-        why = f"{printable(name)}: {error.strerror or error}."
-        raise UserError(why, Exit.INPUT_UNREADABLE) from None
-    rows = len(table.columns[0])
-    if table.skipped["time_not_later"] > rows:
-        raise UserError(
+    wanted = Wanted(units=options.units, step=options.step)
+    series.finish(wanted, options.start, options.end)
+    rows = len(series.times)
+    if series.skipped["time_not_later"] > rows:
+        raise unreadable(
             "most rows are not later than the row before, so this table seems to hold several "
-            "methods; judge one of them, for example filtered with grep.",
-            Exit.INPUT_UNREADABLE,
+            "methods; judge one of them, for example filtered with grep."
         )
     if rows == 0:
-        why = f"no row has a usable time and energy; skipped: {', '.join(_skipped(table.skipped))}."
-        if table.failed_at is not None:
-            why += f" Use --from with a later time than {table.failed_at:g}."
-        raise UserError(why, Exit.INPUT_UNREADABLE)
-    return table
+        why = (
+            f"no row has a usable time and energy; skipped: {', '.join(_skipped(series.skipped))}."
+        )
+        if series.failed_at is not None:
+            why += f" Use --from with a later time than {series.failed_at:g}."
+        raise unreadable(why)
 
 
 def _skipped(skipped: dict[str, int]) -> list[str]:
-    from pendu_tui.tui.cli.columns import REASONS
+    from pendu_tui.tui.cli.tables import REASONS
 
     return [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
 
 
-def _size(table: "Table", energies: Any, scale: float | str) -> float:
+def _size(series: "Series", energies: Any, scale: float | str | None) -> float:
     """Return the energy by which errors are divided.  Raises UserError if it is 0."""
     if isinstance(scale, float):
         return scale
-    if scale == "first":
+    if scale is None and series.holds_errors:
+        return 1.0
+    if scale in (None, "first"):
         what = "first energy"
         size = abs(float(energies[0]))
     elif scale == "std":
@@ -224,7 +316,7 @@ def _size(table: "Table", energies: Any, scale: float | str) -> float:
         size = float((energies / largest).std() * largest)  # squares must not overflow
     else:
         what = "mean kinetic energy"
-        size = abs(sum(table.columns[2]) / len(table.columns[2]))
+        size = abs(float(series.kinetic.mean()))
     if not 0 < size < math.inf:
         raise UserError(
             f"the {what} is 0, and errors are relative to it; give a typical one with --scale."
@@ -233,12 +325,10 @@ def _size(table: "Table", energies: Any, scale: float | str) -> float:
 
 
 def _trend(
-    table: "Table", slope: float | None, uncertainty: float | None, size: float
+    series: "Series", slope: float | None, uncertainty: float | None, size: float
 ) -> dict[str, Any]:
     """Return the trend, absolute and relative to a size, with units."""
-    time_unit, energy_unit = (printable(unit, 20) for unit in table.units[:2])
-    if time_unit.casefold() in NANOSECONDS:
-        time_unit = time_unit.casefold()
+    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields: dict[str, Any] = {
         "time_unit": time_unit,
         "energy_unit": energy_unit,
@@ -258,23 +348,23 @@ def _trend(
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
     trend = fields["absolute_trend"]
-    time_unit = fields["time_unit"]
-    energy_unit = fields["energy_unit"].casefold()
-    if time_unit not in NANOSECONDS:
+    time_unit = units.plain("time", fields["time_unit"])
+    energy_unit = units.plain("energy", fields["energy_unit"])
+    if not time_unit:
         raise UserError(
-            "--atoms needs the unit of time in the column's head, such as Time (ps); units: "
-            f"{', '.join(NANOSECONDS)}."
+            "--atoms needs the unit of time: --units time=ps, or --step 0.5fs for steps; units: "
+            f"{', '.join(units.NANOSECONDS)}."
         )
-    energy = trend and trend / NANOSECONDS[time_unit] / atoms
+    energy = trend and trend / units.NANOSECONDS[time_unit] / atoms
     result = {"atoms": atoms, "energy_per_ns_per_atom": energy}
     if temperature is None:
         return result
-    if energy_unit not in BOLTZMANN:
+    if not energy_unit:
         raise UserError(
-            "--temperature needs the unit of energy in the column's head, such as E (eV); units: "
-            f"{', '.join(BOLTZMANN)}."
+            "--temperature needs the unit of energy: --units energy=kJ/mol; units: "
+            f"{', '.join(units.BOLTZMANN)}."
         )
-    in_kt = energy and energy / (BOLTZMANN[energy_unit] * temperature)
+    in_kt = energy and energy / (units.BOLTZMANN[energy_unit] * temperature)
     return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
 
 
@@ -307,7 +397,7 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
         verdict += f": the energy is nan or inf at {fields['diverged_at']:g}{time_unit}"
     if fields["transient"]:
         verdict += f", after a transient of {fields['transient']:.3g}{time_unit}"
-    lines = [_title(fields), _line("verdict", verdict)]
+    lines = [_title(fields), *_listed(fields), _line("verdict", verdict)]
     if fields["trend"] is not None:
         per = f"per {fields['time_unit'] or 'unit of time'}"
         relative = f"relative {fields['trend']:+.2e} ± {fields['uncertainty']:.0e} {per}"
@@ -326,6 +416,28 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
         lines.append(_line("hint", hint))
     return lines
+
+
+def _listed(fields: Mapping[str, Any]) -> list[str]:
+    """Return the lines on what is in the file, none where the user named the columns."""
+    if not fields.get("is_guess", True):
+        return []
+    lines = []
+    seen = fields["seen"]
+    for each in seen[-MAX_LISTED:]:
+        span = " to ".join(f"{time:g}" for time in each["span"])
+        lines.append(_line(f"table {each['table']}", f"{counted(each['rows'], 'row')}, {span}"))
+        columns = [_column(place, column) for place, column in enumerate(each["columns"], 1)]
+        lines.append(_line("columns", ", ".join(columns[:MAX_LISTED])))
+    if "verdict" in fields:
+        guess = f"time {fields['time']}, energy {fields['energy']}; {CHOOSE}"
+        lines.append(_line("judged", guess))
+    return lines
+
+
+def _column(place: int, column: Mapping[str, str]) -> str:
+    name = column["name"] or f"column {place}"
+    return f"{name} [{column['unit']}]" if column["unit"] and column["unit"] not in name else name
 
 
 def _title(fields: dict[str, Any]) -> str:

@@ -108,7 +108,7 @@ WRONG = {
     "an except that catches the limit of time": (
         "def mine(force, phase, h):\n    try: yield phase\n    except: pass", "line 3: this would catch Ctrl+C; use"
     ),
-    "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
+    "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
     "a memory": (
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
         "mine keeps more than theta and omega from step to step",

@@ -12,8 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.tui.cli.columns import Table, read_table
+from pendu_tui.tui.cli.choice import Wanted
 from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.reader import read_sheets
+from pendu_tui.tui.cli.tables import Series
 from tests.tui.command_line import Outcome, pendu
 
 ROWS = [(n / 10, 100 + math.sin(n)) for n in range(300)]
@@ -27,9 +29,17 @@ def table(form: str = "{t},{e}", head: str = "t,E") -> str:
     return f"{head}\n{lines(form)}"
 
 
-def read(data: str | bytes, *wanted: str) -> Table:
+def read(data: str | bytes, time: str | None = None, energy: str | None = None) -> Series:
+    """Return the last table, finished."""
     stream = io.BytesIO(data.encode() if isinstance(data, str) else data)
-    return read_table(io.BufferedReader(stream), wanted)
+    wanted = Wanted(time, energy)
+    sheets = read_sheets(io.BufferedReader(stream), wanted)
+    found = [series for sheet in sheets for series in sheet.series() if sheet.choice]
+    if not found:
+        raise UserError("nothing")
+    found[-1].count = len(found)
+    found[-1].finish(wanted)
+    return found[-1]
 
 
 def judge(text: str | bytes, *more: object, time="t", energy="E") -> Outcome:
@@ -70,7 +80,7 @@ LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
 )
 def test_a_table_is_read_whatever_its_form(text, names):
     found = read(text, *names)
-    assert list(zip(*found.columns, strict=True)) == ROWS
+    assert list(zip(found.times, found.energies, strict=True)) == ROWS
     assert not any(found.skipped.values())
 
 
@@ -93,10 +103,10 @@ RISING = [-17 + n / 8 for n in range(9)]
 @pytest.mark.parametrize(
     ("data", "names", "units", "times", "energies"),
     [
-        (CP2K, ("Time", "Cons Qty[a.u.]"), ("fs", "a.u."), HALVES, RISING),
-        (CP2K, ("step nr.", "Kin.+Pot."), ("", "a.u."), list(range(9)), [-17.0] * 9),
+        (CP2K, ("Time", "Cons Qty[a.u.]"), ("fs", "hartree"), HALVES, RISING),
+        (CP2K, ("step nr.", "Kin.+Pot."), ("", "hartree"), list(range(9)), [-17.0] * 9),
         (JSON_LINES, ("t", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
-        (MDOUT, ("time", "EKtot+EPtot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
+        (MDOUT, ("time", "EKtot+EPtot"), ("ps", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (NPZ.getvalue(), ("time", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
         ("t,E\nps,eV\n0,1\n1,1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
         (XVG, ("1", "3"), ("ps", "kJ/mol"), *map(list, zip(*ROWS, strict=True))),
@@ -107,16 +117,17 @@ RISING = [-17 + n / 8 for n in range(9)]
 def test_other_forms_are_read_and_columns_added(data, names, units, times, energies):
     found = read(data, *names)
     assert found.units == units
-    assert [list(column) for column in found.columns] == [times, energies]
+    assert [list(found.times), list(found.energies)] == [times, energies]
 
 
 def test_one_table_is_judged_and_named():
     names = {"time": "Step", "energy": "TotEng"}
-    words = "300 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers"
-    assert words in judge(LOG, **names).out
+    log = LOG.replace("  15.0 ", "  15.0x ")
+    words = "299 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers"
+    assert words in judge(log, **names).out
     for skipped, code in ((0, 1), (1, 0)):
-        gate = f"skipped > {skipped} or samples < 300"
-        assert judge(LOG, "--fail-if", gate, **names).code == code
+        gate = f"skipped > {skipped} or samples < 299"
+        assert judge(log, "--fail-if", gate, **names).code == code
     answer = judge(LOG, "--json", "--table", 1, **names).json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
@@ -151,8 +162,8 @@ def test_a_second_header_or_time_begins_a_table_and_neither_a_footer_nor_a_page(
     text, names, tables
 ):
     found = read(text, *names)
-    assert (found.number, found.count, len(found.columns[0])) == (tables, tables, 300)
-    assert found.columns[1][0] == 100
+    assert (found.count, len(found.times)) == (tables, 300)
+    assert found.energies[0] == 100
 
 
 def test_rows_that_cannot_be_used_are_counted():
@@ -163,7 +174,7 @@ def test_rows_that_cannot_be_used_are_counted():
         "energy_not_finite": 0,
         "time_not_finite": 2,
         "time_not_later": 1,
-        "before_start": 100,
+        "out_of_range": 100,
     }
     assert (answer["samples"], answer["first_time"], answer["diverged_at"]) == (201, 10.0, None)
 
@@ -260,7 +271,7 @@ def test_a_gate_gives_the_values(expression, found):
         ("1 2\n", "t E", 2, "give columns by number"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time never increases"),
-        ("\x1b[31m,\x07\n", "t E", 2, "there is no column 't'"),
+        ("\x1b[31m,\x07\n", "t E", 3, "no row of numbers"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
     ],
 )
@@ -292,19 +303,19 @@ def test_a_file_or_a_gate_that_cannot_be_read_is_one_sentence():
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        ("t,E\n0,1\n".encode("utf-16"), "UTF-16"),
-        (b"\x1f\x8b\x08\x00rest", "gzip"),
+        (b"\x1f\x8b\x08\x00rest", "cannot be unpacked"),
+        (b"PAR1rest", "Parquet"),
         (b"\x89MCAP0\r\nrest", "a recording"),
         (b"\0" * 5000, "not text"),
         (b"x" * (1 << 21), "longer than 1 MB"),
         (b"t,E\n" + b"y\n" * 1002, "lines without a row"),
-        (PICKLES.getvalue(), "this .npz cannot be read"),
+        (PICKLES.getvalue(), "arrays cannot be read"),
         ("1,1\n" * 2001, "more than"),  # an input that never ends
     ],
 )
 def test_what_is_no_table_is_refused_within_bounds(data, words, monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.cli.columns.MAX_LINES_BEFORE", 1000)
-    monkeypatch.setattr("pendu_tui.tui.cli.columns.MAX_RECORDS", 2000)
+    monkeypatch.setattr("pendu_tui.tui.cli.reader.MAX_LINES_BEFORE", 1000)
+    monkeypatch.setattr("pendu_tui.tui.cli.tables.MAX_ROWS", 2000)
     assert judge(data, time="1", energy="2").refused(3, words)
 
 
@@ -317,7 +328,8 @@ def test_any_input_is_columns_or_one_sentence(data):
         sentence = ""
         columns: object = ((), ())
         try:
-            columns = read(text, *names).columns
+            found = read(text, *names)
+            columns = (found.times, found.energies)
         except UserError as error:
             sentence = str(error)
         assert sentence == "" or sentence.isprintable()

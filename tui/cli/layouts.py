@@ -1,0 +1,170 @@
+"""Layouts of the energy logs of other programs, and the names of times and energies in them.
+
+A table that begins below its names needs no entry, whatever separates its columns: CSV, OpenMM,
+ASE, CP2K's .ener, SIESTA's .MDE, Tinker's tables, GENESIS.
+"""
+
+import re
+from dataclasses import dataclass, field
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\))?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
+"""How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
+VALUE = rf"(?P<value>{NUMBER}|{FAILED})"
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The look of a program's lines, for each that is not a plain row of the table before it.
+
+    `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
+    columns below; a `row`, which may begin with words; a `name` and its `value`, perhaps with a
+    `unit`; `over`, names above a line of numbers; the `place` of a column, from 1, or the `set` of
+    xmgrace, from 0, and its `label`; the beginning of a new run (`part`); what is no longer data
+    (`end`), up to the next `part`.  A group of any other name is a value of that name.
+    """
+
+    programs: str
+    line: str = r"(?!)"
+    units: str = ""  # of times and energies without one
+    file: str = r"(?!)"  # the end of the name of a file whose first columns are `columns`
+    columns: tuple[str, ...] = ()
+    cells: str = ""  # finds each of the names, if neither blanks nor commas part them
+    pattern: re.Pattern[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pattern", re.compile(self.line, re.IGNORECASE))
+
+
+LAYOUTS = (
+    Layout(
+        programs="LAMMPS, all thermo styles",
+        line=r"^(?P<part>Loop time of)|^-+ Step +(?P<Step>\d+) -"
+        r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[(?P<row>.*)\]",
+    ),
+    Layout(
+        programs="GROMACS .xvg, xmgrace",
+        line=r'^@ *s(?P<set>\d+) +legend +"(?P<label>[^"]*)"|^(?P<part>&)'
+        r'|^@ *(?P<axis>[xy])axis +label +"(?P<about>[^"]*)"',
+    ),
+    Layout(
+        programs="GROMACS md.log",
+        line=r"^(?P<over> {11}Step {11}Time\b.*|(?=.*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
+        r"|(?P<end><=+  A V E R A G E S)|^(?P<part>Started mdrun)",
+        cells=".{15}",
+        units="time=ps,energy=kJ/mol",
+    ),
+    Layout(
+        programs="NAMD",
+        line=r"^(?P<names>ETITLE:.*)|^(?P<row>ENERGY:.*)|^TCL: (?P<part>Running|Minimizing) for",
+        units="energy=kcal/mol",
+    ),
+    Layout(
+        programs="CHARMM",
+        line=r"^DYNA (?P<names>DYN: .*)|^(?P<row>DYNA> .*)",
+        units="time=ps,energy=kcal/mol",
+    ),
+    Layout(
+        programs="Amber mden",
+        line=r"^(?P<names>L0 +[A-Z].*)|^(?P<row>L0 .*)",
+        units="time=ps,energy=kcal/mol",
+    ),
+    Layout(
+        programs="Amber mdout",
+        line=r"^ (?=NSTEP +=)|(?P<end>A V E R A G E S   O V E R)",
+        units="time=ps,energy=kcal/mol",
+    ),
+    Layout(
+        programs="CP2K's output",
+        line=rf"^ *MD\| +(?P<name>[A-Z][\w ]*?(?: \[\w+\])?) {{2,}}{VALUE}",
+    ),
+    Layout(
+        programs="Quantum ESPRESSO .evp",
+        line=r"^# *(?P<names>nfi .*)",
+        units="energy=hartree",
+    ),
+    Layout(
+        programs="i-PI",
+        line=r"^# *(?:column|cols?\.) +(?P<place>\d+)\S* +--> +(?P<label>[^\s{]+(?:\{[^}]*\})?)",
+    ),
+    Layout(
+        programs="xtb",
+        line=r"^ +(?P<names>time \(ps\) +<Epot>.*)",
+        units="energy=hartree",
+    ),
+    Layout(
+        programs="VASP OSZICAR",
+        line=r"^ *(?P<Step>\d+)(?= +T= )",
+        units="energy=eV",
+    ),
+    Layout(
+        programs="Tinker",
+        line=rf"^ (?P<name>[A-Z]\w+ [A-Z]\w+) {{2,}}{VALUE} +(?P<unit>Picosecond|Kcal/mole)",
+    ),
+    Layout(
+        programs="Desmond, Athena",
+        line=r"^# *(?P<names>(?:\[1\] *=|0:).*)",
+        cells=r"(?:\[\d+\] *=|\b\d+:) *(.*?) *(?=\[\d+\] *=|\b\d+:|$)",
+    ),
+    Layout(
+        programs="PLUMED",
+        line=r"^#! FIELDS +(?P<names>.*)",
+    ),
+    Layout(
+        programs="GPUMD, which writes neither names nor times",
+        file=r"thermo\.out",
+        columns=("temperature (K)", "kinetic (eV)", "potential (eV)"),
+    ),
+    Layout(
+        programs="prints of name value",
+        line=rf"(?<!\S)(?P<name>[A-Z]\w*) +{VALUE},?(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
+    ),
+    Layout(
+        programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
+        line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]*"
+        rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]*)*)"
+        rf"(?: *= *|: +(?!{NUMBER}[^\S\n]+[-+.\d])){VALUE}"
+        rf" *(?P<unit>pico-seconds|[fpn]s|s|Ry|H|Ha|[mk]?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
+    ),
+)
+"""The layouts, in the order in which they are tried on a line."""
+
+TIMES = ("time", "t", "simtime", "simulationtime", "simulatedtime", "mdtime", "currenttime")
+STEPS = (
+    *("step", "steps", "nstep", "nsteps", "nfi", "ts", "stepnr", "stepnumber", "mdstep"),
+    *("timestep", "iteration", "iter", "frame", "cycle"),
+)
+ENERGIES = (
+    frozenset(("econt", "econserve", "consqty", "totalmdenergy", "ekin+etotconst", "conserved")),
+    frozenset(("conserveden", "conservedenergy", "conservedquantity", "econserved")),
+    frozenset(("econs",)),
+    frozenset(
+        ("etot", "etotal", "total", "totalenergy", "energytotal", "toteng", "totener", "tote")
+    )
+    | frozenset(("totenergy", "totalene", "totale", "energytot", "etotn", "etotalperatom")),
+    frozenset(("e", "energy", "ener")),
+)
+"""Names of the conserved energy as `key` writes them, the best first."""
+
+KINETIC = frozenset(
+    ("ke", "ekin", "kineng", "kinetic", "kineticenergy", "kineticen", "k", "ek", "ekinetic")
+) | frozenset(
+    ("totke", "currentkinetic", "kineticene", "ektot", "energykinetic", "mdkineticenergy")
+)
+POTENTIAL = frozenset(
+    ("pe", "epot", "poteng", "potential", "potentialenergy", "potentialen", "u", "ep")
+) | frozenset(("epotential", "currentpotential", "potentialene", "eptot", "energypotential"))
+OTHERS = frozenset(
+    ("temp", "temperature", "press", "pressure", "pres", "volume", "vol", "density", "epair")
+)
+ERRORS = re.compile(
+    r"(?:rel(?:ative)?)?d(?:elta)?e(?:e0?)?|.*e0e0|(?:rel(?:ative)?)?e(?:nergy)?(?:err(?:or)?|drift)"
+    r"|rel(?:ative)?err(?:or)?"
+)
+"""Names of relative errors of the energy."""
+
+
+def key(name: str) -> str:
+    """Return a name without its unit, in letters, digits and + alone, to compare it."""
+    name = re.sub(r"^[\w.]+\.(?=\w{4,}$)|^[vcf]_", "", name.casefold())  # HOOMD, LAMMPS
+    return re.sub(r"[^a-z0-9+]", "", name)
