@@ -51,7 +51,6 @@ def test_a_scene_may_stand_before_or_after_the_options(arguments):
         ("--print-completion ksh", 2, "bash"),
         ("run --tiem 10", 2, "run has no option --tiem: did you mean --time?"),
         ("snapshot -x lab.svg", 2, "snapshot has no option -x; pendu-tui snapshot --help"),
-        ("judge x.csv", 2, "required: --time, --energy"),
         ("run --time 1 --theta -abc", 2, "has no option -a"),
         ("run --time --h 0.1", 2, "--time: expected one argument"),
         ("run --time 1 drift more", 2, "unrecognized arguments: more"),
