@@ -93,12 +93,12 @@ def noticed(run: int, milestone: "Milestone") -> Event:
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
 
 
-_own: dict[str, "OwnMethod"] = {}
+_own: dict[str, "OwnMethod"] = {}  # by key
 
 
 def remember(own: Iterable["OwnMethod"]) -> None:
-    """Use these methods where a recording names them, whose source code is never executed."""
-    _own.update({name_of(method): method for method in own})
+    """Use these methods where a recording names them by key; its source code is never executed."""
+    _own.update({method.key: method for method in own})
 
 
 def name_of(method: Method) -> str:
@@ -113,11 +113,12 @@ def name_of(method: Method) -> str:
 def method_named(name: str) -> Method:
     """Return the method of this name.
 
-    A user's own method that was not passed to `remember` can be replayed, but not simulated.
+    A user's own method that was not passed to `remember` can be replayed, but not simulated.  One
+    that was may have another source than the recorded one.
     """
     key, is_own, _ = name.partition("@")
-    if name in _own:
-        return _own[name]
+    if is_own and key in _own:
+        return _own[key]
     if not is_own:
         try:
             return method_of(key)
@@ -143,8 +144,8 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
     for method in scene.cast:
         if method.phases is _no_phases and (only is None or method.key in only):
             raise RecordingError(
-                f"it needs the user's own method {method.key}; give its file as it was (SHA-256 "
-                f"{method.reference.partition('@')[2][:12]}…) with --method FILE.py:{method.key}"
+                f"it needs the user's own method {method.key}; give its file with "
+                f"--method FILE.py:{method.key}"
             )
 
 

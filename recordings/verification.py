@@ -51,6 +51,7 @@ class Verification:
     samples: int = 0
     numerics: int = NUMERICS  # the version of the numbers
     other_functions: tuple[str, ...] = ()  # that this machine computes differently
+    changed_sources: tuple[str, ...] = ()  # keys of own methods whose file is not as recorded
     identical: bool = False  # every sample, or within the tolerance where sin differs; no damage
     first_difference: Difference | None = None
 
@@ -102,6 +103,11 @@ def _rerun(
     result.runs += 1
     result.numerics = run.arithmetic.numerics
     result.other_functions = run.arithmetic.other_functions()
+    recorded = {source for _, event in run.events for source in event.sources}
+    changed = [
+        method.key for method in cast if getattr(method, "source", None) not in {None, *recorded}
+    ]
+    result.changed_sources = tuple(dict.fromkeys((*result.changed_sources, *changed)))
     lockstep = Lockstep(run.scene, run.number, TieredLoops)
     for value in values:
         if isinstance(value, Event) and (value.h is None or value.step > run.steps):

@@ -23,13 +23,27 @@ def path(tmp_path, monkeypatch):
     return tmp_path / "own.mcap"
 
 
-def test_it_verifies_only_with_the_same_text_given_again_and_the_others_without_it(path):
+def test_it_verifies_with_its_file_and_the_others_without_it(path):
     assert pendu("verify", path, "--methods", "rk4").code == 0
-    pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun", "SHA-256")
-    assert pendu("verify", path, "--method", "mine.py:my_heun").code == 0
-    Path("mine.py").write_text(HEUN + "# another text\n")
-    events._own.clear()
-    pendu("verify", path, "--method", "mine.py:my_heun").refused(3, "my_heun", "its file as it was")
+    pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun")
+    same = pendu("verify", path, "--method", "mine.py:my_heun", "--json")
+    assert same.code == 0
+    assert same.json["files"][0]["changed_sources"] == []
+
+
+@pytest.mark.parametrize(("factor", "code"), [("2.0", 0), ("2.001", 1)])
+def test_a_changed_file_is_compared_by_its_numbers(path, factor, code):
+    changed = HEUN.replace("h / 2 * (a + b)", f"h / {factor} * (a + b)")
+    assert changed != HEUN
+    Path("mine.py").write_text(changed)
+    verified = pendu("verify", path, "--method", "mine.py:my_heun")
+    assert verified.code == code
+    assert "the source of my_heun is not the recorded one" in verified.out
+    (row,) = pendu("verify", path, "--method", "mine.py:my_heun", "--json").json["files"]
+    assert row["changed_sources"] == ["my_heun"]
+    assert row["identical"] == (not code)
+    if code:
+        assert row["first_difference"]["method"] == "my_heun"
 
 
 def test_the_recording_and_its_recovery_keep_the_text_and_its_hash(path):

@@ -102,6 +102,8 @@ def _sentence(row: dict[str, Any]) -> str:
         text += f"; within tolerance only: this machine computes {others} differently"
     if row["numerics"] != NUMERICS:
         text += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
+    if row["changed_sources"]:
+        text += f"; the source of {' and '.join(row['changed_sources'])} is not the recorded one"
     verdict = "damaged"
     first = row["first_difference"]
     if first:
