@@ -50,9 +50,10 @@ _FIRST_LOOK = (
         speed=4.0,
         watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute.",
         shot=Shot(
-            theta=math.pi,
-            moment=33.6,
-            sentence="Here RK4's error passes Verlet's, for good: it grows, Verlet's does not.",
+            log=False,
+            front=("velocity_verlet", "rk4"),
+            moment=50.0,
+            sentence="RK4 left Verlet's band at 33 s, for good: its error grows, Verlet's does not.",
         ),
     ),
     Scene(

@@ -1,7 +1,8 @@
-"""Axes: ranges, round labels, and the part of a series in each column."""
+"""Axes: ranges with round labels."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,29 +30,6 @@ class Axis:
         return max([5, *map(len, self.labels.values())])
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """Two axes around a field of characters."""
-
-    x_axis: Axis
-    y_axis: Axis
-    columns: int
-    rows: int
-    left: int  # the first column
-
-    def right(self, x: ArrayLike) -> Floats:
-        """Return distances from the left edge, in characters."""
-        return self.columns * self.x_axis.share(x)
-
-    def up(self, y: ArrayLike) -> Floats:
-        """Return distances from the lower edge, in characters."""
-        return self.rows * self.y_axis.share(y)
-
-    def row(self, y: float) -> int:
-        """Return the row of a value, from the top."""
-        return max(self.rows - 1 - int(self.up(y)), 0)
-
-
 def nice(value: float) -> float:
     """Return the smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
     if not value > 0:
@@ -60,23 +38,41 @@ def nice(value: float) -> float:
     return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
 
 
-_DECADES = (
-    *(1 / 16, 1 / 12, 1 / 8, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3),
-    *(1, 3 / 2, 2, 3, 4, 6, 12, 50, 200, 500),
-)
+_DECADES = [*sorted({n / d for n in range(1, 5) for d in range(1, 17)}), 6, 12, 50, 200, 500]
 """How many decades a row of characters may span."""
+FEW_ROWS = 9
 
 
 def log_axis(low: float, high: float, rows: int) -> Axis:
-    """Return a vertical axis of log10 from low to high, at least two decades long."""
-    low = min(low, high - 2)
-    size = next(size for size in _DECADES if round(high / size) - round(low / size) < rows)
-    bottom = (round(high / size) + 0.5 - rows) * size
-    top = (round(high / size) + 0.5) * size
-    values = _multiples(bottom, top, math.ceil(2 * size))
-    if len(values) < 2 and size >= 1:  # few rows: label each
-        values = [top - (row + 0.5) * size for row in reversed(range(rows))]
-    return Axis(bottom, top, {value: _power(value) for value in values})
+    """Return a vertical axis of log10 that covers low to high.
+
+    It is the shortest with powers of ten in the middle of three rows, or of two if rows are few.
+    """
+    need = 3 if rows >= FEW_ROWS else 2
+    axes: list[Axis] = []
+    for size in _DECADES:
+        top = round(high / size)
+        spare = rows - 1 - top + round(low / size)
+        step = next(step for step in count(1) if step / size >= 2 and _is_whole(step / size))
+        axes += [_centred(top + above, size, step, rows) for above in range(spare + 1)]
+        if axes and len(axes[-1].labels) >= need:
+            break
+    axis = next((axis for axis in axes if len(axis.labels) >= need), axes[-1])
+    return replace(axis, labels={each: _power(each) for each in axis.labels})
+
+
+def _is_whole(value: float) -> bool:
+    return abs(value - round(value)) < 1e-9
+
+
+def _centred(top: int, row: float, step: float, rows: int) -> Axis:
+    """Return an axis whose rows have multiples of `row` in the middle, `top` times it at the top.
+
+    Multiples of `step` are labelled.
+    """
+    low = (top - rows + 0.5) * row
+    high = (top + 0.5) * row
+    return Axis(low, high, dict.fromkeys(_multiples(low, high, step), ""))
 
 
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
@@ -94,25 +90,20 @@ def _power(exponent: float) -> str:
 def linear_axis(low: float, high: float, rows: int) -> Axis:
     """Return a vertical axis from low to high or a little beyond, wider if they hardly differ.
 
-    Its labels are equally spaced, two or more rows apart if possible.
+    Labels are two to five rows apart.
     """
     least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
     if high - low < least:
         low = low - least
         high = high + least
-    power = 10.0 ** (math.floor(math.log10(high - low)) - 1)
+    power = 10.0 ** math.floor(math.log10((high - low) / rows))
     steps = [part * power for part in (1, 2, 5, 10, 20, 50, 100)]
-
-    def rows_apart(step: float) -> int:
-        top = math.ceil(high / step - 1e-9)
-        return math.floor((rows - 1) * step / (top * step - low) + 1e-9)
-
-    step = next(step for apart in (2, 1) for step in steps if rows_apart(step) >= apart)
-    top = math.ceil(high / step - 1e-9) * step
-    row = step / rows_apart(step)
-    bottom = top - (rows - 0.5) * row
-    labels = {value: _label(value, step) for value in _multiples(bottom, top, step)}
-    return Axis(bottom, top + row / 2, labels)
+    sizes = sorted((step / apart, step) for step in steps for apart in range(2, 6))
+    row, step = next(
+        (row, step) for row, step in sizes if round(high / row) - round(low / row) < rows
+    )
+    axis = _centred(round(high / row), row, step, rows)
+    return replace(axis, labels={each: _label(each, step) for each in axis.labels})
 
 
 def _label(value: float, step: float) -> str:
@@ -170,13 +161,20 @@ def number_ticks(low: float, high: float, most: int) -> Ticks:
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """Return positions and labels of about `most` angles, in pi or, zoomed in, in rad."""
+    """Return positions and labels of about `most` angles, in pi or, below pi/4 apart, in rad."""
     share = (high - low) / math.pi / most
-    if high - low <= 0.02 * math.pi:
-        return number_ticks(low, high, most)
-    step = nice(share)
-    if 0.1 < share <= 1:
-        step = next(quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share)
+    if share <= 0.1:
+        turns = (-1, 0, 1) if wrap else (0,)
+        step = nice((high - low) / most)
+        ticks: Ticks = []
+        for turn in turns:
+            begin = max(low - turn * math.tau, -math.pi if wrap else -math.inf)
+            end = min(high - turn * math.tau, math.pi if wrap else math.inf)
+            ticks += [
+                (value + turn * math.tau, compact(value)) for value in _multiples(begin, end, step)
+            ]
+        return ticks
+    step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share), nice(share))
     values = _multiples(low / math.pi, high / math.pi, step)
     return [(value * math.pi, in_pi(value, wrap)) for value in values]
 
@@ -193,49 +191,12 @@ def compact(value: float) -> str:
 
 
 def in_pi(turns: float, wrap: bool = False) -> str:
-    """Write a multiple of pi: "-pi", "3pi/4", "0.35pi"; `wrapped` to -pi to pi."""
+    """Write quarters of pi: "-pi", "3pi/4"; `wrap` turns them to -pi to pi."""
     if wrap and abs(turns) > 1:
         turns = round(math.remainder(turns, 2), 12)
     if turns == 0:
         return "0"
-    for divisor, over in ((1, ""), (2, "/2"), (4, "/4")):
-        if turns * divisor % 1 == 0:
-            count = f"{turns * divisor:.0f}"
-            return {"1": "", "-1": "-"}.get(count, count) + "pi" + over
-    return f"{compact(turns)}pi"
-
-
-def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
-    """Return the first and last x; columns keep their moments while the window moves."""
-    latest = float(x.max(initial=0.0))
-    if seconds is None:
-        unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
-        return 0.0, max(math.ceil(latest / unit) * unit, 1.0)
-    column = seconds / columns
-    end = max(math.ceil(latest / column) * column, seconds)
-    return end - seconds, end
-
-
-def per_column(
-    x: Floats, low: Floats, high: Floats, edges: Floats, hold: float = 0.0
-) -> tuple[Floats, Floats]:
-    """Return the lowest `low` and highest `high` in each column, or up to `hold` before it.
-
-    x ascends; a column lies between two edges.  Returns (columns, series); nan where no row is, and
-    in columns after the last row.
-    """
-    lows = np.full((len(edges) - 1, low.shape[1]), np.nan)
-    highs = lows.copy()
-    # a row on an edge belongs to the column on the right, however the edge is rounded
-    slack = 1e-9 * np.diff(edges)
-    begins = np.searchsorted(x, edges[:-1] - slack - hold)
-    ends = np.searchsorted(x, edges[1:] - slack)
-    ends[-1] = np.searchsorted(x, edges[-1], "right")
-    begun = np.append(0, ends[:-1]) < len(x)
-    filled = np.flatnonzero((ends > begins) & begun)
-    if len(filled):
-        pairs = np.stack([begins[filled], ends[filled]], axis=1).ravel()
-        beyond = np.full((1, low.shape[1]), np.nan)  # an empty row for the end
-        lows[filled] = np.fmin.reduceat(np.vstack([low, beyond]), pairs, axis=0)[::2]
-        highs[filled] = np.fmax.reduceat(np.vstack([high, beyond]), pairs, axis=0)[::2]
-    return lows, highs
+    divisor = next(each for each in (1, 2, 4) if turns * each % 1 == 0)
+    count = f"{turns * divisor:.0f}"
+    over = "" if divisor == 1 else f"/{divisor}"
+    return {"1": "", "-1": "-"}.get(count, count) + "pi" + over

@@ -145,6 +145,14 @@ class Canvas:
         dots = [(i, j) for j, down in along for i, right in across if least < right + down <= most]
         self.points(dots, ink)
 
+    def braille(self, column: int, row: int, lines: Iterable[str], ink: int) -> None:
+        """Set the dots of braille characters, drawn elsewhere, from a cell on."""
+        layer = self._layer(ink)
+        for down, line in enumerate(lines, row):
+            for right, character in enumerate(line[: self.columns - column], column):
+                if "⠀" < character <= "⣿":
+                    layer[down * self.columns + right] |= ord(character) & 0xFF
+
     def label(self, column: int, row: int, text: str, ink: int) -> None:
         """Write text over the dots from a cell on, cut off at the edges."""
         if 0 <= row < self.rows:

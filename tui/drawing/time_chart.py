@@ -7,20 +7,19 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.tui.drawing.axes import (
     Axis,
     Floats,
-    Frame,
     linear_axis,
     log_axis,
     log_time_axis,
-    per_column,
     time_axis,
-    time_span,
 )
 from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.frame import End, Frame, columns_beside, too_small
 from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.rows import Window
@@ -28,11 +27,11 @@ from pendu_tui.tui.playback.shown import Shown
 
 MIN_COLUMNS = 20
 MIN_ROWS = 5
-ROOM = 4  # columns for the letters at the right end
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 LARGEST = 1e6  # larger values are off the chart, which leaves room for the other methods
-LONG = 60.0  # s; longer runs have a logarithmic time axis
 CROSSING = "×"
+
+Mask = NDArray[np.bool_]  # (columns, methods)
 
 
 class Reading(NamedTuple):
@@ -84,11 +83,12 @@ class TimePlot:
 
 
 class _Run(NamedTuple):
-    """The quantity of some methods of a run, or of a ghost, which has no letters."""
+    """The quantity of some methods of a run, or of a ghost."""
 
     window: Window
+    places: list[int]  # in the cast
     inks: list[int]
-    letters: str
+    cast: Cast
     low: Floats  # (rows, methods)
     high: Floats
 
@@ -118,48 +118,51 @@ def time_chart(
     shown: Shown,
     width: int,
     height: int,
+    *,
+    names: Sequence[str] = (),
     ghost: tuple[Window, Cast] | None = None,
     changes: Sequence[tuple[float, str]] = (),
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 
     A column spans the lowest to the highest value in it.  On a logarithmic axis it shows the
-    largest magnitude of the half swing that ends there, so that zeros do not tear the lines; long
-    runs also have logarithmic time, so that a power law is straight.  A CROSSING is where one error
-    passes another for good.  The same methods of a ghost lie behind, fainter.  `changes` of the
-    step are pairs of x [s] and a label.
+    largest magnitude of the half swing that ends there, so that zeros do not tear the lines.  With
+    logarithmic time a power law is straight.  A CROSSING is where one error passes another for
+    good.  `names` of the cast stand beside their lines.  The same methods of a ghost lie behind,
+    fainter.  `changes` of the step are pairs of x [s] and a label.
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     rows = height - 2
     runs = _runs(window, cast, shown, ghost)
     levels = _levels(shown)
-    log_time = _has_log_time(window, shown)
+    log_time = shown.has_log_time
     label_width = 5  # enough for decades
     if not shown.log:
         y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
-    columns = width - 1 - ROOM - label_width
+    columns = columns_beside(label_width, width)
     x_axis = _time_axis(window, shown, columns, log_time)
     edges, times = _moments(x_axis, columns, log_time)
     sides = [run.columns(edges, shown.log, log_time) for run in runs]
     if shown.log:
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
-    left = width - columns - ROOM
-    plot = _Plot(x_axis, y_axis, columns, rows, left, Canvas(width, height), shown.log)
+    plot = _Plot(Canvas(width, height), x_axis, y_axis, log=shown.log)
     plot.draw_axes()
     plot.draw_marks(changes, levels, log_time)
-    for run, (low, high) in reversed([*zip(runs, sides, strict=True)]):
+    for run, (low, high) in zip(runs, sides, strict=True):
         plot.draw_curves(run, low, high)
     low, high = sides[0]
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
-        for column, value in _crossings(high, times, window.repeats):
-            plot.canvas.label(left + column, plot.row(value), CROSSING, TEXT)
+        row = (y_axis.high - y_axis.low) / rows
+        for column, value in _crossings(high / row, times, window.repeats):
+            plot.canvas.label(plot.left + column, plot.row(value * row), CROSSING, TEXT)
+    plot.name_lines(plot.ends(runs[0], low, high, names))
     picture = plot.canvas.picture()
     ends = (x_axis.low, x_axis.high)
-    return TimePlot(picture, shown.places(cast), left, times.tolist(), values, ends, log_time)
+    return TimePlot(picture, shown.places(cast), plot.left, times.tolist(), values, ends, log_time)
 
 
 def _runs(
@@ -170,42 +173,21 @@ def _runs(
         places = [place for place, method in enumerate(cast) if method.key in keys]
         low = window.low[shown.quantity][:, places]
         high = window.high[shown.quantity][:, places]
-        letters = "".join(cast[place].letter for place in places)
-        return _Run(window, [inks(cast)[place] for place in places], letters, low, high)
+        return _Run(window, places, [inks(cast)[place] for place in places], cast, low, high)
 
     keys = {cast[place].key for place in shown.places(cast)}
     runs = [run(window, cast, keys)]
     if ghost is not None:
         behind = run(*ghost, keys)
-        runs.append(behind._replace(inks=[faint(ink) for ink in behind.inks], letters=""))
+        runs.append(behind._replace(inks=[faint(ink) for ink in behind.inks]))
     return runs
 
 
 @dataclass(frozen=True, slots=True)
 class _Plot(Frame):
-    """A canvas with axes at the left and at the bottom."""
+    """The axes of a chart over time."""
 
-    canvas: Canvas
-    log: bool
-
-    def draw_axes(self) -> None:
-        canvas = self.canvas
-        left = self.left
-        for row in range(self.rows):
-            canvas.label(left - 1, row, "│", FRAME)
-        canvas.label(left - 1, self.rows, "└".ljust(self.columns + ROOM + 1, "─"), FRAME)
-        for value, text in self.y_axis.labels.items():
-            row = self.row(value)
-            canvas.label(0, row, text.rjust(left - 1), TEXT)
-            canvas.label(left - 1, row, "┤", FRAME)
-        end = 0  # of the previous label
-        for value, text in self.x_axis.labels.items():
-            column = left + min(int(self.right(value)), self.columns - 1)
-            begin = min(column - (len(text) - 1) // 2, canvas.columns - len(text))
-            if begin >= end:
-                canvas.label(column, self.rows, "┬", FRAME)
-                canvas.label(begin, self.rows + 1, text, TEXT)
-                end = begin + len(text) + 1
+    log: bool = False
 
     def draw_marks(
         self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
@@ -226,46 +208,58 @@ class _Plot(Frame):
             canvas.label(self.left + 1, row, text, EXACT)
 
     def draw_curves(self, run: _Run, low: Floats, high: Floats) -> None:
-        """Draw each curve up to where it leaves the chart, and its letter where it ends."""
-        limit = math.log10(LARGEST) if self.log else LARGEST
-        beyond = (high > limit) | (low < -LARGEST)
-        gone = beyond & np.roll(beyond, 1, axis=0)
-        gone[0] = False
+        """Draw each curve up to where it leaves the chart."""
+        gone = self._gone(low, high)
         bottom = self.up(np.where(gone, np.nan, low))
         top = self.up(np.where(gone, np.nan, high))
         for place, ink in enumerate(run.inks):
             x, y = _outline(bottom[:, place], top[:, place])
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
             self.canvas.path(2 * (self.left + x) + 1.5, down, ink)
+
+    def _beyond(self, low: Floats, high: Floats) -> Mask:
+        limit = math.log10(LARGEST) if self.log else LARGEST
+        return (high > limit) | (low < -LARGEST)
+
+    def _gone(self, low: Floats, high: Floats) -> Mask:
+        """Return the columns in which a curve was off the chart in the column before, too."""
+        beyond = self._beyond(low, high)
+        gone = beyond & np.roll(beyond, 1, axis=0)
+        gone[0] = False
+        return gone
+
+    def ends(self, run: _Run, low: Floats, high: Floats, names: Sequence[str]) -> Iterator[End]:
+        """Yield the ends of curves; where one has left the chart, write its value instead."""
+        beyond = self._beyond(low, high)
+        rows = self.rows - np.stack([self.up(high), self.up(low)])
+        for place, ink in enumerate(run.inks):
             known = np.flatnonzero(~np.isnan(high[:, place]))
-            if not run.letters or not len(known):
+            if not len(known):
                 continue
             at = int(known[-1])
-            text = run.letters[place]
-            row = self.row(high[at, place])
+            letter = run.cast[run.places[place]].letter
             if beyond[at, place]:
-                at = int(np.flatnonzero(beyond[:, place] & ~gone[:, place])[-1])
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
-                row = 0
-                arrow = "↑"
-                if value < 0 and not self.log:
-                    row = self.rows - 1
-                    arrow = "↓"
-                number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
-                text = f"{arrow}{text}{number}"
-            self._write(self.left + at + 1, row, text, ink)
+                left = int(np.flatnonzero(beyond[:, place] & ~self._gone(low, high)[:, place])[-1])
+                self._write_value(self.left + left + 1, letter, value, ink)
+                continue
+            name = names[run.places[place]] if names else ""
+            row = float(rows[:, at, place].mean()) - 0.5
+            yield End(self.left + at + 1, row, ink, letter, name, rows[:, :, place])
 
-    def _write(self, column: int, row: int, text: str, ink: int) -> None:
-        """Write beside the end of a curve, in the nearest free cells."""
+    def _write_value(self, column: int, letter: str, value: float, ink: int) -> None:
+        """Write what a curve has come to where it left the chart."""
+        row = 0
+        arrow = "↑"
+        if value < 0 and not self.log:
+            row = self.rows - 1
+            arrow = "↓"
+        number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
+        text = f"{arrow}{letter}{number}"
         column = min(column, self.canvas.columns - len(text))
-        across = range(ROOM if len(text) == 1 else 1)
-        rows = [at for at in (row, row + 1, row - 1, row + 2, row - 2) if 0 <= at < self.rows]
-        places = [(column + right, at) for at in rows for right in across]
-        self.canvas.label_where_blank(places, text, ink)
-
-
-def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
-    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)
+        rows = [at for at in range(row - 2, row + 3) if 0 <= at < self.rows]
+        rows.sort(key=lambda at: abs(at - row))
+        self.canvas.label_where_blank([(column, at) for at in rows], text, ink)
 
 
 def _levels(shown: Shown) -> dict[str, float]:
@@ -274,12 +268,6 @@ def _levels(shown: Shown) -> dict[str, float]:
     if line is None or line.quantity != shown.quantity:
         return {}
     return {line.name: math.log10(abs(line.value)) if shown.log else line.value}
-
-
-def _has_log_time(window: Window, shown: Shown) -> bool:
-    if shown.stretch is not None:
-        return shown.log and shown.stretch.log_time
-    return shown.log and shown.seconds is None and bool((window.x > LONG).any())
 
 
 def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Axis:
@@ -306,22 +294,36 @@ def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
     return half_columns[::2], half_columns[1::2]
 
 
-def _crossings(largest: Floats, times: Floats, repeats: float) -> Iterator[tuple[int, float]]:
-    """Yield (column, height) where one curve passes another for good.
+def _crossings(heights: Floats, times: Floats, repeats: float) -> list[tuple[int, float]]:
+    """Return (column, height) where one curve passes another for good; heights are in rows.
 
-    They must be apart for half a swing and a tenth of the chart, before and after.
+    They are half a row apart before and after, for half a swing and 4 % of the columns, and half
+    as far as the clearest pair: chosen by eye on seven scenes.
     """
-    for one, other in combinations(largest.T, 2):
-        known = np.flatnonzero(~np.isnan(one - other))
-        turns = np.flatnonzero(np.diff(np.sign((one - other)[known]))) + 1
-        if not 1 <= len(turns) <= 2:
+    shortest = max(0.04 * len(heights), 2)
+    begins = times.copy()
+    begins[np.flatnonzero(~np.isnan(heights).all(axis=1))[:1]] = 0.0  # half a swing is seen at once
+    found: list[tuple[float, int, float]] = []
+    for one, other in combinations(heights.T, 2):
+        gap = one - other
+        apart = np.flatnonzero(abs(gap) >= 0.5)
+        turns = np.flatnonzero(np.diff(np.sign(gap[apart]))) + 1
+        sides = np.split(apart, turns)
+        lasting = [
+            side
+            for side in sides
+            if len(side) >= shortest and times[side[-1]] - begins[side[0]] >= repeats
+        ]
+        if len(lasting) < 2 or lasting[-1] is not sides[-1]:
             continue
-        at = int(known[turns[-1]])
-        before = times[known[turns[0]]] - times[known[0]]
-        after = times[known[-1]] - times[at]
-        columns = min(turns[0], len(known) - turns[-1])
-        if min(before, after) >= repeats and columns >= max(0.1 * len(largest), 2):
-            yield at, float(one[at] + other[at]) / 2
+        before, after = lasting[-2:]
+        if gap[before[0]] * gap[after[0]] < 0:
+            between = gap[before[-1] : after[0] + 1]
+            at = int(before[-1] + np.nanargmin(abs(between)))
+            width = min(abs(gap[before]).max(), abs(gap[after]).max())
+            found.append((float(width), at, float(one[at] + other[at]) / 2))
+    clear = 0.5 * max([width for width, *_ in found], default=0.0)
+    return [(at, height) for width, at, height in found if width >= clear]
 
 
 def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
@@ -332,7 +334,7 @@ def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
     if not known:
         return log_axis(-4, 0, rows)
     top = limit if (largest > limit).any() else max(each.max() for each in known)
-    bottom = min(np.sort(each)[len(each) // 20] for each in known)
+    bottom = min(np.sort(each)[len(each) // 40] for each in known)
     return log_axis(float(bottom), float(max([top, *levels.values()])), rows)
 
 
@@ -355,3 +357,39 @@ def _outline(low: Floats, high: Floats) -> tuple[Floats, Floats]:
     first = np.where(falling, high, low)
     last = np.where(falling, low, high)
     return np.repeat(known, 2), np.stack([first, last], axis=1).ravel()
+
+
+def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
+    """Return the first and last x; columns keep their moments while the window moves."""
+    latest = float(x.max(initial=0.0))
+    if seconds is None:
+        unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
+        return 0.0, max(math.ceil(latest / unit) * unit, 1.0)
+    column = seconds / columns
+    end = max(math.ceil(latest / column) * column, seconds)
+    return end - seconds, end
+
+
+def per_column(
+    x: Floats, low: Floats, high: Floats, edges: Floats, hold: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Return the lowest `low` and highest `high` in each column, or up to `hold` before it.
+
+    x ascends; a column lies between two edges.  Returns (columns, series); nan where no row is, and
+    in columns after the last row.
+    """
+    lows = np.full((len(edges) - 1, low.shape[1]), np.nan)
+    highs = lows.copy()
+    # a row on an edge belongs to the column on the right, however the edge is rounded
+    slack = 1e-9 * np.diff(edges)
+    begins = np.searchsorted(x, edges[:-1] - slack - hold)
+    ends = np.searchsorted(x, edges[1:] - slack)
+    ends[-1] = np.searchsorted(x, edges[-1], "right")
+    begun = np.append(0, ends[:-1]) < len(x)
+    filled = np.flatnonzero((ends > begins) & begun)
+    if len(filled):
+        pairs = np.stack([begins[filled], ends[filled]], axis=1).ravel()
+        beyond = np.full((1, low.shape[1]), np.nan)  # an empty row for the end
+        lows[filled] = np.fmin.reduceat(np.vstack([low, beyond]), pairs, axis=0)[::2]
+        highs[filled] = np.fmax.reduceat(np.vstack([high, beyond]), pairs, axis=0)[::2]
+    return lows, highs

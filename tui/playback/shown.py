@@ -12,6 +12,10 @@ WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """The lengths of the chart [s]; None is the whole run."""
 
 
+FAST = 4.0
+"""Scenes that run at this multiple of real time or faster are charted over logarithmic time."""
+
+
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
     model = scene.equations
     has_shadow = not model.without_force and any(m.modified_energy for m in scene.cast)
@@ -32,6 +36,7 @@ class Shown(NamedTuple):
     exact: bool = False  # the exact motion, dotted
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
+    log_time: bool = False  # on a logarithmic chart of the whole run
     seconds: float | None = None  # the length of the chart
     stretch: Stretch | None = None  # a zoom, in place of `seconds`
     theta: float | None = None  # rad, half the width of phase space; None fits the motion
@@ -52,6 +57,7 @@ class Shown(NamedTuple):
             overview=False,
             quantity=shot.quantity,
             log=shot.log,
+            log_time=scene.speed >= FAST,
             seconds=shot.seconds,
             theta=shot.theta,
             ring=shot.ring,
@@ -75,6 +81,18 @@ class Shown(NamedTuple):
         known = quantities(scene)
         index = known.index(self.quantity) if self.quantity in known else 0
         return known[(index + ahead) % len(known)]
+
+    @property
+    def has_log_time(self) -> bool:
+        if self.stretch is not None:
+            return self.log and self.stretch.log_time
+        return self.log and self.log_time and self.seconds is None
+
+    def next_axes(self) -> "Shown":
+        """Return logarithmic axes, those with logarithmic time, or linear ones, in turn."""
+        if self.log and not self.log_time:
+            return self._replace(log_time=True)
+        return self._replace(log=not self.log, log_time=False)
 
     def next_window(self) -> "Shown":
         if self.stretch is not None:

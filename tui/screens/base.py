@@ -55,7 +55,7 @@ class SourceScreen(SizedScreen[None]):
         ),
         Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
-        Binding("y", "switch('log')", "chart: log or linear", show=False),
+        Binding("y", "axes", "log chart, log time, linear", show=False),
         Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
         Binding("o", "switch('overview')", "overview: all angles", show=False),
         Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
@@ -248,6 +248,9 @@ class SourceScreen(SizedScreen[None]):
     def action_switch(self, name: str) -> None:
         changes: dict[str, Any] = {name: not getattr(self.shown, name)}
         self.change_shown(self.shown._replace(**changes))
+
+    def action_axes(self) -> None:
+        self.change_shown(self.shown.next_axes())
 
     def action_show_alone(self, place: int) -> None:
         """Show one method of the cast alone, or all again if it already is alone."""

@@ -26,6 +26,7 @@ from pendu_tui.tui.playback.shown import Shown, Stretch
 from pendu_tui.tui.playback.source import Source
 
 Place = TypeVar("Place")
+Result = TypeVar("Result")
 
 
 @dataclass
@@ -50,6 +51,22 @@ class Zoomed(Message):
     """The user zoomed the chart to this stretch, or back to the whole run (None)."""
 
     stretch: Stretch | None
+
+
+class Memo(Generic[Result]):
+    """A function that is called again only with other arguments than the last ones."""
+
+    result: Result
+
+    def __init__(self, function: Callable[..., Result]) -> None:
+        self._function = function
+        self.arguments: tuple[object, ...] | None = None
+
+    def __call__(self, *arguments: object) -> Result:
+        if arguments != self.arguments:
+            self.result = self._function(*arguments)
+            self.arguments = arguments
+        return self.result
 
 
 class Box(Container):

@@ -6,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
-from pendu_tui.tui.drawing.chart import Series, loglog_chart
+from pendu_tui.tui.drawing.loglog import Series, loglog_chart
 from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
 from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from pendu_tui.tui.playback.rows import Window
@@ -115,16 +115,16 @@ def test_speed_against_accuracy():
     picture = loglog_chart(series, 48, 14, x_label="force evaluations", y_label="theta error [rad]")
     assert picture.text == (
         "theta error [rad]\n"
-        "    1┤   e⠒⠒⠤e⠤⠤⢄e⣀⣀⣀e\n"
-        "     │               ⠈⠉⠉⠉e⠑⠒e⠒⠒⠤e\n"
-        " 1e-3┤           r⣀\n"
-        "     │    ⠁⠂⠄⡀     ⠉⠑r⠤⣀\n"
-        " 1e-6┤        ⠁⠂⠄⠄⡀     ⠉r⠢⢄⡀\n"
-        "     │             ⠁⠂⠄⡀     r⠉⠒⠤r⡀\n"
-        " 1e-9┤                 ⠁⠂⠐⠠⢀     ⠈⠉⠒r⣀⡀\n"
-        "     │                      ⠈⠐⠠⢀⢀     ⠈⠑r\n"
+        "    1┤   e⠒⠒⠤e⠤⠤⣀e⣀⣀⡀\n"
+        "     │              ⠈e⠉⠉⠉e⠒⠒e⠤⠤⠤e\n"
+        "     │           r\n"
+        " 1e-4┤    ⠄⡀     ⠈⠉⠒⠤r\n"
+        "     │      ⠁⠂⠄⡀      ⠉⠒⠢r⡀\n"
+        "     │          ⠁⠂⠄⡀      ⠈⠑r⢄⡀\n"
+        " 1e-8┤              ⠁⠁⠂⠄⡀     ⠈⠑r⠤⣀\n"
+        "     │                   ⠈⠐⠠⢀      ⠉r⠤⣀\n"
+        "     │                       ⠈⠐⠠⢀      ⠉r\n"
         "1e-12┤                           ⠈⠐order 4\n"
-        "     │\n"
         "     └┬───────────┬────────────┬───────────┬────\n"
         "      10         100          1e3         1e4\n"
         "                               force evaluations"

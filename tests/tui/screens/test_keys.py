@@ -148,6 +148,8 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         assert titles[0] == titles[-1] == "max |dE/E0| per half swing, all"
         assert len(set(titles)) == len(quantities(DEFAULT_SCENE))
         await theatre.press("y")
+        assert chart.border_title == "log time, max |dE/E0| per half swing, all"
+        await theatre.press("y")
         assert chart.border_title == "energy error dE/E0, all"
         spans = set()
         for _ in WINDOWS:

@@ -7,7 +7,7 @@ from pendu_tui.engine.accuracy.front import Cost, cost_of
 from pendu_tui.engine.accuracy.references import TAYLOR_20, References
 from pendu_tui.engine.accuracy.study import ErrorKind, Flaw, Point
 from pendu_tui.engine.methods import Cast
-from pendu_tui.tui.drawing.chart import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
+from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from pendu_tui.tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.words.accuracy import COSTS

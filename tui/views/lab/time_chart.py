@@ -12,7 +12,8 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.shown import Quantity, Shown, Stretch
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.views.view import Pane, Zoomed
+from pendu_tui.tui.views.view import Memo, Pane, Zoomed
+from pendu_tui.tui.words.insight import short_name
 from pendu_tui.tui.words.numbers import about, seconds
 
 if TYPE_CHECKING:
@@ -42,20 +43,25 @@ def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
     return (NAMES | labels)[quantity]
 
 
-def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
+def title(shown: Shown, exact: ExactMotion, model: Model, room: int = 100) -> str:
+    """Return what the chart shows; with less `room` [characters], less of it."""
     name, magnitude = _names(shown.quantity, model)
-    cycle = ""
-    span = "all"
+    span = ", all"
     if shown.stretch is not None:
-        span = f"{shown.stretch.begin:.5g} to {shown.stretch.end:.5g} s"
+        span = f", {shown.stretch.begin:.5g} to {shown.stretch.end:.5g} s"
     elif shown.seconds is not None:
-        span = about(shown.seconds)
+        span = f", {about(shown.seconds)}"
     if not shown.log:
-        return f"{name}, {span}"
-    if exact.period and shown.stretch is None:
+        parts = [name, "", span]
+    else:
         cycles = {"libration": " per half swing", "rotation": " per turn"}
-        cycle = cycles.get(exact.regime, "")
-    return f"max {magnitude}{cycle}, {span}"
+        cycle = ""
+        if exact.period and shown.stretch is None:
+            cycle = cycles.get(exact.regime, "")
+        log_time = "log time, " if shown.has_log_time else ""
+        parts = [f"{log_time}max {magnitude}", cycle, span]
+    texts = ("".join(parts), "".join(parts[::2]), parts[0])
+    return next((text for text in texts if len(text) <= room), parts[0])
 
 
 def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
@@ -75,7 +81,7 @@ class TimeChart(Pane):
         super().__init__()
         self._ahead = ahead
         self.plot: TimePlot | None = None
-        self._plotted: object = None
+        self._chart = Memo(self._charted)
         self.pointer: int | None = None  # its column
 
     @property
@@ -85,33 +91,37 @@ class TimeChart(Pane):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look
-        plotted = (sample, look, self.room, source.ghost, source.history, source.knows_past)
-        if self.plot is None or plotted != self._plotted:  # unchanged while paused
-            self._plotted = plotted
-            self.plot = self._charted(source, sample, look)
-        above = title(look, source.exact, source.scene.equations)
+        # the same while paused
+        state = (self.room, source.ghost, source.history, source.knows_past)
+        self.plot = self._chart(sample, look, *state)
+        above = title(look, source.exact, source.scene.equations, self.room.width - 4)
         self.write_titles(above, self._below(self.plot, source, look))
         return self.plot.picture
 
-    def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
+    def _charted(self, sample: Sample, look: Shown, *_: object) -> "TimePlot":
         from pendu_tui.tui.drawing.time_chart import time_chart
 
+        source = self.source
+        history = source.history
         until = sample.t
         back = look.seconds
         if look.stretch is None:
-            window = source.history.window(back)
+            window = history.window(back)
         else:
-            window = source.history.between(look.stretch.begin, look.stretch.end)
+            window = history.between(look.stretch.begin, look.stretch.end)
             until = min(until, look.stretch.end)
             back = until - look.stretch.begin
         ghost = None
         if source.ghost is not None:
             ghost = source.ghost.window(until, back), source.ghost.scene.cast
         changes = [
-            (source.history.x(change.step, change.t), f"h {change.stepping.h:.4g}")
+            (history.x(change.step, change.t), f"h {change.stepping.h:.4g}")
             for change in source.changes[1:]
         ]
-        return time_chart(window, self.cast, look, *self.room, ghost=ghost, changes=changes)
+        names = [short_name(method) for method in self.cast]
+        return time_chart(
+            window, self.cast, look, *self.room, names=names, ghost=ghost, changes=changes
+        )
 
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
         room = self.room.width - 6
@@ -123,7 +133,7 @@ class TimeChart(Pane):
             return source.ghost.label(room)
         if not source.knows_past:
             return "reading what came before …"
-        return "e: quantity, w: window, z: zoom, y: log"
+        return "e: quantity, w: window, z: zoom, y: axes"
 
     async def on_click(self) -> None:
         await self.run_action("screen.quantity")

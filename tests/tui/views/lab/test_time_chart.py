@@ -60,7 +60,7 @@ def chart(seconds=100.0, shown=None, **options):
 
 @pytest.mark.parametrize("log", [True, False])
 def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_the_farthest(log):
-    plot, history = chart(log=log)
+    plot, history = chart(log=log, log_time=log)
     column = plot.left + 35
     begin, end = plot.zoomed(history.window(), 0.1, column)
     nearer, _ = chart(shown=Stretch(1, begin, end, plot.log_time), log=log)

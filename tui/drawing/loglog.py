@@ -1,21 +1,20 @@
-"""Charts with two logarithmic axes, drawn by plotext.  The only module that imports plotext.
+"""Charts with two logarithmic axes, whose lines plotext draws.  Only this module imports plotext.
 
 plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
-numbers inside them.  Its logarithmic scale has wrong labels, so it gets logarithms.
+numbers inside them.  Its pixels have one colour, so each ink has a figure of its own.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
-from pendu_tui.tui.drawing.axes import Floats, Frame, log_axis, log_x_axis
+from pendu_tui.tui.drawing.axes import Floats, log_axis, log_x_axis
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import FRAME, NOBODY, TEXT
+from pendu_tui.tui.drawing.frame import ROOM, Frame, columns_beside, too_small
+from pendu_tui.tui.drawing.palette import TEXT
 from pendu_tui.tui.drawing.picture import Picture
-from pendu_tui.tui.drawing.time_chart import ROOM, too_small
 
 MIN_COLUMNS = 20
 MIN_ROWS = 7
@@ -39,20 +38,21 @@ class Series:
 
 
 class LogLog(Frame):
-    """Two logarithmic axes, with a line of words above and one below."""
+    """Two logarithmic axes that fit some series, with a line of words above and one below."""
+
+    __slots__ = ()
 
     @classmethod
-    def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
-        rows = height - 4
+    def fitting(cls, series: Sequence[Series], width: int, height: int) -> "LogLog":
         points = np.concatenate(
             [np.empty((0, 2)), *(one.logs() for one in series if not one.dotted)]
         )
         if not len(points):
             points = np.array([(0.0, -4.0), (1.0, 0.0)])
         (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-        y_axis = log_axis(bottom, top, rows)
-        columns = width - 1 - ROOM - y_axis.label_width
-        return cls(log_x_axis(left, right, columns), y_axis, columns, rows, width - columns - ROOM)
+        y_axis = log_axis(bottom, top, height - 4)
+        columns = columns_beside(y_axis.label_width, width)
+        return cls(Canvas(width, height), log_x_axis(left, right, columns), y_axis, margin=1)
 
     def curve(self, series: Series) -> tuple[list[float], list[float]]:
         """Return x and y in characters from the lower left corner; references are clipped."""
@@ -67,7 +67,7 @@ class LogLog(Frame):
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return the column and row of a point."""
-        return self.left + int(self.right(math.log10(x))), 1 + self.row(math.log10(y))
+        return self.left + int(self.right(math.log10(x))), self.row(math.log10(y))
 
 
 def loglog_chart(
@@ -80,11 +80,16 @@ def loglog_chart(
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
     axes = LogLog.fitting(series, width, height)
-    curves = [(one, *axes.curve(one)) for one in series]
-    canvas = Canvas(width, height)
+    canvas = axes.canvas
+    axes.draw_axes()
     canvas.label(0, 0, y_label, TEXT)
     canvas.label(0, height - 1, x_label.rjust(width), TEXT)
-    _plot(canvas, axes, curves)
+    curves = [(one, *axes.curve(one)) for one in series]
+    for ink in dict.fromkeys(one.ink for one, *_ in curves):
+        lines = _plotted(
+            [curve for curve in curves if curve[0].ink == ink], axes.columns + ROOM, axes.rows
+        )
+        canvas.braille(axes.left, axes.margin, lines, ink)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         last = width - len(one.mark)
         cells = [
@@ -103,40 +108,27 @@ def loglog_chart(
     return canvas.picture()
 
 
-def _plot(
-    canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[float], list[float]]]
-) -> None:
-    """Have plotext draw the curves and the axes between the first and the last row."""
+Curve = tuple[Series, list[float], list[float]]
+"""A series, and its x and y in characters from the lower left corner."""
+
+
+def _plotted(curves: Sequence[Curve], columns: int, rows: int) -> list[str]:
+    """Have plotext draw the curves of one ink, and return rows of braille."""
     import plotext  # takes 0.1 s
 
-    def pixel(ink: int) -> "plotext.pixel":
-        return plotext.pixel(foreground=(ink - NOBODY, 0, 0))
-
-    width = canvas.columns
-    height = canvas.rows - 2
     plotext.terminal.limit(False, False)
     figure = plotext.figure
     figure.clear.data()
     figure.clear.settings()
-    figure.plot_size(width, height)
+    figure.plot_size(columns, rows)
     figure.axes(False)
-    figure.axes(True, pixel=pixel(FRAME), axis=["x", "y"], side=0)
-    for name, axis, size, used, label_width in (
-        ("x", axes.x_axis, axes.columns + ROOM, axes.columns, 0),
-        ("y", axes.y_axis, axes.rows, axes.rows, axes.y_axis.label_width),
-    ):
+    for name, size in (("x", columns), ("y", rows)):
         ruler = figure.ruler(name, 0)
         ruler.alignment(lim="edge")
         ruler.lim(0, size)
-        labels = [label.rjust(label_width) for label in axis.labels.values()]
-        ruler.ticks((used * axis.share(list(axis.labels))).tolist(), labels)
-        ruler.pixel(pixel(TEXT))
-    for one, x, y in curves:
-        signal = figure.signal(x, y, marker=plotext.marker("braille", pixel=pixel(one.ink)))
-        figure.draw(signal.lines(not one.dotted))
-    matrix = figure.build()
-    for row, line in enumerate(matrix.string(colorless=True).split("\n")[:height]):
-        for column, character in enumerate(line[:width]):
-            if character not in " \u2800":
-                red, _, _ = matrix.get(row, column).foreground()
-                canvas.label(column, 1 + row, character, red + NOBODY)
+        ruler.ticks([], [])
+    for series, x, y in curves:
+        signal = figure.signal(x, y, marker=plotext.marker("braille"))
+        figure.draw(signal.lines(not series.dotted))
+    text: str = figure.build().string(colorless=True)
+    return text.split("\n")[:rows]
