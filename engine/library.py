@@ -44,8 +44,14 @@ class ByMethod(dict[str, T], Generic[T]):
         return self[matches[0].key]
 
 
+def _fresh(force: Any, q: Any) -> Any:
+    """Return what the force returns, copied if it is an array: the force may use it again."""
+    value = force(q)
+    return value.copy() if hasattr(value, "copy") else value
+
+
 def _public(method: Method) -> Method:
-    """Return the method with `phases` that check their arguments."""
+    """Return the method with `phases` that check their arguments and copy forces."""
 
     @wraps(method.phases)
     def phases(force: Any, phase: Any, h: float) -> Iterator[Any]:
@@ -56,7 +62,7 @@ def _public(method: Method) -> Method:
             )
         if not _number("h", h):
             raise ValueError("h = 0 leads nowhere; use a step above zero, or below to go back.")
-        return method.phases(force, phase, h)
+        return method.phases(partial(_fresh, force), phase, h)
 
     return replace(method, phases=phases)
 

@@ -86,6 +86,21 @@ def test_a_run_that_overflows_says_when():
     assert np.isfinite(track.theta).all()
 
 
+@pytest.mark.parametrize("key", GENERAL)
+def test_a_force_may_use_its_array_again(key):
+    used_again = np.empty(2)
+
+    def reusing(q):
+        return np.negative(q, out=used_again)
+
+    phase = np.array([1.0, 2.0]), np.array([0.0, 0.5])
+    ends = [
+        next(islice(METHODS[key].phases(force, phase, 0.1), 30, None))
+        for force in (np.negative, reusing)
+    ]
+    assert np.array_equal(*ends)
+
+
 @pytest.mark.parametrize("scale", ["std", "first", 2.0])
 def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale):
     found = judge(TIMES.tolist(), (WAVE + 1e-3 * TIMES).tolist(), scale=scale)
