@@ -60,19 +60,22 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
 
 def publish(part: Path, path: Path, force: bool = False) -> None:
-    """Give a finished file its name.  Raises NameTakenError if another file took it meanwhile."""
+    """Give a finished and closed file its name.  Raises NameTakenError if another file took it meanwhile."""
     with writing(path):
         if force:
             part.replace(path)
             return
         try:
-            _link_or_copy(part, path)
+            _rename(part, path)
         except FileExistsError as error:
             raise NameTakenError("a file of this name appeared meanwhile", path) from error
-        part.unlink()
 
 
-def _link_or_copy(source: Path, target: Path) -> None:
+def _rename(source: Path, target: Path) -> None:
+    """Rename a closed file.  Raises FileExistsError if the name is taken."""
+    if os.name == "nt":
+        source.rename(target)  # which elsewhere would replace a file
+        return
     try:
         os.link(source, target)
     except FileExistsError:
@@ -80,3 +83,4 @@ def _link_or_copy(source: Path, target: Path) -> None:
     except OSError:  # the file system has no links
         with source.open("rb") as old, target.open("xb") as new:
             shutil.copyfileobj(old, new)
+    source.unlink()

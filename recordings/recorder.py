@@ -167,8 +167,9 @@ class Recorder:
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._file.flush()
             os.fsync(self._file.fileno())
+            self._file.close()  # Windows renames no open file
         try:
-            publish(self.part, self.path, self._overwrite)  # while the lock is held
+            publish(self.part, self.path, self._overwrite)
         except NameTakenError as error:
             wanted = self.path
             self.path = free_path(wanted)
