@@ -7,18 +7,17 @@ import json
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
+from threading import RLock, Thread
 from typing import Any, Self
 
-from mcap.data_stream import RecordBuilder
-from mcap.records import ChunkIndex
 from mcap.writer import CompressionType, Writer
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import DiskError, NameTakenError, writing
+from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
 from pendu_tui.recordings.events import MAX_EVENTS, Event
 from pendu_tui.recordings.fields import EVENT_SCHEMA, sample_schema, without_extremes
 from pendu_tui.recordings.files import check_target, is_stream, publish
@@ -32,24 +31,9 @@ from pendu_tui.recordings.format import (
 )
 from pendu_tui.recordings.library import PROFILE, free_path, hold, part_of
 
-FLUSH_EVERY = 0.7  # s of the recording clock; so kill -9 loses less than 1 s, slow frames included
-MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush in headless runs
-
-
-class _ChunkIndices:
-    """The chunk index as bytes; mcap's list of objects grows by 4 MB an hour."""
-
-    def __init__(self) -> None:
-        self._records = RecordBuilder()
-
-    def append(self, index: ChunkIndex) -> None:
-        index.write(self._records)
-
-    def __iter__(self) -> Iterator[Self]:
-        yield self
-
-    def write(self, summary: RecordBuilder) -> None:
-        summary.write(self._records.end())  # type: ignore[no-untyped-call]
+FLUSH_EVERY = 0.5  # s; with a frame and the flush, a kill loses less than a second
+MAX_WAIT = 2.0  # s, for another thread's flush
+MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush without a thread
 
 
 class Recorder:
@@ -80,7 +64,6 @@ class Recorder:
         self._log_time = CLOCK_OFFSET
         self._paused = False
         self._is_empty = True  # until something was flushed
-        self._flushed_at = 0.0  # s of the recording clock
         self._unflushed = 0  # bytes
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
@@ -95,7 +78,6 @@ class Recorder:
         self._writer = Writer(
             self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
-        vars(self._writer)["_Writer__chunk_indices"] = _ChunkIndices()
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def event(self, event: Event, clock: float) -> None:
@@ -105,7 +87,7 @@ class Recorder:
         """
         data = encode_event(event)
         if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
-            self.close()
+            self._end()
             raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
@@ -117,14 +99,14 @@ class Recorder:
         self._flush_if_due(urgent=self._paused)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        """Write a sample, unless it was the last one written.
+        """Write a sample, unless it or a later one of its run is the last one written.
 
         Extremes are those since the previous sample, so the first sample of a run has none.
         """
         last = self._last
         if last is None:
             sample = without_extremes(sample)
-        elif last.step == sample.step:
+        elif sample.step <= last.step:
             return
         self._add(list(zip(self._topics, encode_readings(sample), strict=True)), clock)
         self.samples += 1
@@ -142,7 +124,6 @@ class Recorder:
             if not self._is_ours():
                 raise DiskError("the file was replaced", self.path)
         self._is_empty = False
-        self._flushed_at = self.seconds
         self._unflushed = 0
 
     def close(self) -> None:
@@ -151,8 +132,16 @@ class Recorder:
         Without a start, no file is left.  If the name was taken meanwhile, `path` becomes the next
         free one, and NameTakenError is raised.
         """
-        if self._file.closed:
-            return
+        if not self._file.closed:
+            self._end()
+
+    def keep_older(self) -> None:
+        """Do not replace an older file, because this recording is not whole: choose a free name."""
+        if self._overwrite and os.path.lexists(self.path):
+            self.path = free_path(self.path)
+        self._overwrite = False
+
+    def _end(self) -> None:
         try:
             if self._channels:
                 self._finish()
@@ -161,7 +150,8 @@ class Recorder:
 
     def _finish(self) -> None:
         if (last := self._last) is not None:
-            self.event(Event("stop", last.run, last.step, last.t), self.seconds)
+            stop = Event("stop", last.run, last.step, last.t)
+            self._add([(EVENTS, encode_event(stop))], self.seconds)
         self.flush()
         with writing(self.path):
             self._writer.finish()  # type: ignore[no-untyped-call]
@@ -196,8 +186,10 @@ class Recorder:
     def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
         if isinstance(error, DiskError):
             self.abandon()
-        else:
-            self.close()
+            return
+        if error is not None:
+            self.keep_older()
+        self.close()
 
     def _begin(self, scene: Scene) -> None:
         """Register the channels of a run."""
@@ -229,31 +221,62 @@ class Recorder:
         self._entries += 1
 
     def _flush_if_due(self, urgent: bool) -> None:
-        is_late = self._wall is not None and self.seconds >= self._flushed_at + FLUSH_EVERY
-        if urgent or is_late or self._unflushed > MAX_CHUNK:
+        if urgent or self._unflushed > MAX_CHUNK:
             self.flush()
 
 
 class LiveRecorder(Recorder):
-    """A recorder that ends if the disk fails, so that the lab can go on; only `__init__` raises."""
+    """A recorder for the lab, which any thread may close; only `__init__` raises.
+
+    A thread flushes it, whether frames come or not.  If the disk fails, the recording ends and the
+    lab can go on.
+    """
 
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self._lock = RLock()
+        Thread(target=self._keep, name="recorder", daemon=True).start()
+
     def event(self, event: Event, clock: float) -> None:
-        self._try(lambda: super(LiveRecorder, self).event(event, clock))
+        with self._turn() as is_open:
+            if is_open:
+                super().event(event, clock)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        self._try(lambda: super(LiveRecorder, self).sample(sample, clock))
+        with self._turn() as is_open:
+            if is_open:
+                super().sample(sample, clock)
 
     def close(self) -> None:
-        self._try(super().close)
+        with self._turn() as is_open:
+            if is_open:
+                super().close()
 
-    def _try(self, write: Callable[[], None]) -> None:
-        if self.failed is None and not self._file.closed:
-            try:
-                write()
-            except NameTakenError:
-                pass  # `close` has found another name
-            except DiskError as error:
-                self.failed = str(error)
-                self.abandon()
+    def _keep(self) -> None:
+        while not self._file.closed:
+            time.sleep(FLUSH_EVERY)
+            with self._turn() as is_open:
+                if is_open and self._unflushed:
+                    self.flush()
+
+    @contextmanager
+    def _turn(self) -> Iterator[bool]:
+        """Keep other threads away in the block; yield whether it may write.
+
+        A disk that blocks another thread for too long counts as failed.
+        """
+        if not self._lock.acquire(timeout=MAX_WAIT):
+            self.failed = self.failed or f"{printable(str(self.part))}: the disk does not answer"
+            yield False
+            return
+        try:
+            yield self.failed is None and not self._file.closed
+        except NameTakenError:
+            pass  # `close` has found another name
+        except DiskError as error:
+            self.failed = str(error)
+            self.abandon()
+        finally:
+            self._lock.release()

@@ -9,6 +9,8 @@ from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
+from pendu_tui.tui.cli.errors import Exit, UserError
+
 ENDING = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
@@ -44,6 +46,15 @@ def check_free(path: Path, force: bool) -> None:
 
     if not is_stream(path):
         check_target(path, force)
+
+
+def keep_older(path: Path | None) -> None:
+    """Raise UserError if an unfinished result would replace a file."""
+    if path is not None and path.is_file():
+        from pendu_tui.recordings.errors import printable
+
+        why = f"interrupted; {printable(str(path))} stays as it was."
+        raise UserError(why, Exit.INTERRUPTED)
 
 
 def interruptible() -> AbstractContextManager[None]:

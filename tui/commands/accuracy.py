@@ -3,6 +3,7 @@
 import argparse
 
 from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.files import keep_older
 from pendu_tui.tui.cli.options import count, positive, values
 from pendu_tui.tui.cli.report import add_report_options, publish, warn
 from pendu_tui.tui.cli.scene import add_scene_options, general_scene_of
@@ -88,6 +89,7 @@ def run(options: argparse.Namespace) -> int:
         measure(results)
     except KeyboardInterrupt:
         interrupted = True
+        keep_older(options.output)
     if is_figure:
         figures.draw_accuracy(options, results.scene.cast, results.points)
     else:

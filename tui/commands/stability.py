@@ -4,6 +4,7 @@ import argparse
 
 from pendu_tui.engine.stability import LOST
 from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.files import keep_older
 from pendu_tui.tui.cli.options import LIST, angle, count, number, values
 from pendu_tui.tui.cli.report import add_report_options, form_of, publish, warn
 from pendu_tui.tui.cli.scene import add_scene_options, general_scene_of
@@ -48,6 +49,8 @@ def run(options: argparse.Namespace) -> int:
         publish(report(scene, options.steps, []), options)
         return Exit.FINE
     cells, ended = compute(grid, options)
+    if ended:
+        keep_older(options.output)
     if is_figure:
         figures.draw_map(options, grid, cells)
     elif is_map:

@@ -107,7 +107,7 @@ def test_extreme_starts_print_numbers_and_no_nan(start):
     assert pendu(*quick).code == 0
 
 
-def test_ctrl_c_keeps_what_is_done(monkeypatch):
+def test_ctrl_c_keeps_what_is_done_and_an_older_file(monkeypatch, tmp_path):
     measured = Study.run
     calls = count()
 
@@ -120,6 +120,11 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
     outcome = pendu(*QUICK, "--json")
     assert (outcome.code, outcome.err.count("interrupted; partial results")) == (130, 1)
     assert (outcome.json["interrupted"], len(outcome.json["points"])) == (True, 5)
+    older = tmp_path / "points.csv"
+    older.write_text("precious", encoding="utf-8")
+    calls = count()
+    assert pendu(*QUICK, "-o", older, "--force").refused(130, "stays as it was")
+    assert older.read_text(encoding="utf-8") == "precious"
 
 
 @pytest.mark.slow

@@ -131,6 +131,10 @@ def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     result = verify(path)
     assert (result.complete, result.identical) == (True, True)
     assert [path] == list(tmp_path.iterdir())
+    before = path.read_bytes()
+    again = stopped(*endless, "--force", number=number, part=Path(f"{path}.part"), bytes=100_000)
+    assert "run-2.mcap" in again[2]
+    assert path.read_bytes() == before
 
 
 def stopped(*arguments: str, number: int, part: Path, bytes: int) -> tuple[int, str, str]:

@@ -21,7 +21,7 @@ from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.checks import Check, Gate, conclude
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
-from pendu_tui.tui.cli.files import check_free, stop_requests
+from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
 from pendu_tui.tui.cli.report import (
     Column,
     Report,
@@ -59,6 +59,8 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
     if options.record:
         size = file_size(options.record.stat().st_size)
         warn(f"recorded {sample.t:g} s, {size}: {printable(str(options.record))}")
+    if not is_whole:
+        keep_older(options.output)
     if is_figure:
         figures.draw_run(options, scene, samples[1:] or samples)
     else:
@@ -98,6 +100,9 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
                 samples.clear()
             samples.append(sample)
             if stopped():
+                if recording:
+                    recording.keep_older()
+                    options.record = recording.path
                 break
     return samples
 
@@ -272,6 +277,7 @@ def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure
         if not done:
             raise
         ended = explained(error)
+        keep_older(options.output)
     publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
     if ended is None:
         return conclude(options.fail_if, checks)
