@@ -55,7 +55,7 @@ class SourceScreen(SizedScreen[None]):
         ),
         Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
-        Binding("y", "axes", "log chart, log time, linear", show=False),
+        Binding("y", "axes", "chart: log, log time, …", show=False),
         Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
         Binding("o", "switch('overview')", "overview: all angles", show=False),
         Binding("z", "zoom(0.5)", "chart: zoom in", show=False),

@@ -136,9 +136,9 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         assert "Explicit" not in theatre.text(ErrorTable)
         await theatre.press("1", "5")
         assert theatre.stage.shown.exact
-        dotted = panes[1].text
+        dotted = panes[0].text
         await theatre.press("5")
-        assert panes[1].text != dotted
+        assert panes[0].text != dotted
 
         chart = theatre.stage.query_one(TimeChart)
         titles = [chart.border_title]
