@@ -15,7 +15,6 @@ from pendu_tui.tui.cli.report import (
     Table,
     add_report_options,
     fields_of,
-    form_of,
     progress,
 )
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
@@ -59,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     if options.verb in OPTIONS["file"] and options.file is None:
         raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
     reports = {"list": _list, "show": _show, "recover": _recover}
-    reports[options.verb](options).show(form_of(options))
+    reports[options.verb](options).show("json" if options.json else "table")
     return Exit.FINE
 
 
