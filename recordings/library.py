@@ -1,7 +1,7 @@
 """Library: the folder of recordings, their names and locks.
 
 A recorder locks its file, and the lock ends with its process: that tells unfinished recordings from
-those that are being made.  Only POSIX has such locks.
+those that are being made.
 """
 
 import os
@@ -16,6 +16,7 @@ import platformdirs
 
 from pendu_tui.recordings.errors import DiskError, RecordingError
 from pendu_tui.recordings.files import is_stream
+from pendu_tui.recordings.system import lock
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording
@@ -112,14 +113,14 @@ def _is_recording(path: Path) -> bool:
 def hold(file: IO[Any]) -> None:
     """Lock an open file until it is closed, where the file system has locks."""
     with suppress(OSError):
-        _lock(file)
+        lock(file)
 
 
 def in_use(path: Path) -> bool:
     """Return whether a program holds this file; if in doubt, True."""
     try:
         with path.open("rb") as file:
-            _lock(file, probe=True)
+            lock(file, probe=True)
     except OSError:
         return True
     return False
@@ -133,12 +134,3 @@ def open_file(path: Path) -> BinaryIO:
         return path.open("rb")
     except OSError as error:
         raise RecordingError(error.strerror or str(error)) from error
-
-
-def _lock(file: IO[Any], probe: bool = False) -> None:
-    """Lock a file, after waiting for probes; or with `probe`, raise OSError if it is locked."""
-    try:
-        import fcntl
-    except ImportError:
-        return
-    fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB if probe else fcntl.LOCK_EX)

@@ -19,6 +19,7 @@ PENDU = [
     "-c",
     "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
 ]
+SIZES = ("COLUMNS", "LINES")
 PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
 ROOT = Path(__file__).parents[2]
 
@@ -48,10 +49,9 @@ class PtyLab:
                 "COLORFGBG": "15;0",  # so that the program does not query the background
                 "PYTHONUTF8": "1",
             }
-            for name in ("COLUMNS", "LINES"):
-                os.environ.pop(name, None)
-            os.environ.update(terminal | environment)
-            os.execvp(program[0], [*program, *arguments])
+            # not os.environ: readline gives this process COLUMNS and LINES behind its back
+            kept = {name: os.environ[name] for name in os.environ if name not in SIZES}
+            os.execvpe(program[0], [*program, *arguments], kept | terminal | environment)
         self._arrival = 0.0  # s since the start, of the last packet
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []  # s since the start, bytes

@@ -1,7 +1,6 @@
 """Check the terminal, its colours, the recordings folder and versions, and suggest fixes."""
 
 import argparse
-import os
 import platform
 import shutil
 import sys
@@ -10,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
 
+from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
 from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
@@ -49,7 +49,7 @@ def _findings() -> Iterator[tuple[str, str, str]]:
     encoding = sys.stdout.encoding
     advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
     yield "encoding", encoding, "" if is_utf8(encoding) else advice
-    yield "colours", *colour(os.environ)
+    yield "colours", *colour(environment())
     yield "recordings", *folder(library.folder())
     yield "python", f"{platform.python_version()}, {platform.system()} {platform.machine()}", ""
     yield "versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES), ""

@@ -105,16 +105,17 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
 
 def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     """Run the app with this screen first, say goodbye, and return the exit code."""
+    from pendu_tui.recordings.system import environment
     from pendu_tui.tui.screens.app import PenduApp
     from pendu_tui.tui.terminal.check import background
     from pendu_tui.tui.terminal.options import fitting_theme, terminal_options_of
 
     assert sys.__stderr__ is not None  # where Textual draws
     if options.theme == "auto" and not os.environ.get("COLORFGBG"):
-        options.theme = fitting_theme(os.environ)
+        options.theme = fitting_theme(environment())
         if options.theme != "ansi":
             options.theme = background() or options.theme
-    terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
+    terminal = terminal_options_of(options, environment(), sys.__stderr__.encoding)
     app = PenduApp(screen, terminal)
     try:
         result = app.run(mouse=terminal.mouse)

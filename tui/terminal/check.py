@@ -7,16 +7,16 @@ import sys
 import time
 from typing import Any, Literal
 
+from pendu_tui.recordings.system import environment, key_by_key
 from pendu_tui.tui.cli.errors import Exit, UserError
 
 
 def check_terminal() -> None:
     """Raise UserError unless the lab can be shown; Textual would print garbage."""
-    streams = (sys.__stdin__, sys.__stdout__, sys.__stderr__)
-    if not all(stream is not None and stream.isatty() for stream in streams):
+    if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
         why = "not a terminal: the lab is interactive. Use pendu-tui run, or --plain."
         raise UserError(why, Exit.TERMINAL_UNSUITABLE)
-    term = os.environ.get("TERM", "")
+    term = environment().get("TERM", "")
     if term in ("", "dumb", "unknown"):
         why = f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g."
         raise UserError(f"{why} xterm-256color.", Exit.TERMINAL_UNSUITABLE)
@@ -25,7 +25,7 @@ def check_terminal() -> None:
 def is_gone() -> bool:
     """Return whether the terminal has been closed; writing would fail or block for ever."""
     try:
-        os.get_terminal_size(0)
+        os.get_terminal_size(2)
     except OSError:
         return True
     return False
@@ -47,27 +47,19 @@ def background() -> Literal["light", "dark"] | None:
     OSC 11 asks for the colour, then DA1 for attributes, which every terminal reports.  Terminals
     answer in order, so after the second answer none is left that Textual could take for keys.
     """
-    try:
-        import termios
-        import tty
-    except ImportError:  # Windows
-        return None
     assert sys.__stdin__ is not None
     assert sys.__stderr__ is not None
     keyboard = sys.__stdin__.fileno()
-    before = termios.tcgetattr(keyboard)
     reply = b""
     end = time.monotonic() + 1.0  # s; some terminals never answer
-    try:
-        tty.setcbreak(keyboard, termios.TCSANOW)
-        os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")
-        while not re.search(rb"\x1b\[\?[\d;]*c", reply):
+    with key_by_key(keyboard) as can_wait:
+        if can_wait:
+            os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")
+        while can_wait and not re.search(rb"\x1b\[\?[\d;]*c", reply):
             left = max(0.0, end - time.monotonic())
             if not select.select([keyboard], [], [], left)[0]:
                 break
             reply += os.read(keyboard, 1024)
-    finally:
-        termios.tcsetattr(keyboard, termios.TCSAFLUSH, before)
     colour = rb"\x1b\]11;rgba?:([0-9a-fA-F]+)/([0-9a-fA-F]+)/([0-9a-fA-F]+)"
     found = re.search(colour, reply)
     if found is None:

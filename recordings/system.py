@@ -1,0 +1,105 @@
+"""What one operating system has and another lacks; only this module asks for it."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+    import termios
+    import tty
+
+_ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+ENDING = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
+"""The signals that ask for an end."""
+STOP: int | None = getattr(signal, "SIGTSTP", None)
+CONTINUE: int | None = getattr(signal, "SIGCONT", None)
+PLAIN_SCREEN = b"\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
+"""Escape sequences that leave the alternate screen and stop mouse reports."""
+LOCKED = 0x7FFFFFFF  # on Windows; a byte behind all data, because a locked one cannot be read
+
+
+def lock(file: IO[Any], probe: bool = False) -> None:
+    """Lock an open file until it is closed; with `probe`, raise OSError if it is locked."""
+    if sys.platform == "win32":
+        here = os.lseek(file.fileno(), 0, os.SEEK_CUR)
+        os.lseek(file.fileno(), LOCKED, os.SEEK_SET)
+        try:
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK if probe else msvcrt.LK_LOCK, 1)
+        finally:
+            os.lseek(file.fileno(), here, os.SEEK_SET)
+    else:
+        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB if probe else fcntl.LOCK_EX)
+
+
+@contextmanager
+def key_by_key(keyboard: int) -> Iterator[bool]:
+    """Read a terminal without an echo in the block; yield whether that is possible."""
+    if sys.platform == "win32":
+        yield False
+    else:
+        before = termios.tcgetattr(keyboard)
+        try:
+            tty.setcbreak(keyboard, termios.TCSANOW)
+            yield True
+        finally:
+            termios.tcsetattr(keyboard, termios.TCSAFLUSH, before)
+
+
+def environment() -> dict[str, str]:
+    """Return the environment variables, for a console of Windows with what others set."""
+    if sys.platform == "win32":
+        return {"TERM": "xterm-256color", "COLORTERM": "truecolor", **os.environ}
+    return dict(os.environ)
+
+
+def terminal_state() -> Any:
+    """Return the settings of the terminal on stderr; None without one, or on Windows."""
+    if sys.platform == "win32":
+        return None
+    try:
+        return termios.tcgetattr(2)
+    except termios.error:
+        return None
+
+
+def restore_terminal(state: Any) -> None:
+    """Give the terminal on stderr back to the shell, if the lab has it."""
+    if sys.platform == "win32":
+        os.write(2, PLAIN_SCREEN)
+    elif state is not None and state != terminal_state():
+        termios.tcsetattr(2, termios.TCSANOW, state)
+        os.write(2, PLAIN_SCREEN)
+
+
+def give_way() -> None:
+    """Let other processes go first."""
+    if sys.platform != "win32":
+        os.nice(10)
+
+
+def stop() -> None:
+    """Stop this process until it is continued."""
+    if sys.platform != "win32":
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def is_stopped(process: int) -> bool:
+    """Return whether a process has been stopped by a signal."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2]
+    except OSError:  # macOS
+        state = subprocess.getoutput(f"ps -o state= -p {process}")
+    return state.strip().startswith("T")
+
+
+def kill(process: int, code: int) -> None:
+    """End a process at once; only Windows has a choice of its exit code."""
+    os.kill(process, code if sys.platform == "win32" else signal.SIGKILL)
