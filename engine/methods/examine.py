@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from pendu_tui.engine.methods.measure import PENDULUM, START, after, evaluations, measured
+from pendu_tui.engine.methods.measure import PENDULUM, START, Measured, after, evaluations, measured
 from pendu_tui.engine.methods.method import Phases
 from pendu_tui.engine.methods.own import (
     MAX_SOURCE,
@@ -23,7 +23,12 @@ SAME = 1e-9  # relative; rounding differs by far less, wrong numbers by far more
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
-    """Return a user's method, examined and measured.
+    """Return a user's method, examined and measured.  Raises OwnMethodError."""
+    return own_method(source, key, letter, file, examined(source, key, file))
+
+
+def examined(source: str, key: str, file: str) -> Measured:
+    """Return the properties of a user's method.
 
     Raises OwnMethodError, whose text is a sentence for the user.
     """
@@ -34,10 +39,9 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     phases = own_phases(source, key, file)
     try:
         _examine(phases, f"{file}: {key}")
-        properties = measured(phases)
+        return measured(phases)
     except (ValueError, ArithmeticError) as error:
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
-    return own_method(source, key, letter, file, properties)
 
 
 def _examine(phases: Phases, who: str) -> None:

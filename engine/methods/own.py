@@ -1,12 +1,13 @@
-"""A user's own method: a generator function from a file, measured, and guarded in use.
+"""A user's own method: a generator function from a file, measured, its numbers checked in use.
 
 Its code is executed like any Python.  Other processes receive the text and compile it again.
 """
 
-import ast
 import copyreg
 import math
+import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from numbers import Complex, Real
@@ -26,17 +27,34 @@ class OwnMethodError(Exception):
 
 
 class TooLongError(BaseException):
-    """A user's code takes too long.  It is no Exception, which that code might catch.
+    """A user's code takes too long.  It is no Exception, which that code might catch."""
 
-    A signal handler raises it.  Its text continues a sentence: "takes more than 3 s for a step".
-    """
+    why = ""  # continues a sentence: takes more than 3 s for a step
+
+    def __str__(self) -> str:
+        return self.why
 
 
-class UserCode:
-    """What a user's code is doing, for the time limit."""
+class _UserCode:
+    """A context in which a user's code runs, and writes to stderr, since stdout is for results."""
 
-    is_running = False
-    steps = 0  # begun; 0 while the file itself runs
+    def __init__(self) -> None:
+        self.is_running = False
+        self.steps = 0  # begun
+        self._stdout = sys.stdout
+
+    def __enter__(self) -> None:
+        self._stdout = sys.stdout
+        sys.stdout = sys.stderr
+        self.steps += 1
+        self.is_running = True
+
+    def __exit__(self, *_: object) -> None:
+        self.is_running = False
+        sys.stdout = self._stdout
+
+
+USER_CODE = _UserCode()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -89,47 +107,24 @@ copyreg.pickle(
 @cache
 def own_phases(source: str, name: str, file: str) -> Phases:
     """Return the guarded generator function of this name in a text.  Raises OwnMethodError."""
-    namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file, "print": _no_print}
+    namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file}
     try:
-        UserCode.is_running = True
-        UserCode.steps = 0
-        tree = ast.parse(source, file)
-        _check_caught(tree, file)
-        exec(compile(tree, file, "exec", dont_inherit=True), namespace)
+        with USER_CODE:
+            exec(compile(source, file, "exec", dont_inherit=True), namespace)
     except SyntaxError as error:
         raise OwnMethodError(f"{file}, line {error.lineno or 1}: {error.msg}.") from None
-    except (OwnMethodError, KeyboardInterrupt):
+    except KeyboardInterrupt:
         raise
     except BaseException as error:
         raise OwnMethodError(_sentence(error, source, file, file)) from None
-    finally:
-        UserCode.is_running = False
     function = namespace.get(name)
     if not callable(function) or isinstance(function, type):
         why = f"{file} has no function {name!r}"
-        others = (key for key, value in namespace.items() if callable(value) and key != "print")
+        others = (key for key, value in namespace.items() if callable(value))
         if functions := [key for key in others if key[:1] != "_"]:
             why += f"; it has {', '.join(functions[:6])}"
         raise OwnMethodError(f"{why}.")
     return _guarded(function, name, source, file)
-
-
-def _check_caught(tree: ast.AST, file: str) -> None:
-    """Raise OwnMethodError for code that would catch KeyboardInterrupt and TooLongError."""
-    for node in ast.walk(tree):
-        match node:
-            case ast.ExceptHandler(type=None) | ast.Name(id="BaseException"):
-                where = f"{file}, line {node.lineno}"
-                raise OwnMethodError(f"{where}: this would catch Ctrl+C; use Exception.")
-
-
-class _PrintedError(Exception): ...
-
-
-def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
-    if file is None:
-        raise _PrintedError
-    print(*values, file=file, **settings)
 
 
 def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
@@ -139,15 +134,14 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
         where = f"{file}, line {code.co_firstlineno}"
 
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        plain = type(phase[0]) is type(phase[1]) is float
+        floats = type(phase[0]) is float
         following: Any = None
         while True:
             try:
-                UserCode.is_running = True
-                UserCode.steps += 1
-                if following is None:
-                    following = _iterator(function(force, phase, h), f"{where}: {name}")
-                value = next(following)
+                with USER_CODE:
+                    if following is None:
+                        following = _iterator(function(force, phase, h), f"{where}: {name}")
+                    value = next(following)
             except StopIteration:
                 break
             except (OwnMethodError, OverflowError, KeyboardInterrupt):
@@ -156,14 +150,7 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
                 if _is_of_force(error, force):
                     raise
                 raise OwnMethodError(_sentence(error, source, file, where)) from None
-            finally:
-                UserCode.is_running = False
-            if (
-                plain
-                and type(value) is tuple
-                and len(value) == 2
-                and type(value[0]) is type(value[1]) is float
-            ):
+            if floats and type(value) is tuple and [*map(type, value)] == FLOATS:
                 yield value
             else:
                 yield _phase(value, phase, f"{where}: {name}")
@@ -180,6 +167,7 @@ def _iterator(returned: Any, who: str) -> Iterator[Any]:
     return returned  # type: ignore[no-any-return]
 
 
+FLOATS = [float, float]
 _FORM = "write `while True:` with the formulas and `yield theta, omega`"
 
 
@@ -187,7 +175,7 @@ def _phase(value: Any, start: Phase, who: str) -> Phase:
     """Return the yielded value as a phase, in the kind of numbers of the start."""
     try:
         theta, omega = (_number(number, like) for number, like in zip(value, start, strict=True))
-    except (TypeError, ValueError):
+    except Exception:  # also of the user's __iter__ or __float__
         raise OwnMethodError(f"{who} yields {_short(value)}; {_FORM}.") from None
     return theta, omega
 
@@ -238,9 +226,9 @@ def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
     lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
     if lines:
         where = f"{file}, line {lines[-1]}: `{_line(source.splitlines()[lines[-1] - 1])[:60]}`"
-    if isinstance(error, _PrintedError):
-        return f"{where} prints, but stdout is for results; use print(..., file=sys.stderr)."
     if isinstance(error, TooLongError):
         return f"{where} {error}."
-    what = _line(str(error))[:200]
+    what = ""
+    with suppress(Exception):  # of the user's __str__
+        what = _line(str(error))[:200]
     return f"{where} raises {type(error).__name__}{what and f': {what}'}."

@@ -2,9 +2,11 @@
 
 import argparse
 import difflib
+import os
 import string
 from collections.abc import Sequence
 from itertools import groupby
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,9 +16,12 @@ from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import Suggestions, add_file
 
 if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from pendu_tui.engine.methods.measure import Measured
     from pendu_tui.engine.methods.own import OwnMethod
 
-MAX_SECONDS = 10.0  # to load and measure a method; 0.2 s is typical
+MAX_SECONDS = 10.0  # to measure a method; 0.2 s is typical
 KEYS = [method.key for method in METHODS]
 
 
@@ -112,9 +117,7 @@ def family_of(key: str) -> str:
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     """Return the method in FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
-    from pendu_tui.engine.methods.examine import load
-    from pendu_tui.engine.methods.own import MAX_SOURCE
-    from pendu_tui.tui.cli.time_limit import limited
+    from pendu_tui.engine.methods.own import MAX_SOURCE, own_method
 
     if text.endswith(".py"):
         text += f":{Path(text).stem}"
@@ -144,5 +147,46 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
-    with limited("a few hundred steps", MAX_SECONDS):
-        return load(source, key, letter, path)
+    return own_method(source, key, letter, path, _tried(source, key, path))
+
+
+def _tried(source: str, key: str, file: str) -> "Measured":
+    """Return the properties of a user's method, which is tried in another process.
+
+    Raises OwnMethodError, also if the process does not answer in time, or ends.
+    """
+    from pendu_tui.engine.methods.own import OwnMethodError
+
+    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
+    context = get_context("spawn")
+    results, sending = context.Pipe(duplex=False)
+    process = context.Process(target=_try, args=(sending, source, key, file), daemon=True)
+    process.start()
+    sending.close()
+    try:
+        results.recv()  # it has started
+        if not results.poll(MAX_SECONDS):
+            raise OwnMethodError(f"{file}: {key} takes more than {MAX_SECONDS:g} s for a trial.")
+        found: Measured | OwnMethodError = results.recv()
+    except EOFError:
+        raise OwnMethodError(f"{file}: {key} ends the process in which it is tried.") from None
+    finally:
+        process.kill()
+        process.join()
+    if isinstance(found, OwnMethodError):
+        raise found
+    return found
+
+
+def _try(results: "Connection", source: str, key: str, file: str) -> None:
+    """Send None, and then the properties or an OwnMethodError."""
+    from pendu_tui.engine.methods.examine import examined
+    from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.tui.cli.time_limit import limited
+
+    results.send(None)
+    try:
+        with limited():
+            results.send(examined(source, key, file))
+    except OwnMethodError as error:
+        results.send(error)

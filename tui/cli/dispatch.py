@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.dropped import DROPPED, refuse_dropped
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
-from pendu_tui.tui.cli.files import repeat_swallowed_interrupts
+from pendu_tui.tui.cli.files import keep_results_apart, repeat_swallowed_interrupts
 
 if TYPE_CHECKING:
     from pendu_tui.tui.cli.options import Parser
@@ -73,7 +73,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without θ shows a ?
+            encoding = "utf-8"  # in files and pipes, also on Windows
+            if stream.isatty() or "PYTHONIOENCODING" in os.environ:
+                encoding = stream.encoding
+            stream.reconfigure(encoding=encoding, errors="replace")  # terminals without θ show a ?
     if arguments is None:
         repeat_swallowed_interrupts()
     try:
@@ -125,9 +128,10 @@ def _dispatch(arguments: list[str]) -> int:
         return Exit.FINE
     if not getattr(options, "method", None):
         return int(command.run(options))
-    from pendu_tui.tui.cli.time_limit import limited_calls, limited_steps
+    from pendu_tui.tui.cli.time_limit import limited, watched
 
-    with limited_calls(), limited_steps():
+    keep_results_apart()
+    with watched(), limited():
         return int(command.run(options))
 
 

@@ -1,20 +1,19 @@
 """Files that are written whole or not at all, and work that a signal ends in order."""
 
+import os
 import signal
 import sys
+from _thread import interrupt_main
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from io import TextIOWrapper
 from pathlib import Path
-from threading import Timer, main_thread
+from threading import Timer
 from types import FrameType
 from typing import TextIO
 
+from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.errors import Exit, UserError
-
-ENDING = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-]
-"""The signals that ask for an end."""
 
 
 @contextmanager
@@ -70,10 +69,19 @@ def repeat_swallowed_interrupts() -> None:
         if not issubclass(swallowed.exc_type, KeyboardInterrupt):
             report(swallowed)
             return
-        again = main_thread().ident, signal.SIGINT
-        Timer(0.05, signal.pthread_kill, again).start()  # s; by then the callback has returned
+        Timer(0.05, interrupt_main).start()  # s; by then the callback has returned
 
     sys.unraisablehook = hook
+
+
+def keep_results_apart() -> None:
+    """Point the descriptor of stdout to stderr from now on, for a user's code; sys.stdout stays."""
+    stdout = sys.stdout
+    if stdout is sys.__stdout__ and isinstance(stdout, TextIOWrapper):  # no test's
+        results = os.dup(1)
+        os.dup2(2, 1)
+        sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")
+        sys.stdout.reconfigure(line_buffering=stdout.line_buffering)
 
 
 @contextmanager

@@ -1,112 +1,105 @@
-"""Time limits for a user's own methods, where the platform can interrupt them.
+"""Time limits for a user's own methods: a thread interrupts them, or another process this one."""
 
-SIGPROF ends the program if a call in C does not return.
-"""
-
-import faulthandler
-import math
-import signal
+import ctypes
+import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-from types import FrameType
+from contextlib import contextmanager, suppress
+from functools import cache
 
-from pendu_tui.engine.methods.own import OwnMethodError, TooLongError, UserCode
+from pendu_tui.engine.methods.own import USER_CODE, OwnMethodError, TooLongError
+from pendu_tui.tui.cli.errors import Exit
 
-MAX_STEP_TIME = 3.0  # s
-MAX_CALL_TIME = 5.0  # s of processor time for a call in C, which cannot be interrupted
-LOOK_INTERVAL = 0.2  # s, between checks
-PLAIN_SCREEN = "\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
-"""Escape sequences that leave the alternate screen and stop mouse reports."""
-_END_STUCK = f"""exec 3>&2 2>/dev/null
-trap "" HUP INT TERM TSTP TTOU
-state=$(stty -g </dev/tty)
-read -r _ || exit
-if [ "$(stty -g </dev/tty)" != "$state" ]
-then stty "$state" </dev/tty; printf '{PLAIN_SCREEN}' >/dev/tty
-fi
-echo "pendu-tui: ended, for your method's call in C did not return; the recording is kept\
- as a .part." >&3
-kill -KILL $PPID
-"""
+MAX_TIME = 3.0  # s
+LOOK_INTERVAL = 0.2  # s
+STEP = "a step"
 
 
-class _Watch:
-    """Checks from time to time whether a user's code is still in the same step."""
+class Watch(threading.Thread):
+    """Looks from time to time whether a user's code is still in the same step, or in the block."""
+
+    @staticmethod
+    def end(sentence: str, code: Exit) -> None:
+        """End the program, whose user's code cannot be interrupted."""
+        print(f"pendu-tui: {sentence}", file=sys.__stderr__, flush=True)
+        os._exit(code)
 
     def __init__(self) -> None:
-        self.deadline = math.inf  # s
-        self.excess = ""  # the message after the deadline
-        self._steps = -1
-        self._since = 0.0  # s, when the current step was first seen
+        super().__init__(name="time limit", daemon=True)
+        self.guard = threading.Lock()
+        self.what = STEP  # what must not take long
+        self.pulse = -1  # the descriptor of the watcher's stdin
+        self.looks = 0  # counted, since the clock goes on while the program is stopped
 
-    def look(self, number: int, frame: FrameType | None) -> None:
-        """Raise TooLongError in a user's code that takes too long."""
-        signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
-        now = time.monotonic()
-        if self._steps != UserCode.steps:
-            self._steps = UserCode.steps
-            self._since = now
-        if not UserCode.is_running:
-            return
-        longest = MAX_STEP_TIME - LOOK_INTERVAL  # it may have begun up to an interval earlier
-        if self._steps and now - self._since >= longest:
-            raise TooLongError(f"takes more than {MAX_STEP_TIME:g} s for a step")
-        if now >= self.deadline:
-            raise TooLongError(self.excess)
+    def begin(self, what: str) -> None:
+        with self.guard:
+            self.what = what
+            self.looks = 0
+            _raise_in_main(None)
+
+    def run(self) -> None:
+        steps = 0
+        while True:
+            time.sleep(LOOK_INTERVAL)
+            if self.pulse >= 0:
+                with suppress(OSError):  # somebody killed it
+                    os.write(self.pulse, b".")
+            with self.guard:
+                self.looks += 1
+                if self.what == STEP and (steps != USER_CODE.steps or not USER_CODE.is_running):
+                    self.looks = 0
+                steps = USER_CODE.steps
+                if self.looks * LOOK_INTERVAL >= MAX_TIME and USER_CODE.is_running:
+                    TooLongError.why = f"takes more than {MAX_TIME:g} s for {self.what}"
+                    _raise_in_main(TooLongError)
+            if self.looks * LOOK_INTERVAL >= 2 * MAX_TIME and USER_CODE.is_running:
+                Watch.end(f"ended, for your method {TooLongError.why}.", Exit.USAGE)
 
 
-_watch = _Watch()
+@cache
+def watch() -> Watch:
+    """Return the process's only watch, which has begun."""
+    thread = Watch()
+    thread.start()
+    return thread
+
+
+def _raise_in_main(error: type[BaseException] | None) -> None:
+    """Raise an error in the main thread's next line of Python, or drop one not yet raised."""
+    thread = ctypes.c_ulong(threading.main_thread().ident or 0)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error and ctypes.py_object(error))
 
 
 @contextmanager
-def limited_calls() -> Iterator[None]:
-    """Have a shell end the program if a call in C does not return."""
-    if not hasattr(signal, "SIGALRM"):
+def limited(what: str = STEP) -> Iterator[None]:
+    """Interrupt a user's methods if the block takes too long, by default if a step does.
+
+    Raises OwnMethodError then.
+    """
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
-    import subprocess
-
-    with subprocess.Popen(["sh", "-c", _END_STUCK], stdin=subprocess.PIPE) as shell:
-        assert shell.stdin
-        faulthandler.register(signal.SIGPROF, shell.stdin, all_threads=False)
-        try:
-            yield
-        finally:
-            faulthandler.unregister(signal.SIGPROF)
-            shell.kill()
-
-
-@contextmanager
-def limited_steps() -> Iterator[None]:
-    """Interrupt any step of a user's method in the block that takes too long."""
-    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "SIGALRM"):
-        yield
-        return
-    handler = signal.signal(signal.SIGALRM, _watch.look)
-    timer = signal.setitimer(signal.ITIMER_REAL, LOOK_INTERVAL, LOOK_INTERVAL)
-    calls = signal.setitimer(signal.ITIMER_PROF, MAX_CALL_TIME)
+    before = watch().what
+    watch().begin(what)
     try:
         yield
     except TooLongError as error:  # raised just after the step
         raise OwnMethodError(f"A method of your own {error}.") from None
     finally:
-        signal.setitimer(signal.ITIMER_PROF, *calls)
-        signal.setitimer(signal.ITIMER_REAL, *timer)
-        signal.signal(signal.SIGALRM, handler)
+        watch().begin(before)
 
 
 @contextmanager
-def limited(what: str, seconds: float | None = None) -> Iterator[None]:
-    """Interrupt a user's methods if the whole block takes too long, by default as for one step."""
-    seconds = seconds or MAX_STEP_TIME
-    with limited_steps():
-        _watch.excess = f"takes more than {seconds:g} s for {what}"
-        _watch.deadline = (
-            time.monotonic() + seconds + LOOK_INTERVAL
-        )  # a single slow step is reported first
+def watched() -> Iterator[None]:
+    """Have another process end this one if a call in C keeps the interpreter for itself."""
+    watcher = [sys.executable, "-P", "-m", "pendu_tui.tui.terminal.watcher", str(os.getpid())]
+    with subprocess.Popen(watcher, stdin=subprocess.PIPE, start_new_session=True) as process:
+        assert process.stdin
+        watch().pulse = process.stdin.fileno()
         try:
             yield
         finally:
-            _watch.deadline = math.inf
+            watch().pulse = -1

@@ -1,6 +1,5 @@
 """PenduApp: themes, signals, errors, and the screens of lab and replay."""
 
-import asyncio
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,13 +13,16 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
+from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.time_limit import Watch
 from pendu_tui.tui.drawing.palette import PALETTES, Palette
 from pendu_tui.tui.screens.base import SourceScreen
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, TerminalOptions
-from pendu_tui.tui.terminal.signals import Job, SignalThread
+from pendu_tui.tui.terminal.paste import limit_pastes
+from pendu_tui.tui.terminal.watchdog import Watchdog
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
@@ -47,6 +49,7 @@ class PenduApp(App[Exit | BaseException]):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         # where there is no colour, Textual would use greys
         super().__init__(ansi_color="NO_COLOR" in os.environ or None)
+        limit_pastes()
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme
@@ -54,7 +57,7 @@ class PenduApp(App[Exit | BaseException]):
         self.character_filter = CharacterSetFilter(terminal.character_set)
         self.source_screens = [screen]
         self._last_notice = ""
-        self._job = Job(self.suspend)
+        self._watchdog = Watchdog(self, self.finish)
 
     @property
     def source_screen(self) -> SourceScreen:
@@ -73,9 +76,8 @@ class PenduApp(App[Exit | BaseException]):
         """Handle signals from now on, and repaint after a stop."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         if not self.is_headless:
-            job = None if self.is_web else self._job
-            loop = asyncio.get_running_loop()
-            SignalThread(loop, self.action_interrupt, self.finish, job).start()
+            self._watchdog.begin(self.action_interrupt)
+            Watch.end = self._watchdog.end  # type: ignore[method-assign]
 
     async def on_event(self, event: Event) -> None:
         """Survive a key that makes Textual's palette or list raise: it would end the app."""
@@ -124,8 +126,7 @@ class PenduApp(App[Exit | BaseException]):
 
     def action_suspend_process(self) -> None:
         if not self.is_web:
-            self._job.ask()
-            self._job.stop()
+            self._watchdog.hear(STOP)
 
     def action_command_palette(self) -> None:
         from pendu_tui.tui.screens.palette import Commands, LabCommands

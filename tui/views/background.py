@@ -11,8 +11,9 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import Any
 
+from pendu_tui.recordings.system import give_way
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.time_limit import limited_steps
+from pendu_tui.tui.cli.time_limit import limited
 
 
 async def computed(
@@ -47,11 +48,12 @@ def _send_all(
 ) -> None:
     """Send all results, then None: the main function of the other process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing may write across the screen
-    os.nice(10)  # the lab comes first
+    for stream in (1, 2):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream)  # nothing may write across the screen
+    give_way()
     Thread(target=_end_with_parent, daemon=True).start()
     try:
-        with limited_steps():
+        with limited():
             for item in function(*arguments):
                 results.send(item)
         results.send(None)

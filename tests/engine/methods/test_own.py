@@ -104,9 +104,11 @@ WRONG = {
         "        omega += h * force(theta)\n        yield theta, omega",
         "mine changes an array in place; write theta = theta + x instead of theta += x",
     ),
-    "something printed": (euler("print(theta)"), "line 7: `print(theta)` prints, but stdout is for results"),
-    "an except that catches the limit of time": (
-        "def mine(force, phase, h):\n    try: yield phase\n    except: pass", "line 3: this would catch Ctrl+C; use"
+    "an exception that cannot be printed": (
+        "class Odd(Exception):\n    def __str__(self): return 1 / 0\nraise Odd", "line 3: `raise Odd` raises Odd."
+    ),
+    "numbers that are none": (
+        euler(yields="Odd(), 1.0", above="class Odd:\n    def __float__(self): raise OSError"), "mine yields a tuple"
     ),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
     "a memory": (
@@ -142,10 +144,14 @@ def test_the_sentence_about_a_wrong_method_is_short():
     assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n\\x1b')"))) < 400
 
 
-def test_it_may_print_to_stderr_and_yield_a_list(capsys):
-    source = euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")
+def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
+    source = euler(
+        "print('here'); __import__('sys').stdout.write('there')", yields="[theta, omega]"
+    )
     assert loaded(source).order == 1
-    assert "here" in capsys.readouterr().err
+    printed = capsys.readouterr()
+    assert not printed.out
+    assert "here\nthere" in printed.err
 
 
 def test_an_exception_after_many_steps_is_a_sentence_with_the_line():

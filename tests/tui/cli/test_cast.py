@@ -1,6 +1,8 @@
 """The options --methods and --method."""
 
+import json
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -120,10 +122,34 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
     assert pendu("run", "--time", "2", "--method", text).refused(code, words)
 
 
-def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
-    monkeypatch.setattr(cast_options, "MAX_SECONDS", 0.2)
-    outcome = pendu("run", "--time", "2", "--method", "mine.py:endless")
-    assert outcome.refused(2, "more than 0.2 s", "while True")
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("work", "why"),
+    [
+        ("while True: pass", "`while True: pass` takes more than 3 s for a step"),
+        ("pow(7, 10**9)", "takes more than 4 s for a trial"),
+        ("os._exit(0)", "ends the process in which it is tried"),
+    ],
+)
+def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(mine, monkeypatch, work, why):
+    monkeypatch.setattr(cast_options, "MAX_SECONDS", 4.0)
+    Path("hostile.py").write_text(
+        f"import os\ndef hostile(force, phase, h):\n    {work}\n    yield"
+    )
+    assert pendu("run", "--time", "2", "--method", "hostile.py").refused(2, "hostile.py", why)
+
+
+@pytest.mark.slow
+def test_what_a_method_writes_to_stdout_is_not_among_the_results(mine, tmp_path):
+    step = STEP.format(name="loud").replace(
+        "yield", "sys.stdout.write('A'); os.write(1, b'B'); yield"
+    )
+    (tmp_path / "loud.py").write_text("import os, sys\nprint('C')\n" + step)
+    command = [*PENDU, "run", "--time", "1", "--json", "--method", f"{tmp_path / 'loud.py'}:loud"]
+    ended = subprocess.run(command, capture_output=True, timeout=30, check=False, cwd=ROOT)
+    assert ended.returncode == 0, ended.stderr
+    assert json.loads(ended.stdout)["schema"].startswith("pendu.run/")
+    assert all(letter in ended.stderr for letter in (b"A", b"B", b"C"))
 
 
 @pytest.mark.slow

@@ -212,7 +212,7 @@ def mine(force, phase, h):
     ],
 )
 def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, words, monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.cli.time_limit.MAX_STEP_TIME", 0.3)
+    monkeypatch.setattr("pendu_tui.tui.cli.time_limit.MAX_TIME", 0.3)
     monkeypatch.setattr("pendu_tui.tui.cli.time_limit.LOOK_INTERVAL", 0.05)
     own = load(FAILING.format(failure), "mine", "m", "mine.py")
     scene = DEFAULT_SCENE.with_cast((*DEFAULT_SCENE.cast, own))

@@ -125,7 +125,7 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
     with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
         session.wait_for("REC 1 s")
         (tmp_path / "endless").touch()
-        session.wait_for("takes more than 3 s for a step", 4.0)
+        session.wait_for("takes more than 3 s", 4.0)
         session.wait_for("stands still")
         session.type("p")
         session.wait_for("gentle", 6.0)
@@ -139,15 +139,43 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
 def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, library):
     (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
     own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
-    soon = "from pendu_tui.tui.cli import time_limit; time_limit.MAX_CALL_TIME = 1.0\n"
-    program = [*PENDU[:2], soon + PENDU[2]]
-    environment = {"PYTHONPATH": str(ROOT)}
-    with lab(library, *own, program=program, folder=tmp_path, **environment) as session:
+    with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
         session.wait_for("REC 1 s")
         (tmp_path / "endless").touch()
         assert session.end(60.0) == -signal.SIGKILL
     assert b"1049l" in session.output
     assert b"the recording is kept" in session.output
+
+
+def test_a_method_that_sleeps_ends_the_lab_with_a_sentence_and_its_recording_is_finished(
+    tmp_path, library
+):
+    (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "__import__('time').sleep(99)"))
+    own = ("live", "--method", f"{tmp_path / 'mine.py'}:mine")
+    with lab(library, *own, folder=tmp_path, PYTHONPATH=str(ROOT)) as session:
+        session.wait_for("REC 1 s")
+        (tmp_path / "endless").touch()
+        assert session.end(12.0) == 2
+    assert b"your method takes more than 3 s" in session.output
+    assert b"1049l" in session.output
+    assert [path.suffix for path in library.iterdir()] == [".mcap"]
+
+
+@pytest.mark.parametrize(
+    "paste", ["\x1b[200~", "\x1b[200~text\x1b", "\x1b[200~q\x1b[201~\x1b[200~"]
+)
+def test_a_paste_without_an_end_counts_as_ended_after_2_s(library, paste):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.type(paste)
+        session.run(1.0)
+        session.type(" ")
+        session.run(1.5)
+        assert b"paused" not in session.output
+        session.type(" ")
+        session.wait_for("paused")
+        session.type("q")
+        assert session.end() == 0
 
 
 def test_an_error_ends_the_lab_with_one_sentence_and_its_recording_is_finished(library):

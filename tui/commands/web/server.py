@@ -17,7 +17,7 @@ from aiohttp import web
 from textual_serve.server import Server
 from yarl import URL
 
-from pendu_tui.tui.cli.files import ENDING
+from pendu_tui.recordings.system import ENDING
 
 CONNECTIONS_PER_LAB = 10  # browsers open six
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
