@@ -11,9 +11,27 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pendu_tui.engine.library import METHODS, SCENES, judge, limits, recommend, simulate
+    from pendu_tui.engine.library import (
+        METHODS,
+        SCENES,
+        fluctuation_order,
+        judge,
+        limits,
+        measure,
+        recommend,
+        simulate,
+    )
 
-__all__ = ["METHODS", "SCENES", "judge", "limits", "recommend", "simulate"]
+__all__ = [
+    "METHODS",
+    "SCENES",
+    "fluctuation_order",
+    "judge",
+    "limits",
+    "measure",
+    "recommend",
+    "simulate",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pendu_tui.engine import methods as listed
 from pendu_tui.engine import scenes
-from pendu_tui.engine.methods import Cast, Method, matching
+from pendu_tui.engine.methods import Cast, Method, matching, named
 from pendu_tui.engine.scenes import Scene
 
 if TYPE_CHECKING:
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     from pendu_tui.engine.accuracy.recommend import Attempt
     from pendu_tui.engine.accuracy.study import ErrorKind
+    from pendu_tui.engine.methods.measure import Measured
+    from pendu_tui.engine.methods.method import Phases
+    from pendu_tui.engine.run.order import Order
 
     Floats = NDArray[np.float64]
 
@@ -176,20 +179,14 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
 
     t = _finite("times", _array("times", times))
     e = _array("energies", energies)
-    if len(t) != len(e):
-        raise ValueError(f"{len(t)} times and {len(e)} energies do not belong together.")
+    _same_length(t, e)
     finite = int(np.isfinite(e).cumprod().sum())
     failed = 0 < finite < len(e)
     if failed:
         t = t[:finite]
         e = e[:finite]
     e = _finite("energies", e)
-    later = np.diff(t) > 0
-    if not later.all():
-        place = int(np.argmin(later)) + 1
-        raise ValueError(
-            f"times must increase, and times[{place}] is not later than the one before."
-        )
+    _increasing(t)
     judgement = judge_record(t, e, failed=failed, absolute=scale != "std")
     e = e[judgement.first :]
     size = _size(e, scale)
@@ -206,6 +203,45 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         scale=size,
         progress=str(judgement.progress or ""),
     )
+
+
+def measure(step: "Phases") -> "Measured":
+    """Return the measured properties of a method: order, cost, symplectic, reversible, limit.
+
+    `step(force, phase, h)` is a generator function that yields the phase (q, p) after one step of
+    h, after two, and so on; q'' = force(q).
+    """
+    from pendu_tui.engine.methods.examine import properties
+    from pendu_tui.engine.methods.own import OwnMethodError
+
+    if not callable(step):
+        raise ValueError(f"{step!r} is no function; give a generator function (force, phase, h).")
+    try:
+        return properties(step)
+    except OwnMethodError as error:
+        raise ValueError(str(error)) from None
+
+
+def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "Order":
+    """Return the power of h with which the energy fluctuates in runs (h, times, energies).
+
+    The runs differ in their step size h alone.  The energies of a method of order 2 that solves the
+    right equation fluctuate as h².
+    """
+    from pendu_tui.engine.run.order import fluctuation, order_of
+
+    steps = []
+    fluctuations = []
+    for h, times, energies in runs:
+        steps.append(_number("h", h))
+        t = _increasing(_finite("times", _array("times", times)))
+        e = _finite(f"energies at h = {h:g}", _array("energies", energies))
+        _same_length(t, e)
+        try:
+            fluctuations.append(fluctuation(t, e))
+        except ValueError as error:
+            raise ValueError(f"h = {h:g}: {error}") from None
+    return order_of(steps, fluctuations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,7 +293,6 @@ def recommend(
     time: float | None = None,
     methods: Methods | None = None,
     error: "ErrorKind" = "theta",
-    safety: float = 1.0,
     **numbers: float,
 ) -> "list[Attempt]":
     """Return the cheapest run of each method with an error up to `target`, the cheapest first.
@@ -265,7 +300,7 @@ def recommend(
     By default all general methods are tried, over ten small swings.  Look at `method.key`,
     `point.h` [s], `point.z`, `point.steps_per_swing`, `point.force_evaluations` and `times`, the
     cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
-    end); a `safety` of 2 halves the target.  Raises ValueError if no method reaches the target.
+    end).  Raises ValueError if no method reaches the target.
     """
     from pendu_tui.engine.accuracy.recommend import least_cost
     from pendu_tui.engine.accuracy.study import Study, usual
@@ -276,12 +311,12 @@ def recommend(
         raise ValueError("the pendulum hangs at rest; use another theta or omega.")
     if error not in ("theta", "energy", "final"):
         raise ValueError(f"error = {error!r} is none of theta, energy and final.")
-    wanted = _number("target", target) / max(_number("safety", safety), 1e-300)
+    wanted = _number("target", target)
     seconds, _ = usual(chosen)
     if time is not None:
         seconds = _number("time", time)
-    if not 0 < wanted <= target or seconds <= 0:
-        raise ValueError("target and time must be above zero, and safety 1 or more.")
+    if wanted <= 0 or seconds <= 0:
+        raise ValueError("target and time must be above zero.")
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
     successes = [attempt for attempt in attempts if attempt.succeeded]
     if not successes:
@@ -336,13 +371,7 @@ def _method(name: str | Method) -> Method:
     """Return the method of a name or of the start of a key; methods of one's own as they are."""
     if isinstance(name, Method) and name.key not in set(METHODS):
         return name
-    matches = matching(getattr(name, "key", str(name)))
-    if len(matches) == 1:
-        return matches[0]
-    if matches:
-        keys = " or ".join(method.key for method in matches)
-        raise ValueError(f"{name!r} may be {keys}; write more of it.")
-    raise ValueError(f"there is no method {name!r}; choose from {', '.join(METHODS)}.")
+    return named(getattr(name, "key", str(name)))
 
 
 def _number(name: str, value: Any) -> float:
@@ -375,6 +404,23 @@ def _finite(name: str, array: "Floats") -> "Floats":
         place = int(np.argmin(np.isfinite(array)))
         raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
     return array
+
+
+def _same_length(times: "Floats", energies: "Floats") -> None:
+    if len(times) != len(energies):
+        raise ValueError(f"{len(times)} times and {len(energies)} energies do not belong together.")
+
+
+def _increasing(times: "Floats") -> "Floats":
+    import numpy as np
+
+    later = np.diff(times) > 0
+    if not later.all():
+        place = int(np.argmin(later)) + 1
+        raise ValueError(
+            f"times must increase, and times[{place}] is not later than the one before."
+        )
+    return times
 
 
 def _size(energies: Any, scale: float | str) -> float:

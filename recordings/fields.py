@@ -1,19 +1,26 @@
 """Fields: the names and units of all that a recording holds.
 
-Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use them.  To record another
-value of a reading, add it to `Reading` and to READING.
+Messages, their schemas, tables and `verify` use them.
 """
 
-import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple, get_args
+
+import msgspec
 
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.quantities import RECORDED
 from pendu_tui.engine.run.lockstep import Reading, Sample
-from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.recordings.events import EventKind
 
-MAX_INTEGER = 1 << 53
+TYPES: dict[str, Any] = {
+    "number": float,
+    "integer": Annotated[int, msgspec.Meta(ge=0, lt=1 << 53)],  # JSON readers have doubles
+    "boolean": bool,
+    "string": str,
+    "array": list[str],
+}
+"""What the types of JSON are read as."""
 
 
 class Field(NamedTuple):
@@ -34,6 +41,12 @@ class Field(NamedTuple):
         return f"{self.name}_{unit}"
 
     @property
+    def member(self) -> tuple[Any, ...]:
+        """Its name, type and, unless it is required, the default None, for a struct of msgspec."""
+        member = (self.name, TYPES[self.type])
+        return member if self.required else (*member, None)
+
+    @property
     def schema(self) -> dict[str, Any]:
         """Its JSON Schema, with one type and no references, as the simplest viewers require."""
         schema: dict[str, Any] = {"type": self.type}
@@ -42,25 +55,6 @@ class Field(NamedTuple):
         if self.type == "array":
             schema["items"] = {"type": "string"}
         return schema
-
-    def checked(self, value: Any) -> Any:
-        """Return a value that is finite or printable, or raise RecordingError."""
-        match self.type, value:
-            case type, bool() if type != "boolean":
-                pass
-            case "number", float() if math.isfinite(value):
-                return value
-            case "number", int() if abs(value) < MAX_INTEGER:  # other writers drop the ".0"
-                return float(value)
-            case "integer", int() if 0 <= value < MAX_INTEGER:
-                return int(value)
-            case "boolean", bool():
-                return value
-            case "string", str():
-                return printable(value)
-            case "array", list() if all(isinstance(item, str) for item in value):
-                return value
-        raise RecordingError(f"{self.name!r} of a message is no {self.type}, or not finite")
 
 
 def _ascii(unit: str) -> str:
@@ -74,16 +68,9 @@ def _optional(type: str, *names: str) -> tuple[Field, ...]:
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
 """The run and the time of a sample or an event."""
 
-READING = (
-    Field("theta", "rad"),
-    Field("omega", "rad/s"),
-    Field("energy", "s^-2"),
-    Field("energy_error", about="(E - E0) / E0"),
-    Field("max_energy_error", about="over every step so far"),
-    Field("energy_error_low", about="since the sample before", required=False),
-    Field("energy_error_high", about="since the sample before", required=False),
-    Field("diverged_at", "s", required=False),
-    Field("max_invariant_error", about="over every step so far", required=False),
+READING = tuple(
+    Field(each.name, _ascii(each.unit), each.about, required=each.recorded == "always")
+    for each in RECORDED
 )
 """The attributes of a Reading except `extra`."""
 
@@ -114,19 +101,19 @@ EVENT = (
 )
 """The kind of an event, and the fields of all kinds."""
 
-NUMBERS = tuple(field.name for field in READING if field.required)
-EXTREMES = ("energy_error_low", "energy_error_high")
-OPTIONAL = tuple(
-    field.name for field in READING if not field.required and field.name not in EXTREMES
-)
-EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
-
 
 def values_of(reading: Reading) -> dict[str, float | None]:
     """Return the values of a reading by name."""
     values = reading._asdict()
     del values["extra"]
     return values | dict(reading.extra)
+
+
+def struct_of(fields: Sequence[Field]) -> type[msgspec.Struct]:
+    """Return the type of a kind of message, in which missing optional fields are None."""
+    members = [field.member for field in fields]
+    # gc: a message holds no circle, and is gone before a collection
+    return msgspec.defstruct("Message", members, kw_only=True, omit_defaults=True, gc=False)
 
 
 def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:

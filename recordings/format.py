@@ -6,11 +6,15 @@ order of the run's methods, with one clock and one sequence number.  Unknown fie
 missing optional ones are None; anything else unexpected raises RecordingError.
 """
 
-import json
+import math
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import Any, get_args
 
+import msgspec
+
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.quantities import EXTREMES
 from pendu_tui.engine.run.judgement import Milestone, MilestoneKind
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, word_of_before
@@ -25,15 +29,21 @@ from pendu_tui.recordings.events import (
     name_of,
     noticed,
 )
-from pendu_tui.recordings.fields import EVENT, EXTRA, EXTREMES, MOMENT, READING, Field
+from pendu_tui.recordings.fields import EVENT, EXTRA, MOMENT, READING, struct_of
 
 FORMAT_VERSION = "3"
 EVENTS = "/pendu/events"
 CLOCK_OFFSET = 1_000_000_000  # ns: log_time at clock 0, as several readers mishandle 0
 
-_EVENT = (*MOMENT, *EVENT)
-_SAMPLE = {model: (*MOMENT, *READING, *extra) for model, extra in EXTRA.items()}
+_Event = struct_of((*MOMENT, *EVENT))
+_SAMPLES = {model: struct_of((*MOMENT, *READING, *extra)) for model, extra in EXTRA.items()}
+_TEXTS = [field.name for field in EVENT if field.type == "string"]
 _REQUIRED = {"set_h": "h", "speed": "speed"}
+_encode = msgspec.json.Encoder().encode
+_decode_event = msgspec.json.Decoder(_Event).decode
+_decoders = {model: msgspec.json.Decoder(struct).decode for model, struct in _SAMPLES.items()}
+_EXTRA_NAMES = {model: [field.name for field in extra] for model, extra in EXTRA.items()}
+_values_of_reading = attrgetter(*(field.name for field in READING))
 
 
 def topics_of(scene: Scene) -> tuple[str, ...]:
@@ -45,7 +55,10 @@ def topics_of(scene: Scene) -> tuple[str, ...]:
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
-    """Return a message for each method, in order, without extremes equal to the energy error."""
+    """Return a message for each method, in order, without extremes equal to the energy error.
+
+    Raises ValueError for a number that is not finite.
+    """
     messages = []
     for reading in sample.readings:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t, **reading._asdict()}
@@ -57,25 +70,39 @@ def encode_readings(sample: Sample) -> list[bytes]:
     return messages
 
 
-def decode_reading(data: bytes, model: str = DEFAULT_MODEL) -> tuple[int, int, float, Reading]:
-    """Return (run, step, t, reading) of a message."""
-    fields = _loads(data, _SAMPLE[model])
-    moment = fields.pop("run"), fields.pop("step"), fields.pop("t")
-    for name in EXTREMES:
-        fields.setdefault(name, fields["energy_error"])
-    if EXTRA[model]:
-        fields["extra"] = {field.name: fields.pop(field.name) for field in EXTRA[model]}
-    return *moment, Reading(**fields)
+def decode_readings(messages: Sequence[bytes], model: str = DEFAULT_MODEL) -> Sample:
+    """Return the sample of its messages, which are one for each method."""
+    decode = _decoders[model]
+    try:
+        decoded: list[Any] = [decode(message) for message in messages]
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise _refused(error) from error
+    readings = tuple(map(_reading, decoded))
+    if names := _EXTRA_NAMES[model]:
+        extras = ({name: getattr(message, name) for name in names} for message in decoded)
+        pairs = zip(readings, extras, strict=True)
+        readings = tuple(reading._replace(extra=extra) for reading, extra in pairs)
+    first = decoded[0]
+    return Sample(first.run, first.step, first.t, readings)
+
+
+def _reading(message: Any) -> Reading:
+    if message.energy_error_low is None:
+        message.energy_error_low = message.energy_error
+    if message.energy_error_high is None:
+        message.energy_error_high = message.energy_error
+    return Reading(*_values_of_reading(message))
 
 
 def encode_event(event: Event) -> bytes:
-    """Return the message of an event."""
+    """Return the message of an event.  Raises ValueError for a number that is not finite."""
     fields = event._asdict()
     del fields["scene"], fields["milestone"], fields["arithmetic"], fields["sources"]
     fields["equal_cost"] = event.equal_cost or None
     fields["text"] = event.text and printable(event.text)
     if (scene := event.scene) is not None:
-        fields |= {"scene": scene.name, "watch": scene.watch, "model": scene.model}
+        fields |= {"scene": printable(scene.name), "watch": printable(scene.watch)}
+        fields |= {"model": scene.model}
         fields |= {name: float(value) for name, value in scene.numbers.items()}
         fields["methods"] = [name_of(method) for method in scene.cast]
         sources = [method.source for method in scene.cast if hasattr(method, "source")]
@@ -90,8 +117,13 @@ def encode_event(event: Event) -> bytes:
 
 
 def decode_event(data: bytes) -> Event:
-    """Return the event of a message."""
-    fields = _loads(data, _EVENT)
+    """Return the event of a message, its texts printable."""
+    try:
+        message = msgspec.structs.asdict(_decode_event(data))
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise _refused(error) from error
+    fields = {name: value for name, value in message.items() if value is not None}
+    fields |= {name: printable(fields[name]) for name in _TEXTS if name in fields}
     kind, run, step, t = (fields[name] for name in ("kind", "run", "step", "t"))
     try:
         if kind not in get_args(EventKind):
@@ -115,22 +147,15 @@ def decode_event(data: bytes) -> Event:
 
 def _dumps(fields: dict[str, Any]) -> bytes:
     present = {name: value for name, value in fields.items() if value is not None}
-    return json.dumps(present, separators=(",", ":"), allow_nan=False).encode()
+    for name, value in present.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"{name} is {value}, which JSON cannot hold")  # msgspec writes null
+    return _encode(present)
 
 
-def _loads(data: bytes, fields: Sequence[Field]) -> dict[str, Any]:
-    """Return the fields of a message that are in the table."""
-    try:
-        message = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        raise RecordingError("a message is not JSON") from error
-    if type(message) is not dict:
-        raise RecordingError("a message is not an object")
-    return {
-        field.name: field.checked(message.get(field.name))
-        for field in fields
-        if field.required or field.name in message
-    }
+def _refused(error: Exception) -> RecordingError:
+    """Return the error of a message that cannot be decoded: its text names the field."""
+    return RecordingError(f"a message is not one of ours: {printable(str(error))}")
 
 
 def _scene(fields: dict[str, Any]) -> Scene:

@@ -4,7 +4,8 @@ It is loaded by being installed (entry point `pytest11`), so it imports NumPy an
 a test uses it.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from pendu_tui.engine.library import Judged
+    from pendu_tui.engine.methods.measure import Measured
+    from pendu_tui.engine.methods.method import Phases
+    from pendu_tui.engine.run.order import Order
+
+ORDER_TOLERANCE = 0.1  # errors are measured at finite steps: an order of 6 reads 5.91
 
 
 class EnergyDrift:
@@ -50,6 +56,85 @@ class EnergyDrift:
         if max_drift is not None and (judged.trend is None or abs(judged.trend) > max_drift):
             pytest.fail(f"the energies drift by more than {max_drift:g}: {judged}")
         return judged
+
+    def check_order(
+        self, runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]", at_least: float
+    ) -> "Order":
+        """Fail unless the energy of runs (h, times, energies) fluctuates as h^`at_least` or better.
+
+        It fails if the order and twice its uncertainty are below the limit, and if the runs are so
+        short that not even an order of 0 would be.
+        """
+        __tracebackhide__ = True
+        from pendu_tui.engine import fluctuation_order
+
+        try:
+            order = fluctuation_order(runs)
+        except ValueError as error:
+            raise pytest.fail.Exception(str(error)) from None
+        self._properties += [("order", order.power), ("order_uncertainty", order.uncertainty)]
+        if order.power + 2 * order.uncertainty < at_least:
+            pytest.fail(
+                f"the energy fluctuates as {order}, not as h^{at_least:g}: "
+                "the runs do not solve the same equation better with smaller steps"
+            )
+        if 2 * order.uncertainty >= at_least:
+            longer = math.ceil((4 * order.uncertainty / at_least) ** 2)
+            pytest.fail(
+                f"cannot tell: the energy fluctuates as {order}, and even order 0 would pass; "
+                f"make the runs {longer} times as long"
+            )
+        return order
+
+
+class MethodProperties:
+    """Checks the properties of a method."""
+
+    def __init__(self, properties: list[tuple[str, object]]) -> None:
+        self._properties = properties
+
+    def check(
+        self,
+        step: "Phases",
+        order: float | None = None,
+        symplectic: bool | None = None,
+        reversible: bool | None = None,
+    ) -> "Measured":
+        """Fail unless a generator function (force, phase, h) has the properties that are given.
+
+        The order may be higher, and is measured to ORDER_TOLERANCE.
+        """
+        __tracebackhide__ = True
+        from pendu_tui.engine import measure
+        from pendu_tui.engine.methods.measure import no_order
+
+        try:
+            found = measure(step)
+        except ValueError as error:
+            raise pytest.fail.Exception(str(error)) from None
+        self._properties += found._asdict().items()
+        flaws = [
+            f"it is {'' if wanted else 'not '}to be {name}, and is{'' if has else ' not'}"
+            for name, wanted, has in (
+                ("symplectic", symplectic, found.symplectic),
+                ("reversible", reversible, found.reversible),
+            )
+            if wanted is not None and wanted != has
+        ]
+        if order is not None and not (found.order or 0) > order - ORDER_TOLERANCE:
+            flaws.insert(
+                0, no_order(found.order) or f"its order is {found.order:.3f}, not {order:g}"
+            )
+        if flaws:
+            name = getattr(step, "__name__", "the method")
+            pytest.fail(f"{name}: {'; '.join(flaws)}\n{found}")
+        return found
+
+
+@pytest.fixture
+def method_properties(request: pytest.FixtureRequest) -> MethodProperties:
+    """Give a test `method_properties.check(step, order=2, symplectic=True)`."""
+    return MethodProperties(request.node.user_properties)
 
 
 @pytest.fixture

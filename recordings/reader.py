@@ -1,7 +1,7 @@
 """Reader: the intact chunks of an MCAP file, past any damage.
 
-A chunk is intact or lost, as its checksum covers all that is in it; mcap unpacks it.  A finished
-file ends with a summary of where its chunks are.  Without a summary, or if the file's checksum is
+A chunk is intact or lost, as its checksum covers all that is in it.  A finished file ends with a
+summary of where its chunks are.  Without a summary, or if the file's checksum is
 wrong, the intact chunks are searched for.  All work is proportional to the file's size.
 """
 
@@ -10,13 +10,13 @@ import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from io import SEEK_END, BytesIO
+from itertools import chain
 from typing import BinaryIO, NamedTuple
 
 import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Message
-from mcap.stream_reader import breakup_chunk
+from mcap.records import Channel
 
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
@@ -25,16 +25,42 @@ from pendu_tui.recordings.library import MAGIC
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
 MAX_SUMMARY = 1 << 26  # bytes; enough for four days
+MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
+_MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
 _INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map after it
 _INDEX_MAP = struct.Struct("<HQ")  # channel, offset of its index
+_CHUNK = struct.Struct("<BQQQQI8sQ")  # see _Head
 _ZSTD = b"\x04\x00\x00\x00zstd"
-_BEFORE_ZSTD = _RECORD.size + 28  # bytes of a chunk's record
-_BLOCK = 1 << 12
+_BEFORE_ZSTD = 37  # bytes of a chunk's record
+_MAX_HEAD = _CHUNK.size + 18  # with the largest head of a zstd frame
+_BLOCK = 1 << 16
 
 ShowProgress = Callable[[int, int], None]
 """Called with the bytes done and those in all."""
+
+
+class Group(NamedTuple):
+    """Messages of one sequence number and time: an event, or a sample of all methods."""
+
+    sequence: int
+    log_time: int  # ns
+    channels: list[int]
+    data: list[bytes]
+
+
+class _Head(NamedTuple):
+    """The head of a chunk."""
+
+    opcode: int
+    length: int  # of what follows
+    start: int  # ns, log_time of its first message
+    end: int  # ns, log_time of its last message
+    size: int  # bytes of its contents
+    checksum: int  # of its contents; 0 would not be checked
+    compression: bytes
+    packed: int  # bytes of its compressed contents
 
 
 class Place(NamedTuple):
@@ -120,6 +146,7 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
 def _read_index(data: bytes) -> Contents:
     """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
+    chunks_end = 0  # chunks that overlap could take for ever
     at = 0
     while at < len(data):
         opcode, length = _RECORD.unpack_from(data, at)
@@ -128,7 +155,10 @@ def _read_index(data: bytes) -> Contents:
         if opcode == Opcode.CHANNEL:
             contents.add(Channel.read(ReadDataStream(BytesIO(data[begin:at]))))
         elif opcode == Opcode.CHUNK_INDEX:
-            start, end, offset, _, map_length = _INDEX.unpack_from(data, begin)
+            start, end, offset, size, map_length = _INDEX.unpack_from(data, begin)
+            if offset < chunks_end or not start <= end <= MAX_TIME:
+                raise ValueError
+            chunks_end = offset + size
             begin += _INDEX.size
             indexed = _INDEX_MAP.iter_unpack(data[begin : begin + map_length])
             has_events = any(contents.topics[number] == EVENTS for number, _ in indexed)
@@ -136,36 +166,83 @@ def _read_index(data: bytes) -> Contents:
     return contents
 
 
-def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Message]]:
-    """Return the channels declared in a chunk, and its messages; leave the stream at its end.
+def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Group]]:
+    """Return the channels declared in a chunk, and its messages in groups.
 
     Raises RecordingError if there is no intact chunk.
     """
     stream.seek(offset)
+    head = _head_at(stream.read(_MAX_HEAD), 0)
+    if head is None:
+        raise RecordingError("a chunk is damaged")
+    return _unpacked(stream, offset, head)
+
+
+def _head_at(block: bytes, at: int) -> _Head | None:
+    """Return the head of a chunk, or None if its numbers and its frame cannot be those of one."""
     try:
-        opcode, length = _RECORD.unpack(stream.read(_RECORD.size))
-        if opcode != Opcode.CHUNK or length > MAX_RECORD:
-            raise ValueError
-        chunk = Chunk.read(ReadDataStream(BytesIO(stream.read(length))))
-        size = chunk.uncompressed_size
+        head = _Head(*_CHUNK.unpack_from(block, at))
         is_possible = (
-            chunk.compression == "zstd"
-            and chunk.uncompressed_crc  # 0 would not be checked
-            and _RECORD.size + length == _BEFORE_ZSTD + len(_ZSTD) + 8 + len(chunk.data)
-            and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
-            and zstandard.frame_content_size(chunk.data) == size  # what zstandard allocates
+            head.opcode == Opcode.CHUNK
+            and head.compression == _ZSTD
+            and head.length == _CHUNK.size - _RECORD.size + head.packed
+            and head.length <= MAX_RECORD
+            and head.size <= min(MAX_RECORD, MAX_EXPANSION * (head.length + 128))
+            and head.start <= head.end <= MAX_TIME
+            and head.checksum
         )
-        if not is_possible:
+        if is_possible:
+            frame = block[at + _CHUNK.size : at + _MAX_HEAD]
+            if zstandard.frame_content_size(frame) == head.size:  # what zstandard allocates
+                return head
+    except (struct.error, zstandard.ZstdError):
+        pass
+    return None
+
+
+def _unpacked(stream: BinaryIO, offset: int, head: _Head) -> tuple[list[Channel], list[Group]]:
+    """Return the channels and messages of a chunk whose head has been read."""
+    try:
+        stream.seek(offset + _CHUNK.size)
+        data = zstandard.ZstdDecompressor().decompress(stream.read(head.packed))
+        if zlib.crc32(data) != head.checksum:
             raise ValueError
-        records = breakup_chunk(chunk, validate_crc=True)
-        messages = [record for record in records if isinstance(record, Message)]
-        times = [message.log_time for message in messages]
-        limits = (times[0], times[-1])
-        if times != sorted(times) or limits != (chunk.message_start_time, chunk.message_end_time):
+        channels, groups = _records(data)
+        if (groups[0].log_time, groups[-1].log_time) != (head.start, head.end):
             raise ValueError
     except Exception as error:  # see _read_summary
         raise RecordingError("a chunk is damaged") from error
-    return [record for record in records if isinstance(record, Channel)], messages
+    return channels, groups
+
+
+def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
+    """Return the channels and messages in a chunk's contents, without mcap for speed."""
+    is_message = int(Opcode.MESSAGE)
+    before = _RECORD.size
+    before_payload = _MESSAGE.size
+    declared = []
+    groups: list[Group] = []
+    latest = 0  # ns
+    current = -1  # sequence number
+    at = 0
+    while at < len(data):
+        opcode, length, channel, sequence, log_time, _ = _MESSAGE.unpack_from(data, at)
+        end = at + before + length
+        if opcode == is_message:
+            if log_time < latest:
+                raise ValueError("time runs back")
+            if sequence != current or log_time > latest:
+                latest = log_time
+                current = sequence
+                channels: list[int] = []
+                messages: list[bytes] = []
+                groups.append(Group(sequence, log_time, channels, messages))
+            channels.append(channel)
+            messages.append(data[at + before_payload : end])
+        elif opcode == Opcode.CHANNEL:
+            declared.append(Channel.read(ReadDataStream(BytesIO(data[at + before : end]))))
+        at = end
+    return declared, groups
 
 
 def _search(
@@ -174,17 +251,17 @@ def _search(
     """Find the intact chunks of a file, and by their sequence numbers what is lost between them."""
     contents = Contents(topics)
     sequence = 0  # of the next entry
-    for offset, channels, messages in _intact_chunks(stream):
+    for offset, channels, groups in _intact_chunks(stream, size):
         for channel in channels:
             contents.add(channel)
-        first, last = messages[0], messages[-1]
+        first, last = groups[0], groups[-1]
         missing = (first.sequence - sequence) % (1 << 32)
         sequence = last.sequence + 1
         if missing:
             contents.entries_lost += missing
             contents.damage(f"{missing} entries are lost")
-        channel_ids = {message.channel_id for message in messages}
-        has_events = any(contents.topics.get(number) == EVENTS for number in channel_ids)
+        used = set(chain.from_iterable(group.channels for group in groups))
+        has_events = any(contents.topics.get(number) == EVENTS for number in used)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)
         if progress:
@@ -200,27 +277,31 @@ def _search(
     return contents
 
 
-def _intact_chunks(stream: BinaryIO) -> Iterator[tuple[int, list[Channel], list[Message]]]:
-    """Yield offset, channels and messages of each intact chunk."""
-    offset = 0
-    while True:
-        stream.seek(offset)
+def _intact_chunks(stream: BinaryIO, size: int) -> Iterator[tuple[int, list[Channel], list[Group]]]:
+    """Yield offset, channels and messages of each intact chunk.
+
+    It ends early when as many bytes as the file has were read for chunks that are not intact.
+    """
+    in_vain = 0
+    begin = 0  # of the next block
+    while begin < size and in_vain <= size:
+        stream.seek(begin)
         block = stream.read(_BLOCK)
-        at = block.find(_ZSTD, _BEFORE_ZSTD)
-        if at < 0:
-            if len(block) < _BLOCK:
-                return
-            offset += _BLOCK - _BEFORE_ZSTD - len(_ZSTD) + 1
-            continue
-        offset += at - _BEFORE_ZSTD
-        try:
-            channels, messages = read_chunk(stream, offset)
-        except RecordingError:
-            offset += 1
-            continue
-        end = stream.tell()
-        yield offset, channels, messages
-        offset = end
+        following = begin + _BLOCK - _MAX_HEAD  # a head is whole in one of two blocks
+        at = -1
+        while (at := block.find(_ZSTD, at + 1 + _BEFORE_ZSTD) - _BEFORE_ZSTD) >= 0:
+            head = _head_at(block, at)
+            if head is None:
+                continue
+            try:
+                channels, groups = _unpacked(stream, begin + at, head)
+            except RecordingError:
+                in_vain += head.packed
+                continue
+            yield begin + at, channels, groups
+            following = begin + at + _RECORD.size + head.length
+            break
+        begin = following
 
 
 def _checksum(stream: BinaryIO, size: int) -> int:

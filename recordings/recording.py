@@ -6,13 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from io import SEEK_END
-from itertools import groupby
 from math import inf
 from operator import attrgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, Self
-
-from mcap.records import Message
 
 from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
@@ -24,11 +21,11 @@ from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
     decode_event,
-    decode_reading,
+    decode_readings,
     topics_of,
 )
 from pendu_tui.recordings.library import open_file
-from pendu_tui.recordings.reader import Contents, ShowProgress, read_chunk, read_contents
+from pendu_tui.recordings.reader import Contents, Group, ShowProgress, read_chunk, read_contents
 
 CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two
 
@@ -52,6 +49,10 @@ class Run:
     steps: int = 0  # at its last sample
     t: float = 0.0  # s, simulated, at its last sample
     events: list[tuple[float, Event]] = field(default_factory=list)  # each with its clock [s]
+    topics: tuple[str, ...] = ()  # of its samples
+
+    def __post_init__(self) -> None:
+        self.topics = topics_of(self.scene)
 
     @property
     def inputs(self) -> int:
@@ -86,6 +87,7 @@ class Recording:
         self._topics = contents.topics
         self._models: dict[str, str] = {}  # by topic
         self._others = 0  # entries that are no samples, in chunks with events
+        self._topics_of = lru_cache(maxsize=32)(self._named)
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._find_runs()
         self.runs = list(self._runs.values())
@@ -216,10 +218,10 @@ class Recording:
         place = self._places[chunk]
         gap = [Entry(_clock(place.start), None)]
         try:
-            _, messages = read_chunk(self._stream, place.offset)
-            if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
+            _, groups = read_chunk(self._stream, place.offset)
+            if (groups[0].log_time, groups[-1].log_time) != (place.start, place.end):
                 raise RecordingError("a chunk differs from its entry in the summary")
-            entries = list(self._decoded(messages, only_events))
+            entries = list(self._decoded(groups, only_events))
             if place.is_after_gap:
                 return gap + entries
             return entries
@@ -228,23 +230,22 @@ class Recording:
             self.reason = self.reason or str(error)
             return gap
 
-    def _decoded(self, messages: list[Message], only_events: bool) -> Iterator[Entry]:
+    def _decoded(self, groups: list[Group], only_events: bool) -> Iterator[Entry]:
         """Yield the entries of a chunk, without those of runs whose start is lost.
 
         Messages of unknown topics are skipped.  Raises RecordingError for impossible ones.
         """
-        for _, group in groupby(messages, attrgetter("sequence")):
-            parts = list(group)
-            clock = _clock(parts[0].log_time)
-            topics = tuple(self._topics.get(part.channel_id, "") for part in parts)
+        for _, log_time, channels, data in groups:
+            clock = _clock(log_time)
+            topics = self._topics_of(tuple(channels))
             is_sample = topics[0] in self._models
             if only_events and not is_sample:
                 self._others += 1
             value: Event | Sample
             if topics == (EVENTS,):
-                value = self._event(parts[0].data, clock)
+                value = self._event(data[0], clock)
             elif is_sample and not only_events:
-                value = self._sample(parts, topics)
+                value = self._sample(data, topics)
             else:
                 continue
             if value.run in self._runs:
@@ -268,13 +269,14 @@ class Recording:
                 raise RecordingError(why) from error
         return event
 
-    def _sample(self, parts: list[Message], topics: tuple[str, ...]) -> Sample:
-        model = self._models[topics[0]]
-        decoded = [decode_reading(part.data, model) for part in parts]
-        run, step, t, _ = decoded[0]
-        if run in self._runs and topics != topics_of(self._runs[run].scene):
+    def _sample(self, data: list[bytes], topics: tuple[str, ...]) -> Sample:
+        sample = decode_readings(data, self._models[topics[0]])
+        if sample.run in self._runs and topics != self._runs[sample.run].topics:
             raise RecordingError("a sample is incomplete")
-        return Sample(run, step, t, tuple(reading for *_, reading in decoded))
+        return sample
+
+    def _named(self, channels: tuple[int, ...]) -> tuple[str, ...]:
+        return tuple(self._topics.get(channel, "") for channel in channels)
 
 
 def _as_recorded(clock: float) -> int:

@@ -11,13 +11,14 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
+from pendu_tui.engine.quantities import EXTREMES
 from pendu_tui.engine.run import NUMERICS
 from pendu_tui.engine.run.compiled import TieredLoops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.recordings.errors import RecordingError, named
 from pendu_tui.recordings.events import Event, check_present
-from pendu_tui.recordings.fields import EXTREMES, differences
+from pendu_tui.recordings.fields import differences
 from pendu_tui.recordings.reader import ShowProgress
 from pendu_tui.recordings.recording import Recording, Run
 

@@ -14,7 +14,7 @@ FIELDS = Path(__file__).with_name("json_fields.json")
 
 COMMANDS = {
     "accuracy": "accuracy --time 2 --h-values 0.1:0.01:3 --target 1e-2",
-    "accuracy --cost seconds --budget": "accuracy --time 2 --h-values 0.1:0.01:2 --cost seconds --budget 1e3",
+    "accuracy --cost seconds": "accuracy --time 2 --h-values 0.1:0.01:2 --cost seconds --methods taylor,rk4",
     "accuracy --all": "accuracy --all --time 2 --h-values 0.4:0.01:4 --target 1e-3",
     "stability": "stability --steps 30 --z-values 0.5,2.5 --theta-values 1,2",
     "stability --scene linear": "stability --scene linear",

@@ -24,7 +24,7 @@ class Cheapest:
 
 
 def cost_of(point: Point, cost: Cost) -> float:
-    """Return the cost of a run; 0 for an untimed run or the force evaluations of a series."""
+    """Return the cost of a run; 0 if it is not timed, or has no force evaluations."""
     if cost == "seconds":
         return point.seconds or 0.0
     return point.force_evaluations

@@ -1,4 +1,4 @@
-"""Recommend a method and h: the cheapest for a target, or the most accurate within a budget.
+"""Recommend a method and h: the cheapest for a target.
 
 Each recommended run was made, and compared with the exact motion more often than in the search.
 """
@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 from pendu_tui.engine.accuracy.study import (
     FITTED_BELOW,
-    REASONS,
     Clock,
     ErrorKind,
     Point,
@@ -59,7 +58,6 @@ def least_cost(
     study: Study,
     kind: ErrorKind,
     target: float,
-    budget: int | None = None,
     show: Callable[[float], None] = lambda share: None,
     clock: Clock | None = None,
     loops: LoopsOf = PlainLoops,
@@ -75,7 +73,7 @@ def least_cost(
             f"a target of {target:g} is as large as the swing; use less than {size:g}."
         )
     attempts: list[Attempt] = []
-    for attempt in reach(study, kind, target, budget or MAX_EVALUATIONS):
+    for attempt in reach(study, kind, target):
         if clock and attempt.point and attempt.succeeded:
             attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
         attempts.append(attempt)
@@ -95,23 +93,6 @@ def _cost(attempt: Attempt) -> float:
     return attempt.point.seconds or attempt.point.force_evaluations
 
 
-def least_error(
-    study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None] = lambda share: None
-) -> Advice:
-    """Return each method's most accurate run within a budget; of equal errors, the cheaper one."""
-    attempts: list[Attempt] = []
-    for method in study.scene.cast:
-        attempts.append(_spend(study, method, kind, budget))
-        show(len(attempts) / len(study.scene.cast))
-
-    def error(attempt: Attempt) -> tuple[float, float]:
-        if attempt.point is None or not attempt.succeeded:
-            return math.inf, math.inf
-        return attempt.point.error(kind), attempt.point.force_evaluations
-
-    return Advice(study.time, sorted(attempts, key=error))
-
-
 def reach(
     study: Study, kind: ErrorKind, target: float, most: int = MAX_EVALUATIONS
 ) -> Iterator[Attempt]:
@@ -122,34 +103,15 @@ def reach(
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
         if attempt.point and attempt.succeeded:
-            most = min(most, MAX_TIMES * attempt.point.force_evaluations)
+            most = min(most, MAX_TIMES * attempt.point.steps * _work(method))
         yield attempt
-
-
-def _spend(study: Study, method: Method, kind: ErrorKind, budget: int) -> Attempt:
-    steps = _affordable(study, method, budget)
-    if not steps:
-        return Attempt(method, None, _no_h(budget))
-    point = study.run(method, steps, CONFIRMING_COMPARISONS)
-    while point.flaw(kind) == "rounding" and steps > 1:  # fewer steps round less often
-        steps //= 2
-        coarser = study.run(method, steps, CONFIRMING_COMPARISONS)
-        if coarser.error(kind) > point.error(kind):
-            break
-        point = coarser
-    flaw = point.flaw(kind)
-    if flaw in ("lost", "diverged"):
-        return Attempt(method, point, REASONS[flaw])
-    return Attempt(method, point)
 
 
 def _affordable(study: Study, method: Method, budget: int) -> int:
     """Return the most steps for so many evaluations; 0 if that leaves no usable h."""
     smallest = REFINED * Z_LIMITS[0] / study.scene.w0
     largest = Z_LIMITS[1] / study.scene.w0
-    steps = min(
-        (budget - method.first_same_as_last) // method.force_evaluations, int(study.time / smallest)
-    )
+    steps = min((budget - method.first_same_as_last) // _work(method), int(study.time / smallest))
     if steps * largest < study.time:
         return 0
     return steps
@@ -181,7 +143,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         if flaw == "rounding":
             factor = 2.0
         elif flaw is None:  # the order of the method predicts the steps
-            needed = (point.error(kind) / target) ** (1 / method.order)
+            needed = (point.error(kind) / target) ** (1 / max(1, method.order))
             if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
                 about = method.evaluations(round(needed * steps))
                 return Attempt(method, point, f"needs about {about:.1e} evaluations")
@@ -213,9 +175,13 @@ def _confirmed(
     return Attempt(method, point, _not_within(point))
 
 
+def _work(method: Method) -> int:
+    """Return the force evaluations of a step; a term of a series takes about as long as one."""
+    return method.force_evaluations or method.order
+
+
 def _no_h(most: int) -> str:
-    unit = "evaluation" if most == 1 else "evaluations"
-    return f"no usable h within {most} {unit}"
+    return f"no usable h within {most} evaluations"
 
 
 def _not_within(point: Point) -> str:

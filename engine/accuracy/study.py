@@ -59,7 +59,6 @@ class Point:
     flaws: Flaws
     seconds: float | None = None  # the shortest of five runs without comparisons
     spread: float | None = None  # relative excess of the longest
-    tolerance: float | None = None  # rad/s, of a series: it has no h and no force evaluations
     counted: int | None = None  # force evaluations, where they vary
 
     @property

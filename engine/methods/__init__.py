@@ -10,6 +10,8 @@ import copyreg
 import re
 import unicodedata
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from itertools import groupby
 
 from pendu_tui.engine.methods import (
     adaptive,
@@ -26,6 +28,8 @@ from pendu_tui.engine.methods import (
 from pendu_tui.engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
 from pendu_tui.engine.methods.method import Method as Method
 from pendu_tui.engine.methods.runge_kutta import RK4
+from pendu_tui.engine.methods.taylor import TAYLOR_20 as TAYLOR_20
+from pendu_tui.engine.methods.taylor import WHY_NOT
 from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
 
 Cast = tuple[Method, ...]
@@ -57,6 +61,36 @@ def method_of(key: str) -> Method:
     return _BY_KEY[key]
 
 
+def named(name: str, methods: Sequence[Method] = METHODS, model: str | None = None) -> Method:
+    """Return the method with a name, or whose key, or a word in it, starts like this.
+
+    Raises ValueError with a sentence, which suggests methods for the model if it is given.
+    """
+    found = matching(name, methods)
+    if len(found) == 1:
+        return found[0]
+    if found:
+        keys = " or ".join(method.key for method in found)
+        raise ValueError(f"{name!r} may be {keys}; write more of it.")
+    if matching(name, (TAYLOR_20,)):
+        raise ValueError(f"{WHY_NOT}.")
+    suited = [method for method in methods if model is None or model in method.models]
+    known = {simplified(each): method.key for method in suited for each in method.names}
+    near = get_close_matches(simplified(name)[:200], known, n=1)
+    families = groupby([method.key for method in suited], family_of)
+    listed = [f"{family}: {', '.join(keys)}" for family, keys in families]
+    advice = f": choose from {'; '.join(listed)}."
+    if near:
+        advice = f": did you mean {known[near[0]]}?"
+    raise ValueError(f"there is no method {name!r}{advice}")
+
+
+def family_of(key: str) -> str:
+    """Return a method's family."""
+    found = (name for name, some in FAMILIES.items() if key in [each.key for each in some])
+    return next(found, "your own")
+
+
 def matching(name: str, methods: Sequence[Method] = METHODS) -> list[Method]:
     """Return the one method of this name, or those in whose keys a word starts with it.
 
@@ -85,7 +119,7 @@ def simplified(name: str) -> str:
     return " ".join(re.findall(r"[a-z0-9]+", letters.encode("ascii", "ignore").decode()))
 
 
-_BY_KEY = {method.key: method for method in METHODS}
+_BY_KEY = {method.key: method for method in (*METHODS, TAYLOR_20)}
 
 
 def _by_key(method: Method) -> tuple[Callable[[str], Method], tuple[str]]:

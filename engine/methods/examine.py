@@ -2,6 +2,7 @@
 
 import math
 from itertools import islice
+from linecache import getlines
 from typing import Any, cast
 
 import numpy as np
@@ -12,13 +13,15 @@ from pendu_tui.engine.methods.own import (
     MAX_SOURCE,
     OwnMethod,
     OwnMethodError,
+    guarded,
     own_method,
     own_phases,
 )
 from pendu_tui.engine.models.model import Phase
 
 H = 0.05  # s
-STEPS = 6
+STEPS = 80
+CUT = 37  # steps; a prime, so that a method that counts to a round number of up to 40 shows it
 SAME = 1e-9  # relative; rounding differs by far less, wrong numbers by far more
 
 
@@ -44,6 +47,21 @@ def examined(source: str, key: str, file: str) -> Measured:
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
 
 
+def properties(function: Phases) -> Measured:
+    """Return the properties of a generator function (force, phase, h), examined.
+
+    Raises OwnMethodError.
+    """
+    name = getattr(function, "__name__", "step")
+    file = getattr(getattr(function, "__code__", None), "co_filename", name)
+    phases = guarded(function, name, "".join(getlines(file)), file)
+    try:
+        _examine(phases, name)
+        return measured(phases)
+    except (ValueError, ArithmeticError) as error:
+        raise OwnMethodError(f"{name} overflows on an ordinary swing ({error}).") from None
+
+
 def _examine(phases: Phases, who: str) -> None:
     force = PENDULUM.force()
     path = _path(phases, START)
@@ -53,11 +71,11 @@ def _examine(phases: Phases, who: str) -> None:
         raise OwnMethodError(
             f"{who} gives other numbers when it is run again; a method must give the same bits."
         )
-    middle = after(phases, force, START, H, STEPS // 2)
-    if after(phases, force, middle, H, STEPS - STEPS // 2) != path[-1]:
+    middle = after(phases, force, START, H, CUT)
+    if after(phases, force, middle, H, STEPS - CUT) != path[-1]:
         raise OwnMethodError(
             f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from "
-            f"two times {STEPS // 2}; a run is cut anywhere, so start from theta and omega alone."
+            f"{CUT} and {STEPS - CUT}; a run is cut anywhere, so start from theta and omega alone."
         )
     if not evaluations(phases)[0] > 0:
         raise OwnMethodError(f"{who} never evaluates the force.")

@@ -22,18 +22,46 @@ LARGE_H = 0.2  # s; with small steps a high order hides a change of area, or a m
 WIDEST_Z = 16  # of the search for a limit
 RUNGS = 2048  # in each 1 of z: they are two thirds of the narrowest gap apart, BM6's
 NO_LIMIT_BELOW = 0.1  # z, below which some unstable methods grow by less than rounding
+SMALL_ERROR = 0.1  # rad; larger ones are not yet proportional to a power of h
+LOWEST_ORDER = 0.5  # half-way between an error that falls like h and one that stays
 LINEAR_ROUNDING = 3e-13  # of a linear step; the limit moves by up to a thousand times as much
 
 
 class Measured(NamedTuple):
     """The measured properties of a method."""
 
-    order: float | None  # over half a period; None: its errors do not fall like a power of h
+    order: float | None  # the slope of log error over log h; None: no error is ever small
     force_evaluations: float  # a step, on average over many
     more_at_the_start: int  # force evaluations
     symplectic: bool
     reversible: bool
     linear_limit: float  # z; 0: none; inf: none found up to WIDEST_Z
+
+    def __str__(self) -> str:
+        limit = {math.inf: "at any h", 0.0: "at no h"}.get(self.linear_limit)
+        return "\n".join(
+            (
+                f"order             {no_order(self.order) or f'{self.order:.3f}'}",
+                f"force evaluations {self.force_evaluations:.3g} per step",
+                f"symplectic        {yes(self.symplectic)}",
+                f"reversible        {yes(self.reversible)}",
+                f"stable            {limit or f'up to z = h·w0 = {self.linear_limit:.4g}'} (small swings)",
+            )
+        )
+
+
+def no_order(order: float | None) -> str:
+    """Return why a method has no order, a clause; "" if it has one."""
+    if order is None:
+        return f"no order: its error stays above {SMALL_ERROR:g} rad, it solves another equation"
+    if order < LOWEST_ORDER:
+        return f"order {order:.3f}: the error does not fall with h, it solves another equation"
+    return ""
+
+
+def yes(value: bool) -> str:
+    """Return a property as a word."""
+    return "yes" if value else "no"
 
 
 def measured(phases: Phases) -> Measured:
@@ -53,9 +81,9 @@ def after(phases: Phases, force: Force, phase: Phase, h: Any, steps: int) -> Pha
 
 
 def order(phases: Phases) -> float | None:
-    """Return the slope of log theta error over log h, over half a period.
+    """Return the slope of log theta error over log h, over half a period, of the smallest six h.
 
-    Over longer times the loss of energy adds a power of its own, and RK4 reads 5 to 6.6.
+    None: fewer than three h have an error below SMALL_ERROR that is no rounding.  Over longer times the loss of energy adds a power of its own, and RK4 reads 5 to 6.6.
     """
     exact = PENDULUM.exact(*START)
     force = PENDULUM.force()
@@ -66,16 +94,15 @@ def order(phases: Phases) -> float | None:
         largest = 0.0
         for step, phase in enumerate(islice(phases(force, START, half / steps), steps), 1):
             largest = max(largest, abs(phase[0] - exact.at(step * half / steps).theta))
-            if not largest < 0.1:  # rad: not yet proportional to a power of h, or nan
+            if not largest < SMALL_ERROR:  # or nan
                 break
         if largest <= 1e-14 * steps:  # rad: rounding
             break
-        if largest < 0.1:
+        if largest < SMALL_ERROR:
             points.append((math.log(half / steps), math.log(largest)))
     if len(points) < 3:
         return None
-    slope = linear_regression(*zip(*points[-6:], strict=True)).slope
-    return slope if slope > 0.5 else None
+    return linear_regression(*zip(*points[-6:], strict=True)).slope
 
 
 def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:

@@ -1,8 +1,8 @@
 """A method and its claims."""
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -40,8 +40,8 @@ class Method:
     hue: int | None = None  # its number on every palette; None: the next free one of the cast
     phases: Phases
     formula: str
-    order: int  # global order on the nonlinear pendulum, over at most one period
-    force_evaluations: int  # a step
+    order: int  # global order on the nonlinear pendulum, over at most one period; 0: none
+    force_evaluations: int  # a step; 0: a series, which has none to count
     # the last force of a step is the first of the next, so a run needs one more at its start
     first_same_as_last: bool = False
     symplectic: bool = False  # the step's Jacobian has determinant 1
@@ -56,7 +56,8 @@ class Method:
     takes_parts: bool = False  # `phases` takes the parts of its model, not a force
     # (rates, phase, h) -> phases: the same method for first-order systems
     on_rates: Callable[[Rates, Phase, float], Iterator[Phase]] | None = None
-    on_spring: Phases | None = None  # the same method with the parts of a spring
+    # the same method with the parts of a model, by its key
+    on_parts: Mapping[str, Phases] = field(default_factory=dict, hash=False)
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
@@ -87,11 +88,7 @@ class Method:
 
     def phases_from_parts(self, model: Model) -> Phases | None:
         """Return its phases if it takes the parts of this model."""
-        if self.takes_parts:
-            return self.phases
-        if model.key == "spring":
-            return self.on_spring
-        return None
+        return self.phases if self.takes_parts else self.on_parts.get(model.key)
 
     def step(self, force: Any, phase: Phase, h: float) -> Phase:
         """Return the phase after one step of h [s]."""

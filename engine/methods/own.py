@@ -84,7 +84,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: "Measure
         letter=letter,
         phases=phases,
         formula=(phases.__doc__ or "").strip().partition("\n")[0],
-        order=max(1, round(measured.order or 1)),
+        order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),
         first_same_as_last=measured.more_at_the_start > 0,
         symplectic=measured.symplectic,
@@ -124,10 +124,28 @@ def own_phases(source: str, name: str, file: str) -> Phases:
         if functions := [key for key in others if key[:1] != "_"]:
             why += f"; it has {', '.join(functions[:6])}"
         raise OwnMethodError(f"{why}.")
-    return _guarded(function, name, source, file)
+    return guarded(function, name, source, file)
 
 
-def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
+def _check_caught(tree: ast.AST, file: str) -> None:
+    """Raise OwnMethodError for code that would catch KeyboardInterrupt and TooLongError."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.ExceptHandler(type=None) | ast.Name(id="BaseException"):
+                where = f"{file}, line {node.lineno}"
+                raise OwnMethodError(f"{where}: this would catch Ctrl+C; use Exception.")
+
+
+class _PrintedError(Exception): ...
+
+
+def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
+    if file is None:
+        raise _PrintedError
+    print(*values, file=file, **settings)
+
+
+def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
     """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
     where = file
     if code := getattr(function, "__code__", None):

@@ -9,7 +9,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from pendu_tui.engine.models.model import (
-    EnergyError,
     EnergyReference,
     ExactMotion,
     Force,
@@ -22,6 +21,7 @@ from pendu_tui.engine.models.model import (
 )
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
+from pendu_tui.engine.quantities import ENERGY_ERROR, Chart, Head
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
 
@@ -47,11 +47,13 @@ class DampedPendulum(Pendulum):
     )
     second_order = False
     has_separatrix = False
-    energy_error = EnergyError(
-        conserved=False,
-        symbol="ln E/Et",
-        name="ln(E/E_true)",
-        about="the logarithm of the energy over that of the exact motion, which loses energy, too",
+    conserves_energy = False
+    error = ENERGY_ERROR._replace(
+        label="ln(E/E_true)",
+        head=Head("ln E/Et", 8, "ln E/Et", 8),
+        sentence="the logarithm of the energy over that of the exact motion, which loses energy, "
+        "too",
+        chart=Chart("ln(E/E_true)", "|ln(E/E_true)|"),
     )
     caption = "curves of equal energy; damped motion crosses them inwards"
     without_force = "Maps and studies are for a pendulum that keeps its energy; friction takes it."

@@ -10,11 +10,9 @@ modulo 2K; library routines that take m = k² lose every digit where 1 - m < 1e-
 import math
 from collections.abc import Callable
 from decimal import Context, Decimal, localcontext
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from pendu_tui.engine.models.model import ExactMotion, State
-
-Compile = Callable[[Callable[..., Any]], Any]
 
 
 class _Start(NamedTuple):
@@ -23,10 +21,8 @@ class _Start(NamedTuple):
     w0: float  # rad/s
 
 
-def exact_pendulum(
-    w0_squared: float, theta: float, omega: float, compile: Compile = lambda function: function
-) -> ExactMotion:
-    """Return the exact motion from theta [rad] and omega [rad/s]; `compile` may be numba.njit."""
+def exact_pendulum(w0_squared: float, theta: float, omega: float) -> ExactMotion:
+    """Return the exact motion from theta [rad] and omega [rad/s]."""
     start = _Start(theta, omega, math.sqrt(w0_squared))
     with localcontext(Context(prec=100)):
         k_squared = _k_squared(theta, omega, w0_squared)
@@ -34,12 +30,12 @@ def exact_pendulum(
         k = float(k_squared.sqrt())
         k_prime = float(abs(d).sqrt())
     if k == 0:
-        return ExactMotion(compile(lambda t: State(theta, omega)), "equilibrium")
+        return ExactMotion(lambda t: State(theta, omega), "equilibrium")
     if d > 0:
-        return _libration(start, k, k_prime, compile)
+        return _libration(start, k, k_prime)
     if d < 0:
-        return _rotation(start, k, k_prime, compile)
-    return ExactMotion(compile(_separatrix(start)), "separatrix")
+        return _rotation(start, k, k_prime)
+    return ExactMotion(_separatrix(start), "separatrix")
 
 
 def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
@@ -67,13 +63,12 @@ def _half_angle(start: _Start) -> tuple[float, float, float]:
     return s, c, turns * math.tau
 
 
-def _libration(start: _Start, k: float, k_prime: float, compile: Compile) -> ExactMotion:
+def _libration(start: _Start, k: float, k_prime: float) -> ExactMotion:
     """theta = 2 atan2(k sn u, dn u), omega = 2 w0 k cn u, u = w0 t + F(phi0), T = 4 K/w0."""
     w0 = start.w0
     s, c, turns = _half_angle(start)
     cn0 = start.omega / (2 * w0) / k
-    quarter, plain_sn_cn = _jacobi(k_prime)
-    sn_cn = compile(plain_sn_cn)
+    quarter, sn_cn = _jacobi(k_prime)
     offset = s / k * _carlson_rf(cn0 * cn0, c * c, 1.0)  # 1 - k² sn² = c², which cannot cancel
     if cn0 < 0:
         offset = 2 * quarter - offset
@@ -88,10 +83,10 @@ def _libration(start: _Start, k: float, k_prime: float, compile: Compile) -> Exa
         dn = math.hypot(k_prime, k * cn)
         return State(turns + 2 * math.atan2(k * sn, dn), 2 * w0 * k * cn)
 
-    return ExactMotion(compile(motion), "libration", 4 * quarter / w0)
+    return ExactMotion(motion, "libration", 4 * quarter / w0)
 
 
-def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> ExactMotion:
+def _rotation(start: _Start, k: float, k_prime: float) -> ExactMotion:
     """theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k).
 
     u = k w0 t + F(±theta0/2); a turn takes 2 K(1/k)/(k w0).
@@ -100,8 +95,7 @@ def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> Exac
     rate = start.w0 * k
     s, c, turns = _half_angle(start)
     dn0 = start.omega / (2 * rate)
-    quarter, plain_sn_cn = _jacobi(k_prime / k)
-    sn_cn = compile(plain_sn_cn)
+    quarter, sn_cn = _jacobi(k_prime / k)
     offset = direction * s * _carlson_rf(c * c, dn0 * dn0, 1.0)
 
     def motion(t: float) -> State:
@@ -112,7 +106,7 @@ def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> Exac
         dn = math.hypot(k_prime, cn) / k
         return State(turns + direction * angle, direction * 2 * rate * dn)
 
-    return ExactMotion(compile(motion), "rotation", 2 * quarter / rate)
+    return ExactMotion(motion, "rotation", 2 * quarter / rate)
 
 
 def _separatrix(start: _Start) -> Callable[[float], State]:

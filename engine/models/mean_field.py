@@ -25,9 +25,9 @@ from pendu_tui.engine.models.model import (
     Rates,
     Sine,
     State,
-    Variable,
 )
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
+from pendu_tui.engine.quantities import Chart, Quantity
 
 STEP = 0.4  # of the reference, times the fastest frequency
 
@@ -58,14 +58,13 @@ class MeanField(Model):
     second_order = False
     counted_parts = ("kick",)
     variables = (
-        Variable("sx", about="of the Bloch vector"),
-        Variable("sy", about="of the Bloch vector"),
-        Variable("sz", about="of the Bloch vector"),
-        Variable(
+        Quantity("sx", about="of the Bloch vector"),
+        Quantity("sy", about="of the Bloch vector"),
+        Quantity("sz", about="of the Bloch vector"),
+        Quantity(
             "probability_error",
             about="length of the Bloch vector - 1, which the true motion keeps at 0",
-            label="probability error",
-            is_state=False,
+            chart=Chart("probability error"),
         ),
     )
     extra_columns = (

@@ -5,6 +5,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
+from pendu_tui.engine.quantities import CHARTED, ENERGY_ERROR, Quantity
+
 Number = Any  # float, complex, NumPy array or mpmath number
 
 Phase = tuple[Number, ...]
@@ -30,17 +32,6 @@ class State(NamedTuple):
 
     theta: float  # rad from the downward vertical, unwrapped
     omega: float  # rad/s
-
-
-class Variable(NamedTuple):
-    """A number in a model's readings besides angle, angular velocity and energy."""
-
-    name: str  # in recordings, JSON and --fail-if
-    unit: str = ""
-    about: str = ""
-    label: str = ""  # the title of its chart, if it is not a part of the state
-    is_state: bool = True  # a component of the phase, else a function of it that charts can show
-    relative: bool = False  # to its value at the start of the run
 
 
 class Parameter(NamedTuple):
@@ -106,18 +97,6 @@ class ExactMotion(NamedTuple):
     accuracy: float = 0.0  # rad, largest error of theta in the first minute; 0: closed form
 
 
-class EnergyError(NamedTuple):
-    """What a model's energy errors are, and their names on screen."""
-
-    conserved: bool = True  # by the true motion; errors are relative to the start's energy
-    symbol: str = "dE/E0"
-    name: str = "energy error"
-    about: str = (
-        "the energy error over the start's energy. The exact pendulum keeps its energy, so this is "
-        "all error"
-    )
-
-
 class Model(ABC):
     """Equations of motion: a frozen dataclass of their parameters.
 
@@ -132,9 +111,10 @@ class Model(ABC):
     second_order: ClassVar[bool] = True  # theta'' = force(theta)
     counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, as force evaluations
     rigid: ClassVar[bool] = True  # the bob stays at one distance from the pivot
-    variables: ClassVar[tuple[Variable, ...]] = ()
+    variables: ClassVar[tuple[Quantity, ...]] = ()  # besides those of QUANTITIES
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
-    energy_error: ClassVar[EnergyError] = EnergyError()
+    conserves_energy: ClassVar[bool] = True  # else energy errors are ln(E/E_true)
+    error: ClassVar[Quantity] = ENERGY_ERROR  # its energy error
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
     caption: ClassVar[str] = ""  # of a phase portrait that does not follow curves of equal energy
@@ -144,9 +124,10 @@ class Model(ABC):
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
 
     @classmethod
-    def quantities(cls) -> tuple[Variable, ...]:
-        """Return the variables that charts can show."""
-        return tuple(each for each in cls.variables if not each.is_state)
+    def charted(cls) -> tuple[Quantity, ...]:
+        """Return the quantities that charts can show, the energy error first."""
+        own = (each for each in cls.variables if each.chart.title)
+        return cls.error, *own, *CHARTED[1:]
 
     @property
     def w0(self) -> float:

@@ -23,9 +23,9 @@ from pendu_tui.engine.models.model import (
     Phase,
     Sine,
     State,
-    Variable,
 )
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
+from pendu_tui.engine.quantities import Chart, Quantity
 
 STEP = 0.1  # of the reference, times the spring's frequency
 
@@ -54,15 +54,14 @@ class Spring(Model):
     turns = False  # the angle follows from the position, so it is within ±pi
     parameters = (Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),)
     variables = (
-        Variable("x", about="over the length at rest"),
-        Variable("y", about="likewise, upwards from the pivot"),
-        Variable("vx", "s⁻¹"),
-        Variable("vy", "s⁻¹"),
-        Variable(
+        Quantity("x", about="over the length at rest"),
+        Quantity("y", about="likewise, upwards from the pivot"),
+        Quantity("vx", "s⁻¹"),
+        Quantity("vy", "s⁻¹"),
+        Quantity(
             "spring_energy",
             about="over that at the start",
-            label="spring energy (1 at start)",
-            is_state=False,
+            chart=Chart("spring energy (1 at start)"),
             relative=True,
         ),
     )

@@ -34,6 +34,12 @@ class CompiledLoops(NamedTuple):
     advance: Callable[[Phase, float, int, float], Advanced]
 
 
+class Series(NamedTuple):
+    """What a series takes of the model."""
+
+    w0_squared: float
+
+
 def compiled(method: Method, model: Model) -> Loops:
     """Return the method's loops on this model, compiled; its parameters become constants.
 
@@ -49,13 +55,14 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     from pendu_tui.engine.methods.own import OwnMethod  # slow to import
 
     numba: Any = import_module("numba")
+    is_series = not method.force_evaluations
     general = method.general and not model.without_force and not isinstance(method, OwnMethod)
-    if not general or not _same_sine(numba):
+    if not (general or is_series) or not _same_sine(numba):
         return None
     # functions that Python never calls compile twice as fast without wrappers
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = inner(compilable(method.phases))
-    force = inner(model.force())
+    force = Series(model.w0_squared) if is_series else inner(model.force())
     energy = inner(model.energy())
     propagate = inner(_propagate)
     advance = inner(loops.advance)

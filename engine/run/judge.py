@@ -56,7 +56,7 @@ class Judge:
         self._start_error = 0.0  # at the first look point; bands are relative to it
         self._bin_steps = max(limits.MIN_BIN_STEPS, round(period / self._h))  # at first
         self._bands = Bands(self._bin_steps)
-        self._conserved = model.energy_error.conserved  # else errors are ln(E/E_true)
+        self._conserved = model.conserves_energy  # else errors are ln(E/E_true)
         self._epsilon = method.epsilon
         self._min_energy = (limits.MIN_AMPLITUDE * method.epsilon * model.w0) ** 2  # s⁻²
         # the band of an error that beats with the steps may leave the start and come back

@@ -4,7 +4,6 @@ from pendu_tui.engine.scenes.listed import DEFAULT_SCENE, GROUPS, SCENES
 from pendu_tui.engine.scenes.scene import (
     LIMITS,
     MAX_METHODS,
-    QUANTITIES,
     UNITS,
     Z_LIMITS,
     Line,
@@ -19,7 +18,6 @@ __all__ = [
     "GROUPS",
     "LIMITS",
     "MAX_METHODS",
-    "QUANTITIES",
     "SCENES",
     "UNITS",
     "Z_LIMITS",

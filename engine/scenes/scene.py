@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from pendu_tui.engine.models.model import ExactMotion, Model
+from pendu_tui.engine.quantities import ENERGY_ERROR
 
 LIMITS = {  # inclusive; a value beyond is a typo
     "theta": (-1e9, 1e9),
@@ -24,7 +25,6 @@ UNITS = {
     "h": "s",
     **{name: parameter.unit for name, parameter in PARAMETERS.items()},
 }
-QUANTITIES = ("energy_error", "theta_error", "shadow_error", "energy")
 MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
@@ -65,7 +65,7 @@ class Shot:
 
     view: str = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
-    quantity: str = "energy_error"  # of the chart
+    quantity: str = ENERGY_ERROR.name  # of the chart
     log: bool = True
     seconds: float | None = None  # of the chart; None: all
     line: Line | None = None
@@ -165,7 +165,8 @@ class Scene:
         """Why studies and maps do not apply to this scene, as a sentence; "" if they do."""
         if why := self.equations.without_force:
             return why
-        names = ", ".join(method.label for method in self.cast if not method.general)
+        counted = [method for method in self.cast if method.force_evaluations]
+        names = ", ".join(method.label for method in counted if not method.general)
         return names and f"Maps and studies are for methods that take any force, not for {names}."
 
     @property

@@ -23,6 +23,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.dispatch import COMMANDS
 from tests.tui.command_line import own_method
 
+ROOT = Path(__file__).resolve().parent.parent.parent
 PROCESSES = os.cpu_count() or 1
 
 COMMAND_LINES = [
@@ -104,7 +105,11 @@ VIEWS = {
 SIZES = ((60, 16), (80, 24), (120, 40))
 
 MASKS = (
-    (r"\b20\d\d-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d)?(?:\.\d+)?(?:Z|[+-]\d\d:\d\d)?)?", "<date>"),
+    (
+        r"\b20\d\d-\d\d-\d\d(?:[T ]\d\d[:-]\d\d(?:[:-]\d\d)?(?:\.\d+)?(?:Z|[+-]\d\d:\d\d)?)?",
+        "<date>",
+    ),
+    (r"(?m)^\d+\.\d\d s: energy errors .*$", "<what a running player says every few seconds>"),
     (r"\bin (?:\d+ min )?\d+(?:\.\d+)? m?s\b", "in <wall>"),
     (r'("(?:wall_seconds|seconds|elapsed|seconds_per_step|wall)": )[-+.\de]+', r"\1<wall>"),
     (r"\b\d+(?:\.\d+)? [kM]?B\b", "<size>"),
@@ -127,7 +132,7 @@ def prepare(folder: Path) -> None:
 
 
 def masked(text: str, folder: Path) -> str:
-    text = text.replace(str(folder), "<folder>")
+    text = text.replace(str(folder), "<folder>").replace(str(ROOT), "<checkout>")
     for pattern, mask in MASKS:
         text = re.sub(pattern, mask, text)
     return text

@@ -63,7 +63,7 @@ def contradictions() -> list[tuple[str, str, str, str]]:
         while lockstep.step < steps:
             lockstep.advance(min(every, steps - lockstep.step))
             samples.append(lockstep.sample())
-        name = "energy" if scene.equations.energy_error.conserved else "energy_error"
+        name = "energy" if scene.equations.conserves_energy else "energy_error"
         for index, judgement in enumerate(lockstep.judgements):
             readings = [sample.readings[index] for sample in samples]
             readings = [reading for reading in readings if reading.diverged_at is None]

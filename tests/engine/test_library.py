@@ -35,14 +35,6 @@ def test_no_module_hides_a_name_of_the_library():
         assert callable(getattr(engine, name))
 
 
-def test_recommend_divides_the_target_by_the_safety():
-    best, *others = recommend(1e-2, theta=2.0, time=5, safety=2)
-    assert best.point.theta_error <= 5e-3
-    assert best.times == 1 < others[0].times
-    assert len(others) > 7
-    assert all(attempt.succeeded for attempt in others)
-
-
 def test_the_lists_are_in_their_order_and_read_only():
     assert list(METHODS) == [method.key for method in LISTED]
     assert next(iter(SCENES)) == "drift"
@@ -141,7 +133,7 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: simulate("swing", time=1), "no scene 'swing'; choose from drift"),
         (lambda: simulate(time=1, methods="eul"), "explicit_euler or symplectic_euler"),
         (lambda: simulate(time=1, methods=[]), "name one"),
-        (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'; choose from"),
+        (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'"),
         (lambda: simulate(time=1, methods="respa"), "not for the model pendulum"),
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
@@ -155,7 +147,6 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: recommend(1e-20, time=1, methods="rk4"), "1e-20 over 1 s; RK4: rounding"),
         (lambda: recommend(10), "a target of 10 is as large as the swing; use less than 1"),
         (lambda: recommend(0), "above zero"),
-        (lambda: recommend(1e-3, safety=0.5), "safety 1 or more"),
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
         (lambda: limits("stiff-limit"), "not for the model spring"),

@@ -2,10 +2,12 @@
 
 import hashlib
 import json
+import struct
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import zstandard
 from mcap.writer import CompressionType, Writer
 
 from pendu_tui.engine.run.judgement import Milestone
@@ -19,6 +21,7 @@ from pendu_tui.recordings.format import (
     encode_readings,
     topics_of,
 )
+from pendu_tui.recordings.library import MAGIC
 from tests.recordings.examples import SCENE, start
 
 Part = tuple[str, float, bytes]
@@ -138,6 +141,19 @@ def milestones(count: int) -> Iterator[list[Part]]:
     return noted(noticed(1, milestone) for milestone in made)
 
 
+def at(clock: float) -> Iterator[list[Part]]:
+    yield from begun()
+    yield sample(first_sample()._replace(step=1), clock)
+
+
+def false_heads(count: int, checksum: int) -> bytes:
+    """Heads of chunks of 4 MB, a hundred bytes apart, of which one without checksum is cheap."""
+    frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
+    numbers = (6, 4_000_044, 1, 2, 4_000_000, checksum, b"\x04\x00\x00\x00zstd", 4_000_000)
+    head = struct.pack("<BQQQQI8sQ", *numbers) + frame
+    return MAGIC + count * head.ljust(100, b"\0")
+
+
 def foreign(count: int) -> Iterator[list[Part]]:
     yield from begun()
     for _ in range(count):
@@ -163,6 +179,7 @@ FILES: dict[str, Callable[[int], Iterator[list[Part]]]] = {
     "step 10^9": lambda n: far(10**9),
     "step 10^15": lambda n: far(10**15),
     "30 years": lambda n: late(n // 50),
+    "570 years": lambda n: at(1.8e10),  # beyond 2^63 ns
     "many runs": runs,
     "many marks": marks,
     "many milestones": milestones,

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from tests.recordings.hostile import FILES, write_file
+from tests.recordings.hostile import FILES, false_heads, write_file
 from tests.tui.command_line import pendu
 
 MANY = 500  # tests/bench/hostile.py: 90 000
@@ -27,6 +27,15 @@ def test_a_hostile_file_is_answered_in_time_with_a_sentence(tmp_path, name):
         assert time.process_time() - began < MAX_SECONDS
         assert answer.code in (0, 1, 3)
         assert (answer.out + answer.err).replace("\n", "").isprintable()
+
+
+@pytest.mark.parametrize("checksum", [0, 1])
+def test_work_is_proportional_to_the_size_of_a_file_of_false_chunks(tmp_path, checksum):
+    path = tmp_path / "heads.mcap"
+    path.write_bytes(false_heads(count=100_000, checksum=checksum))
+    began = time.process_time()
+    assert pendu("verify", path).refused(3, "its end is missing")
+    assert time.process_time() - began < 2.0  # 0.2 s; each chunk of 4 MB read would take 100 s
 
 
 def test_an_impossible_step_size_is_damage(tmp_path):

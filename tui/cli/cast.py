@@ -1,16 +1,12 @@
 """The options --methods and --method, which choose built-in methods and the user's own."""
 
 import argparse
-import difflib
-import os
 import string
 from collections.abc import Sequence
-from itertools import groupby
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pendu_tui.engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
+from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, named
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import Suggestions, add_file
@@ -63,8 +59,11 @@ def cast_of(
     cast = list(default)
     if options.methods is not None:
         cast = []
+        known = (*METHODS, *own)
+        if getattr(options, "cost", None) == "seconds":
+            known = (*known, TAYLOR_20)
         for name in options.methods.split(","):
-            method = find(name.strip(), (*METHODS, *own), model=model)
+            method = find(name.strip(), known, model=model)
             if method in cast:
                 raise UserError(f"--methods: {method.key} is given twice; name each method once.")
             cast.append(method)
@@ -87,32 +86,11 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
 def find(
     name: str, methods: Sequence[Method], option: str = "--methods", model: str | None = None
 ) -> Method:
-    """Return the method with a name, or whose key, or a word in it, starts like this.
-
-    Case, accents and hyphens do not count.  General methods come first.  Raises UserError, which
-    suggests methods for the model if it is given.
-    """
-    found = matching(name, methods)
-    if len(found) == 1:
-        return found[0]
-    if found:
-        keys = " or ".join(method.key for method in found)
-        raise UserError(f"{option}: {name!r} may be {keys}; write more of it.")
-    suited = [method for method in methods if model is None or model in method.models]
-    known = {simplified(each): method.key for method in suited for each in method.names}
-    near = difflib.get_close_matches(simplified(name), known, n=1)
-    families = groupby([method.key for method in suited], family_of)
-    listed = [f"{family}: {', '.join(keys)}" for family, keys in families]
-    advice = f": choose from {'; '.join(listed)}."
-    if near:
-        advice = f": did you mean {known[near[0]]}?"
-    raise UserError(f"{option}: there is no method {name!r}{advice}")
-
-
-def family_of(key: str) -> str:
-    """Return a method's family."""
-    found = (name for name, some in FAMILIES.items() if key in [each.key for each in some])
-    return next(found, "your own")
+    """Return the method that `engine.methods.named` finds.  Raises UserError."""
+    try:
+        return named(name, methods, model)
+    except ValueError as error:
+        raise UserError(f"{option}: {error}") from None
 
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":

@@ -4,8 +4,8 @@ An expression, `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
 (None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it is;
-None means that the method never failed.  `verdict` is compared by == or != with a verdict, such as
-grows, so `!= bounded` is strict.
+None means that the method never failed.  A field that is a word, such as `verdict`, is compared by
+== or !=, so `!= bounded` is strict.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
@@ -22,22 +22,16 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.quantities import QUANTITIES
 from pendu_tui.engine.run.verdicts import VERDICTS, Progress
-from pendu_tui.recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import Suggestions, did_you_mean
 from pendu_tui.tui.cli.report import warn
 
-FIELDS = (
-    *NUMBERS,
-    *OPTIONAL,
-    "log_energy_error",
-    *EXTRA_NAMES,
-    "theta_error",
-    "drift_per_second",
-    "force_evaluations",
-)
+_OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
+FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
@@ -53,17 +47,23 @@ _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
 }
 
 
-def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
+Words = Mapping[str, Sequence[str]]  # field -> its words
+VERDICT: Words = {"verdict": tuple(VERDICTS)}
+
+
+def parse(
+    text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST, words: Words = VERDICT
+) -> Gate:
     """Return the gate in `text` for a cast.  Raises UserError.
 
-    With `fields`, comparisons name one of these, or `verdict`, and no method; their values are
+    With `fields`, comparisons name one of these, or of `words`, and no method; their values are
     under the key "".
     """
     source = " ".join(text.split())
     if len(source) > 10_000:
         raise UserError("--fail-if: it is longer than 10,000 characters.")
     source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
-    grammar = _Grammar(fields, cast)
+    grammar = _Grammar(fields, cast, words)
     if "#" in source:  # a comment would hide what follows
         raise grammar.no_comparison(source)
     try:
@@ -80,6 +80,7 @@ class _Grammar:
 
     fields: Sequence[str]
     cast: Cast
+    words: Words
 
     def gate(self, node: ast.expr) -> Gate:
         """Return the gate of a node.  Raises UserError."""
@@ -92,8 +93,11 @@ class _Grammar:
                 key, _, field = ast.unparse(left).rpartition(".")
             case _:
                 raise self.no_comparison(ast.unparse(node))
-        _check("field", field, (*(self.fields or FIELDS), "verdict"))
-        limit = _verdict(sign, value) if field == "verdict" else _number(value)
+        _check("field", field, (*(self.fields or FIELDS), *self.words))
+        if field in self.words:
+            limit: float | str = _word(sign, value, field, self.words[field])
+        else:
+            limit = _number(value)
         methods = [""]
         if key in ("any", "all"):
             methods = [method.key for method in self.cast]
@@ -114,11 +118,11 @@ class _Grammar:
         )
 
 
-def _verdict(sign: ast.cmpop, node: ast.expr) -> str:
+def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> str:
     if not isinstance(sign, ast.Eq | ast.NotEq):
-        raise UserError("--fail-if: verdicts have no order: compare them with == or !=.")
+        raise UserError(f"--fail-if: {field} is a word: compare it with == or !=.")
     word = ast.unparse(node).strip("'")
-    _check("verdict", word, tuple(VERDICTS))
+    _check(field, word, words)
     return word
 
 
@@ -177,7 +181,7 @@ def _quoted(text: str) -> str:
 
 
 class Check(NamedTuple):
-    """The gate of one run or record."""
+    """The gate of one run, record or method."""
 
     name: str
     failure: str  # the values that trip it, "" if it passes
@@ -188,13 +192,13 @@ def add_gate_option(parser: argparse.ArgumentParser, names: Iterable[str], meani
     parser.add_argument("--fail-if", metavar="EXPR", choices=Suggestions(names), help=meaning)
 
 
-def conclude(expression: str, checks: Sequence[Check]) -> Exit:
+def conclude(expression: str, checks: Sequence[Check], what: str = "runs") -> Exit:
     """Warn of the checks that failed, and return the exit code."""
     failed = [check for check in checks if check.failure]
     if not failed:
         return Exit.FINE
     where = ""
     if len(checks) > 1:
-        where = f" in {len(failed)} of {len(checks)} runs, first at {failed[0].name}"
+        where = f" in {len(failed)} of {len(checks)} {what}, first at {failed[0].name}"
     warn(f"the check failed{where}: {expression} ({failed[0].failure})")
     return Exit.CHECK_FAILED

@@ -19,6 +19,8 @@ DROPPED = {
     "run --executor": "--workers N, or --dask ADDRESS for other machines",
     "stability --executor": "--workers N, or --dask ADDRESS for other machines",
     "accuracy --executor": "--workers N, or --dask ADDRESS for other machines",
+    "accuracy --budget": "--target, whose table has the cost of each method",
+    "accuracy --safety": "a smaller --target",
     "completion": "pendu-tui --print-completion SHELL",
     "export --format": "CSV, which DuckDB, polars and pandas read",
     "recordings prune": "rm; pendu-tui recordings lists the files, newest first",

@@ -17,7 +17,7 @@ from typing import Any
 
 from pendu_tui.engine.methods import METHODS, Cast, Method
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from pendu_tui.engine.scenes import MAX_METHODS, QUANTITIES, SCENES, Line, Scene, SceneError, Shot
+from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Line, Scene, SceneError, Shot
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.cast import find, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -153,11 +153,11 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
     except SceneError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise _FieldError(error, *named[:1]) from None
-    others = (each.name for each in MODELS[model].quantities())
+    charted = [each.name for each in MODELS[model].charted()]
     keys = [method.key for method in cast]
     for name, words, known in (
         ("view", [scene.shot.view], ["lab", "phase", "stability", "accuracy"]),
-        ("quantity", [scene.shot.quantity], [*QUANTITIES, *others]),
+        ("quantity", [scene.shot.quantity], charted),
         ("front", scene.shot.front, keys),
     ):
         if unknown := [word for word in words if word not in known]:

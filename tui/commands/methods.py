@@ -5,13 +5,14 @@ A method of your own has measured properties only.
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import groupby
 from typing import Any
 
-from pendu_tui.engine.methods import METHODS, Method, simplified
-from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS
-from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of, family_of
+from pendu_tui.engine.methods import METHODS, Method, family_of, simplified
+from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of
+from pendu_tui.tui.cli.checks import Check, Gate, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.options import Suggestions
 from pendu_tui.tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
@@ -22,6 +23,7 @@ examples:
   pendu-tui methods
   pendu-tui methods rk4 verlet
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
+  pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
 """
 
 CLAIMS = (
@@ -32,8 +34,10 @@ MEASURED = (
     *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
     "measured_force_evaluations",
 )
+GATE_WORDS = dict.fromkeys(("symplectic", "reversible"), ("yes", "no"))
+GATE_NUMBERS = ("order", "force_evaluations")
 NOTE = """
-found: the measured order of the theta error, over one swing of the scene drift.
+found: the measured order of the theta error, over half a period.
 evals: force evaluations per step, on average if they vary.
 z limit: for the linear oscillator, z = h·w0; pendu-tui stability has those of the pendulum."""
 
@@ -44,36 +48,46 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     keys = Suggestions(KEYS)
     parser.add_argument("keys", metavar="KEY", nargs="*", choices=keys, help="as --methods")
     add_cast_options(parser, "all")
+    fields = ", ".join((*GATE_NUMBERS, *GATE_WORDS))
+    meaning = f"exit with 1 if the expression is true of a method, as measured; fields: {fields}"
+    add_gate_option(parser, (*GATE_NUMBERS, *GATE_WORDS), meaning)
     add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    from pendu_tui.engine.accuracy.study import orders
+    from pendu_tui.engine.methods.measure import no_order, yes
     from pendu_tui.engine.run.compiled import available
 
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
-    cast = cast_of(options, METHODS, most=None)
-    general = tuple(method for method in cast if method.general)
-    measured = dict(orders(DEFAULT_SCENE.with_cast(general), math.inf))
-    rows = [_row(method, measured.get(method)) for method in cast]
+    cast = cast_of(options, () if options.method else METHODS, most=None)
+    gate = parse(options.fail_if, GATE_NUMBERS, words=GATE_WORDS) if options.fail_if else None
+    rows = [_row(method) for method in cast]
     columns = (
         Column("method", "key"),
         Column("order", "order", "d"),
         Column("found", "measured_order", ".3f"),
         Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
-        Column("symplectic", lambda row: _yes(_known(row, "symplectic"))),
-        Column("reversible", lambda row: _yes(_known(row, "reversible"))),
+        Column("symplectic", lambda row: yes(_known(row, "symplectic"))),
+        Column("reversible", lambda row: yes(_known(row, "reversible"))),
         Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
     )
+    wrong = {
+        method.key: no_order(row["measured_order"])
+        for method, row in zip(cast, rows, strict=True)
+        if method.general
+    }
+    sentences = [f"{key}: {why}" for key, why in wrong.items() if why]
     labels = [
         f"{method.label} ({method.key})"
         for method in cast
         if simplified(method.label) != simplified(method.key)
     ]
-    notes = [NOTE, f"in the lab: {', '.join(labels)}"]
+    notes = [NOTE, *sentences]
+    if labels:
+        notes.append(f"in the lab: {', '.join(labels)}")
     if options.keys:
-        notes = [NOTE, *(f"\n{method_card(method)}" for method in cast)]
+        notes = [NOTE, *sentences, *(f"\n{method_card(method)}" for method in cast)]
     report = Report(
         name="methods",
         columns=columns,
@@ -82,12 +96,32 @@ def run(options: argparse.Namespace) -> int:
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
-    return Exit.FINE
+    if gate is None:
+        return Exit.FINE
+    checks = [Check(row["key"], _failure(gate, row, wrong)) for row in rows]
+    return conclude(options.fail_if, checks, "methods")
 
 
-def _row(method: Method, order: float | None) -> Row:
+def _failure(gate: Gate, row: Row, wrong: Mapping[str, str]) -> str:
+    """Return which values fail, and if the method has no order why; "" if it passes."""
+    failure = gate({"": _gated(row)})
+    return "; ".join(filter(None, (failure, failure and wrong.get(row["key"]))))
+
+
+def _gated(row: Row) -> Row:
+    """Return the measured properties as --fail-if compares them."""
+    from pendu_tui.engine.methods.measure import yes
+
+    values = {name: row[f"measured_{name}"] for name in (*GATE_NUMBERS, *GATE_WORDS)}
+    for name in GATE_WORDS:
+        if values[name] is not None:
+            values[name] = yes(values[name])
+    return values
+
+
+def _row(method: Method) -> Row:
     """Return the claims, which a user's own method does not make, and the measured properties."""
-    from pendu_tui.engine.methods import measure
+    from pendu_tui.engine.methods.measure import measured
     from pendu_tui.engine.methods.own import OwnMethod
 
     claims = fields_of(method, *CLAIMS)
@@ -95,13 +129,8 @@ def _row(method: Method, order: float | None) -> Row:
         claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
     if not method.general:  # tests measure these, each in its own scene
         return claims | dict.fromkeys(MEASURED)
-    return claims | {
-        "measured_order": order,
-        "measured_linear_limit": measure.linear_limit(method.phases),
-        "measured_symplectic": measure.is_symplectic(method.phases),
-        "measured_reversible": measure.is_reversible(method.phases),
-        "measured_force_evaluations": measure.evaluations(method.phases)[0],
-    }
+    found = measured(method.phases)
+    return claims | {name: getattr(found, name.removeprefix("measured_")) for name in MEASURED}
 
 
 def _by_family(rows: list[Row]) -> Iterator[Any]:
@@ -116,10 +145,6 @@ def _by_family(rows: list[Row]) -> Iterator[Any]:
 def _known(row: Row, name: str) -> Any:
     measured = row[f"measured_{name}"]
     return row[name] if measured is None else measured
-
-
-def _yes(value: bool) -> str:
-    return "yes" if value else "no"
 
 
 def _limit(z: float) -> str:

@@ -45,9 +45,8 @@ class History:
         self.changes = changes
         self._model = scene.equations
         self._reference = self._model.reference(scene.theta, scene.omega)
-        self._extra = [each.name for each in self._model.quantities()]
-        common = ("energy_error", "theta_error", "shadow_error")
-        self._quantities = (*common, *self._extra, "energy")
+        self._extra = [each.name for each in self._model.variables if each.chart.title]
+        self._quantities = [each.name for each in self._model.charted()]
         self._repeats = self.exact.period or 0.0
         if self.exact.regime == "libration":
             self._repeats /= 2
@@ -99,9 +98,9 @@ class History:
         exact = self.exact.at(sample.t)
         states = [(reading.theta, reading.omega) for reading in readings]
         others = [
+            *([reading.extra[name] for reading in readings] for name in self._extra),
             [self._model.theta_error(theta, exact.theta) for theta, _ in states],
             self._modified_energy_errors(sample),
-            *([reading.extra[name] for reading in readings] for name in self._extra),
             [reading.energy for reading in readings],
         ]
         low = high = [reading.energy_error for reading in readings]
@@ -174,7 +173,7 @@ class History:
 
     def _named(self, extremes: "Floats") -> dict[Quantity, "Floats"]:
         named = {name: extremes[:, i] for i, name in enumerate(self._quantities)}
-        if self._model.energy_error.conserved:  # then the energy's extremes are known, too
+        if self._model.conserves_energy:  # then the energy's extremes are known, too
             start, scale, *_ = self._reference
             named["energy"] = start + scale * named["energy_error"]
         return named

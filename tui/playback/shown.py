@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 from pendu_tui.engine.methods import Cast
-from pendu_tui.engine.scenes import QUANTITIES, SCENES, Line, Scene, Shot
+from pendu_tui.engine.quantities import ENERGY_ERROR, SHADOW_ERROR
+from pendu_tui.engine.scenes import SCENES, Line, Scene, Shot
 
 Quantity = str
-"""One of QUANTITIES, or a variable of the model outside its state."""
+"""The name of one that the model's charts can show."""
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """The lengths of the chart [s]; None is the whole run."""
@@ -19,9 +20,8 @@ FAST = 4.0
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
     model = scene.equations
     has_shadow = not model.without_force and any(m.modified_energy for m in scene.cast)
-    common = [each for each in QUANTITIES if has_shadow or each != "shadow_error"]
-    own = (each.name for each in model.quantities())
-    return common[0], *own, *common[1:]
+    known = (each.name for each in model.charted())
+    return tuple(name for name in known if has_shadow or name != SHADOW_ERROR.name)
 
 
 class Stretch(NamedTuple):
@@ -34,7 +34,7 @@ class Stretch(NamedTuple):
 class Shown(NamedTuple):
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion, dotted
-    quantity: Quantity = "energy_error"  # of the chart
+    quantity: Quantity = ENERGY_ERROR.name  # of the chart
     log: bool = True
     log_time: bool = False  # on a logarithmic chart of the whole run
     seconds: float | None = None  # the length of the chart
@@ -43,6 +43,7 @@ class Shown(NamedTuple):
     overview: bool = False  # all angles, pendulums not enlarged
     ring: bool = False
     line: Line | None = None
+    held: float | None = None  # rad, where the user holds the pendulums; then there is no run
 
     def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
         """Return these settings with a shot, by default the scene's."""

@@ -78,8 +78,6 @@ class SourceScreen(SizedScreen[None]):
     ]
 
     shown: var[Shown] = var(Shown())
-    held: float | None = None
-    """The angle [rad] at which the user holds the pendulums, while the clock stands still."""
 
     def __init__(
         self,
@@ -165,7 +163,7 @@ class SourceScreen(SizedScreen[None]):
         """Follow the clock, and draw unless the terminal is behind."""
         now = self.clock() - self._missed
         seen = self.source.playhead.seen
-        if seen is not None and (now - seen > STALL or self.held is not None):
+        if seen is not None and (now - seen > STALL or self.shown.held is not None):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)

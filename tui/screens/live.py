@@ -1,5 +1,6 @@
 """LiveScreen: the lab, where the run can be changed."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
@@ -133,17 +134,17 @@ class LiveScreen(SourceScreen):
         super().restore(state)
 
     def on_held(self, message: Held) -> None:
-        self.held = message.theta
-        self.show_now()
+        self.shown = self.shown._replace(held=message.theta)
 
     def _follow(self, sample: Sample, read: bool = True) -> None:
-        if self.held is not None:
-            model = self.live.scene.equations
-            energy = model.energy()(model.start(self.held, 0.0))
-            reference = model.reference(self.live.scene.theta, self.live.scene.omega)
-            error = reference.error(energy)
-            held = {"theta": self.held, "omega": 0.0, "energy": energy, "energy_error": error}
-            readings = [reading._replace(**held) for reading in sample.readings]
+        """Show the angle at which the user holds the pendulums; meanwhile there is no run."""
+        if (theta := self.shown.held) is not None:
+            readings = [
+                reading._replace(
+                    theta=theta, omega=0.0, energy_error=math.nan, max_energy_error=math.nan
+                )
+                for reading in sample.readings
+            ]
             sample = sample._replace(readings=tuple(readings))
         super()._follow(sample, read)
 

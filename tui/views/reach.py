@@ -1,7 +1,8 @@
-"""How far the pendulums of a run can swing: it decides the scale of the drawing."""
+"""How far the pendulums of a run swing: it decides the scale of the drawing."""
 
 import math
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -10,13 +11,14 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene
 
+STEP = 1.1
+"""From one reach to the next: the drawing changes its scale at most 25 times in a run."""
+
 
 class Reach(NamedTuple):
-    """How far [rad] the stable methods may swing (`frame`), and all methods (`widest`).
+    """How far [rad] the methods that are stable at their step swing, and all of them.
 
-    The frame is the exact motion's amplitude times a power of 1.3, or pi, so it seldom changes.
-    It only grows during a run, because the largest errors do.  With a method that is unstable at
-    its h, all have the whole circle from the start.
+    Both follow from the largest energy errors so far, so they only grow during a run.
     """
 
     frame: float
@@ -24,41 +26,38 @@ class Reach(NamedTuple):
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> Reach:
-    staying = _staying(scene, stepping, sample, shown)
-    largest = max((sample.readings[place].max_energy_error for place in staying), default=0.0)
-    frame = _frame(scene.equations, scene.theta, scene.omega, largest)
-    widest = math.pi
-    if len(staying) == len(shown):
-        widest = frame
-    return Reach(frame, widest)
+    fastest = scene.equations.fastest
+    staying = []
+    for place in shown:
+        limit = scene.cast[place].linear_limit
+        if limit is None or abs(stepping.own[place]) * fastest <= limit:
+            staying.append(place)
+
+    def widest(places: Iterable[int]) -> float:
+        errors = [sample.readings[place].max_energy_error for place in places]
+        return _angle(scene.equations, scene.theta, scene.omega, max(errors, default=0.0))
+
+    return Reach(widest(staying), widest(shown))
+
+
+def _angle(model: Model, theta: float, omega: float, largest: float) -> float:
+    """Return the angle [rad] that no energy error up to the `largest` leaves; pi for all."""
+    angles, errors = _steps(model, theta, omega)
+    step = bisect_right(errors, largest)
+    return angles[step] if step < len(errors) else math.pi
 
 
 @lru_cache(maxsize=8)
-def _frame(model: Model, theta: float, omega: float, largest: float) -> float:
-    half = 1.3 * amplitude(model, theta, omega)
-    if half < 1e-9 or not model.turns:
-        return math.pi
+def _steps(model: Model, theta: float, omega: float) -> tuple[list[float], list[float]]:
+    """Return angles [rad] from the amplitude up, and the energy error that reaches each."""
+    angles: list[float] = []
+    angle = STEP * amplitude(model, theta, omega)
+    while 1e-9 < angle < 0.9 * math.pi:  # a wider picture shows the whole turn
+        angles.append(angle)
+        angle *= STEP
     energy = model.energy()
     reference = model.reference(theta, omega)
-    while half < 0.8 * math.pi:  # a wider frame shows the whole turn
-        if reference.error(energy(model.rest_phase(half))) > largest:
-            return half
-        half *= 1.3
-    return math.pi
-
-
-def _staying(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> list[int]:
-    """Return the methods that are stable at their step and have not gone over the top."""
-    staying = []
-    own = stepping.own
-    fastest = scene.equations.fastest
-    for place in shown:
-        reading = sample.readings[place]
-        limit = scene.cast[place].linear_limit
-        is_stable = limit is None or abs(own[place]) * fastest <= limit
-        if is_stable and reading.diverged_at is None and abs(reading.theta) < math.pi:
-            staying.append(place)
-    return staying
+    return angles, [reference.error(energy(model.rest_phase(angle))) for angle in angles]
 
 
 @lru_cache(maxsize=8)

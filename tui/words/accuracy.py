@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 from pendu_tui.engine.accuracy.front import Cheapest, Cost, ranges
-from pendu_tui.engine.accuracy.references import TAYLOR_20
 from pendu_tui.engine.accuracy.study import REASONS, ErrorKind, Point
 from pendu_tui.engine.methods.runge_kutta import RK4
 
@@ -38,14 +37,11 @@ def point_words(point: Point, kind: ErrorKind, note: str) -> str:
     )
 
 
-def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest] = ()) -> str:
-    """Name the cheapest method in each range of errors; `without`: without Taylor's series."""
+def front_words(found: Sequence[Cheapest], cost: Cost) -> str:
+    """Name the cheapest method in each range of errors."""
     if not found:
         return "No power of ten lies between the errors of the coarsest and finest runs."
-    words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
-    if any(one.method is TAYLOR_20 for one in found) and without:
-        words += f"; without Numba, in force evaluations: {_spans(without)}"
-    return f"{words}."
+    return f"Cheapest in {COSTS[cost]}: {_spans(found)}."
 
 
 def factor_words(found: Sequence[Cheapest]) -> str:

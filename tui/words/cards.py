@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.models.model import EnergyError
+from pendu_tui.engine.quantities import QUANTITIES
 from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import SCENES, UNITS, Scene
 from pendu_tui.tui.words.numbers import counted, motion_text, z_text
@@ -17,14 +17,7 @@ GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
     "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z "
     "of their own",
-    "theta, omega": "angle from the downward vertical [rad], -5 turns +0.89: five turns back and "
-    "0.89; its speed [rad/s]",
-    "dE/E0": EnergyError().about,
-    "largest": "the largest |dE/E0| since the start, or since the last change of h",
-    "trend per s": "the mean change of dE/E0 per second; a bounded error can be larger than one "
-    "that grows",
-    "theta error": "the distance from the exact angle [rad]; after a change of h, since then",
-    "evals/step": "force evaluations a step: what the method costs",
+    **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
     "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns "
     "(rotation)",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
@@ -36,15 +29,12 @@ GLOSSARY = {
 }
 HEADS = {
     **GLOSSARY,
-    "theta": GLOSSARY["theta, omega"],
-    "omega": GLOSSARY["theta, omega"],
-    "per s": GLOSSARY["trend per s"],
+    **{each.head.narrow: each.sentence for each in QUANTITIES if each.head.wide},
     "verdict": "what the energy error does in the long run; ? explains each word",
-    "th.err": GLOSSARY["theta error"],
 }
 """The meaning of the table's heads."""
 for model in MODELS.values():
-    HEADS[model.energy_error.symbol] = model.energy_error.about
+    HEADS[model.error.head.narrow] = model.error.sentence
     for column in model.extra_columns:
         HEADS |= dict.fromkeys(column[:2], column.about)
 
@@ -67,13 +57,16 @@ def method_card(method: Method) -> str:
         stable = "at any h (small swings)"
     elif limit:
         stable = f"up to z = h w0 = {limit:.4g} (small swings)"
+    order = "none: the error does not fall with h, it solves another equation"
+    if method.order:
+        order = f"{method.order}: as a rule, over one swing half of h divides the error by "
+        order += f"{2**method.order}"
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
     symplectic = "yes: conserves phase-space area"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
-        "order": f"{method.order}: as a rule, over one swing half of h divides the error by "
-        f"{2**method.order}",
+        "order": order,
         "costs": f"about {costs}" if method.varies else costs,
         "symplectic": symplectic if method.symplectic else "no: phase-space area changes",
         "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",

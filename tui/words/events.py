@@ -33,7 +33,7 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed, because they change no number.
     """
     run = source.sample.run
-    conserved = source.scene.equations.energy_error.conserved
+    conserved = source.scene.equations.conserves_energy
     milestones = [
         EventLine(run, each.step, each.t, _milestone(each, conserved), "milestone", each.method)
         for each in source.milestones

@@ -197,7 +197,7 @@ def endings(source: Source) -> dict[int, Milestone]:
 
 
 def _is_conserved(source: Source) -> bool:
-    return source.scene.equations.energy_error.conserved
+    return source.scene.equations.conserves_energy
 
 
 def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:

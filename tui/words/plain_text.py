@@ -66,7 +66,7 @@ def method_sentence(source: Source, index: int) -> str:
     judgement = source.judgements[index]
     found = [insight.drift(source, index)]
     if milestone := insight.endings(source).get(index):
-        conserved = source.scene.equations.energy_error.conserved
+        conserved = source.scene.equations.conserves_energy
         irregular = insight.irregular(method, judgement, reading.energy_error)
         found = [insight.milestone_insight(milestone, conserved), irregular]
     elif judgement.verdict == BOUNDED:

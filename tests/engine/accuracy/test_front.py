@@ -1,13 +1,10 @@
 """The cheapest method at each accuracy, interpolated between made-up points."""
 
-from dataclasses import replace
-
 import pytest
 
 from pendu_tui.engine.accuracy.front import cost_at, front, ranges
-from pendu_tui.engine.accuracy.references import TAYLOR_20
 from pendu_tui.engine.accuracy.study import Flaws, Point
-from pendu_tui.engine.methods import method_of
+from pendu_tui.engine.methods import TAYLOR_20, method_of
 
 RK4, BM6 = method_of("rk4"), method_of("blanes_moan_6")
 
@@ -47,8 +44,7 @@ def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
 
 
 def test_a_series_counts_seconds_and_no_evaluations():
-    points = [at(TAYLOR_20, 10, 1.0, 5e-3), at(TAYLOR_20, 40, 1e-13, 6e-3)]
-    lines = [*LINES, *(replace(point, tolerance=1e-9) for point in points)]
+    lines = [*LINES, at(TAYLOR_20, 10, 1.0, 5e-3), at(TAYLOR_20, 40, 1e-13, 6e-3)]
     assert TAYLOR_20 not in {one.method for one in front(lines, "theta", "evaluations")}
     found = front(lines, "theta", "seconds")
     assert {one.method for one in found} == {RK4, TAYLOR_20}

@@ -54,6 +54,22 @@ def test_a_method_that_does_not_follow_the_pendulum_has_no_order():
             yield theta, omega
 
     assert measure.order(upwards) is None
+    assert "another equation" in measure.no_order(measure.order(upwards))
+
+
+@pytest.mark.parametrize("coefficient", [0.5001, 0.501, 0.55])
+def test_a_wrong_coefficient_has_an_error_that_stays(coefficient):
+    def kicked(force, phase, h):
+        theta, omega = phase
+        while True:
+            omega = omega + coefficient * h * force(theta)
+            theta = theta + h * omega
+            omega = omega + 0.5 * h * force(theta)
+            yield theta, omega
+
+    found = measure.order(kicked)
+    assert abs(found) < 0.1
+    assert "does not fall with h" in measure.no_order(found)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,8 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State, Variable
+from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State
+from pendu_tui.engine.quantities import Chart, Quantity
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Decaying(Model):
     parameters = (Parameter("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
     turns = False
     second_order = False
-    variables = (Variable("u", about="decays"), Variable("square", label="u²", is_state=False))
+    variables = (Quantity("u", about="decays"), Quantity("square", chart=Chart("u²")))
     extra_columns = (ExtraColumn("u²", "square", "the square of u", lambda extra: extra["square"]),)
     caption = "a projection, without u"
     without_force = "Maps and studies are for one angle; this model has u as well."

@@ -95,7 +95,7 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
 
 def test_few_steps_and_asking_for_numba_do_not_import_it():
     work = """
-import pendu_tui.engine.accuracy.references
+import pendu_tui.engine.accuracy.study
 from pendu_tui.engine.run.compiled import TieredLoops, available
 from pendu_tui.engine.scenes import DEFAULT_SCENE as scene
 available()

@@ -102,7 +102,7 @@ def test_a_verdict_is_compared_with_one_of_its_words(word, quote):
     ("text", "sentence"),
     [
         ("rk4.verdict == lose", "there is no verdict 'lose': did you mean loses?"),
-        ("rk4.verdict > loses", "verdicts have no order: compare them with == or !=."),
+        ("rk4.verdict > loses", "verdict is a word: compare it with == or !=."),
         ("rk4.energy > loses", "'loses' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > 1e999", "is not a finite number"),
         ("velocity_verlt.energy > 1", "no method 'velocity_verlt': did you mean velocity_verlet?"),

@@ -2,6 +2,8 @@
 
 import math
 
+import pytest
+
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.compiled import available
 from pendu_tui.engine.scenes import GROUPS, SCENES
@@ -44,6 +46,49 @@ def test_methods_that_are_named_are_listed_alone():
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
     assert method_card(METHODS[0]) in pendu("methods", METHODS[0].key).out
     assert pendu("methods", "rk5").refused(2, "rk4")
+
+
+BROKEN = """
+def broken(force, phase, h):
+    theta, omega = phase
+    while True:
+        omega = omega + 0.5001 * h * force(theta)
+        theta = theta + h * omega
+        omega = omega + 0.5 * h * force(theta)
+        yield theta, omega
+"""
+
+
+@pytest.mark.parametrize(
+    ("expression", "code"),
+    [
+        ("order < 1.9", 1),
+        ("order < 0", 0),
+        ("reversible != yes", 1),
+        ("symplectic != yes", 0),
+        ("symplectic == yes", 1),
+        ("force_evaluations > 2", 0),
+        ("force_evaluations > 1.9", 1),
+    ],
+)
+def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path, expression, code):
+    (tmp_path / "mine.py").write_text(BROKEN)
+    gated = pendu("methods", "--method", f"{tmp_path}/mine.py:broken", "--fail-if", expression)
+    assert gated.code == code
+    assert "does not fall with h" in gated.out
+    assert ("does not fall with h" in gated.err) == bool(code)
+
+
+def test_the_gate_of_a_right_method_passes():
+    right = ("methods", "velocity_verlet", "--fail-if", "order < 1.9 or symplectic != yes")
+    assert pendu(*right).code == 0
+    assert pendu("methods", "heun", *right[2:]).code == 1
+    assert pendu("methods", "halving_verlet", *right[2:]).code == 1  # its order is not measured
+
+
+@pytest.mark.parametrize("expression", ["verdict == grows", "symplectic < 1", "symplectic == no_"])
+def test_a_gate_that_cannot_be_is_refused(expression):
+    assert pendu("methods", "--fail-if", expression).refused(2, "--fail-if")
 
 
 def test_methods_as_json_have_what_is_measured_of_the_general_ones():

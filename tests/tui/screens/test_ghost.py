@@ -6,8 +6,8 @@ import pytest
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.palette import faint, ink_of
 from pendu_tui.tui.playback.ghost import Ghost
+from pendu_tui.tui.views.lab.stage import Stage
 from pendu_tui.tui.views.lab.time_chart import TimeChart
-from pendu_tui.tui.views.lab.view import LabView
 from tests.tui.drawn import inks
 from tests.tui.harness import after, lab
 
@@ -42,7 +42,7 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         await theatre.press("+", "r")
         await theatre.run(3)
         await theatre.settled()
-        first = theatre.stage.query_one(LabView).pendulums[1]
+        first = theatre.stage.query_one(Stage)
         colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
         assert colour in inks(first.picture(theatre.source, theatre.source.sample))
         chart = theatre.stage.query(TimeChart).first()

@@ -7,7 +7,6 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lines import InsightLine, TourPanel
 from pendu_tui.tui.screens.live import LiveScreen
-from pendu_tui.tui.screens.svg import normalised
 from pendu_tui.tui.words.tour import STEPS
 from tests.tui.harness import FPS, Theatre, lab, on_stage
 
@@ -94,7 +93,7 @@ async def test_a_click_on_the_panel_goes_on_and_outside_a_tour_its_keys_do_nothi
         assert words(STEPS[0].question) in panel(theatre)
 
 
-async def test_the_command_begins_with_it(text_snapshot):
+async def test_the_command_begins_with_it():
     def make(clock):
         screen = LiveScreen(Live(SCENES["drift"], clock=lambda: 0.0), clock)
         screen.begins_with_tour = True
@@ -108,6 +107,4 @@ async def test_the_command_begins_with_it(text_snapshot):
             theatre.stage.frame()
             assert theatre.now < 30
         theatre.stage.show_now()
-        await theatre.settled()
-        await theatre.pilot.pause()
-        text_snapshot("tour-120x40", normalised(theatre.app.export_screenshot()))
+        assert words(STEPS[0].question) in panel(theatre)

@@ -2,15 +2,13 @@
 
 import argparse
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
-from itertools import pairwise
 from operator import methodcaller
 from typing import Any
 
 from pendu_tui.engine.accuracy.front import Cheapest, front
-from pendu_tui.engine.accuracy.recommend import Advice, Attempt, least_cost, least_error
-from pendu_tui.engine.accuracy.references import References, references
+from pendu_tui.engine.accuracy.recommend import Advice, Attempt, least_cost
 from pendu_tui.engine.accuracy.study import (
     ALL_LADDER,
     REASONS,
@@ -54,7 +52,6 @@ NUMBERS = (
     *("h", "steps", "force_evaluations", "seconds", "spread"),
     *("theta_error", "energy_error", "final_error"),
 )
-TRUTH = "the exact motion, against which errors are taken"
 
 
 class Results:
@@ -68,21 +65,18 @@ class Results:
             self.searched = with_all_methods(scene)
         if options.all:
             self.scene = self.searched
-        self.durations: list[float] = options.time or [usual(scene)[0]]
-        self.time = self.durations[-1]  # s
+        self.time: float = options.time or usual(scene)[0]  # s
         self.clock: Clock | None = None
         if options.cost == "seconds":
             self.clock = time.perf_counter
         self.points: list[Point] = []
         self.orders: list[Order] = []
-        self.advice: list[Advice] = []  # one for each duration
-        self.references: References | None = None
-        self.series: Sequence[Point] = ()  # Taylor's
+        self.advice: Advice | None = None  # with a target
 
     @property
     def front(self) -> list[Cheapest]:
         """Return the cheapest method at each accuracy."""
-        return front([*self.points, *self.series], self.options.error, self.options.cost)
+        return front(self.points, self.options.error, self.options.cost)
 
 
 def measure(results: Results) -> None:
@@ -95,8 +89,17 @@ def measure(results: Results) -> None:
     fast = not results.options.no_compiled and (not results.clock or compilable(scene.cast))
     if not fast:
         study_loops = timed_loops = loops.PlainLoops
-    if results.options.target is not None or results.options.budget is not None:
-        _search(results, study_loops, timed_loops)
+    if results.options.target is not None:
+        study = Study(results.searched, results.time, study_loops)
+        with progress("searching") as show:
+            results.advice = least_cost(
+                study,
+                kind=results.options.error,
+                target=results.options.target,
+                show=lambda share: show(share, 1),
+                clock=results.clock,
+                loops=timed_loops,
+            )
     tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
     done = 0
     with workers_of(results.options) as run, progress("measuring") as show:
@@ -106,30 +109,7 @@ def measure(results: Results) -> None:
             results.points.append(point)
             done += point.steps
             show(done, len(scene.cast) * sum(rungs))
-    if results.options.all and results.clock:
-        results.references = references(scene, results.time, results.clock, fast)
-        results.series = results.references.taylor
     results.orders += orders(scene, results.time, study_loops)
-
-
-def _search(results: Results, study_loops: LoopsOf, timed_loops: LoopsOf) -> None:
-    kind = results.options.error
-    target = results.options.target
-    budget = results.options.budget
-    with progress("searching") as show:
-        for done, duration in enumerate(results.durations):
-            study = Study(results.searched, duration, study_loops)
-
-            def show_share(share: float, done: int = done) -> None:
-                show(done + share, len(results.durations))
-
-            if target is None:
-                advice = least_error(study, kind, budget, show_share)
-            else:
-                goal = target / results.options.safety
-                clock = results.clock
-                advice = least_cost(study, kind, goal, budget, show_share, clock, timed_loops)
-            results.advice.append(advice)
 
 
 def _ladder(results: Results) -> list[int]:
@@ -158,7 +138,6 @@ def _ladder(results: Results) -> list[int]:
 def report(results: Results, interrupted: bool) -> Report:
     kind = results.options.error
     points = list(_records(results))
-    durations = [_advice_fields(results, advice) for advice in results.advice]
     return Report(
         name="accuracy",
         title=f"{scene_line(results.scene)}, over {results.time:g} s\n{ERROR_LABELS[kind]}\n",
@@ -176,10 +155,8 @@ def report(results: Results, interrupted: bool) -> Report:
                 | {"saves_over_rk4": place.saves}
                 for place in results.front
             ],
-            "absent": results.references and results.references.absent,
             "orders": list(map(_order_fields, results.orders)),
-            "recommendation": durations[-1] if durations else None,
-            "durations": durations,
+            "recommendation": results.advice and _advice_fields(results, results.advice),
             "interrupted": interrupted,
         },
     )
@@ -193,17 +170,12 @@ def _order_fields(order: Order) -> dict[str, Any]:
 
 
 def _records(results: Results) -> Iterator[dict[str, Any]]:
-    """Yield the points of all methods, the series and the closed form, for JSON and CSV."""
-    for point in (*results.points, *results.series):
+    """Yield the points of all methods, for JSON and CSV."""
+    for point in results.points:
         flaw = point.flaw(results.options.error)
         record = {"method": point.method.key, **fields_of(point, *NUMBERS), "valid": flaw is None}
-        if point.tolerance is not None:
-            record |= {"h": None, "force_evaluations": None}
-        yield record | {"reason": flaw and REASONS[flaw], "tolerance": point.tolerance}
-    if results.references:
-        record = {"method": "closed_form", **dict.fromkeys(NUMBERS)}
-        record |= {"seconds": results.references.closed_form, "valid": False}
-        yield record | {"reason": TRUTH, "tolerance": None}
+        record["force_evaluations"] = point.force_evaluations or None
+        yield record | {"reason": flaw and REASONS[flaw]}
 
 
 def _rungs(results: Results) -> list[dict[str, Any]]:
@@ -227,7 +199,9 @@ def _columns(results: Results) -> list[Column]:
         Column("steps", "steps", "d"),
     ]
     for method in results.scene.cast:
-        head = f"{method.label} ({method.force_evaluations}/step)"
+        head = method.label
+        if method.force_evaluations:
+            head += f" ({method.force_evaluations}/step)"
         columns.append(Column(head, methodcaller("get", method.key), error))
     return columns
 
@@ -248,38 +222,23 @@ def _notes(results: Results) -> Iterator[Any]:
         if order.measured is not None
     ]
     yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
-    if results.references:
-        if results.references.absent:
-            yield results.references.absent
-        yield f"Closed form, the floor: {length(results.references.closed_form)}"
     yield ""
     cast = results.scene.cast
-    series = accuracy_series(results.points, kind, cost, cast, references=results.references)
+    series = accuracy_series(results.points, kind, cost, cast)
     columns, rows = CHART_SIZE
     chart = accuracy_chart(series, kind, cost, min(console(columns).width, columns), rows)
     yield from lines_of(chart, PALETTES["dark"])
     if results.options.all and results.points:
-        without_series = front(results.points, kind, "evaluations")
-        yield f"\n{front_words(results.front, cost, without_series)}"
-        savings = factor_words(without_series)
-        if savings:
+        yield f"\n{front_words(results.front, cost)}"
+        if savings := factor_words(front(results.points, kind, "evaluations")):
             yield savings
-    for advice in results.advice:
-        yield from _advice_notes(results, advice)
-    if len(results.advice) > 1:
-        yield f"\n{_winners(results.advice)}"
+    if results.advice:
+        yield from _advice_notes(results, results.advice)
 
 
 def _advice_notes(results: Results, advice: Advice) -> Iterator[Any]:
-    options = results.options
-    kind = options.error
-    wish = f"smallest {kind} error"
-    if options.target is not None:
-        wish = f"{kind} error up to {options.target:g}"
-        if options.safety > 1:
-            wish += f" with a margin of {options.safety:g}"
-    if options.budget is not None:
-        wish += f" within {options.budget} force evaluations"
+    kind = results.options.error
+    wish = f"{kind} error up to {results.options.target:g}"
     point = advice.point
     if point is None:
         yield f"\nNo method reaches the target over {advice.time:g} s: {wish}"
@@ -287,9 +246,10 @@ def _advice_notes(results: Results, advice: Advice) -> Iterator[Any]:
         z = f"z = {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
         yield f"\nOver {advice.time:g} s, {wish}: {point.method.label} at h = {point.h:.5g} s ({z})"
         cost = f"{point.force_evaluations} force evaluations{_seconds(point)}"
+        if not point.force_evaluations:
+            cost = length(point.seconds or 0)
         yield f"{cost}, {kind} error {point.error(kind):.2e}, confirmed"
-        if options.target is not None and options.safety == 1:
-            yield "Other steps near it may miss the target; --safety 2 leaves a margin."
+        yield "Other steps near it may miss the target; a smaller target leaves a margin."
     rows = [_attempt_fields(results, attempt) for attempt in advice.attempts]
     columns = [
         method_column([attempt.method for attempt in advice.attempts]),
@@ -311,36 +271,21 @@ def _times(row: dict[str, Any]) -> str:
     return f"{row['times_the_cheapest']:.3g}"
 
 
-def _winners(advice: Sequence[Advice]) -> str:
-    """Say where the cheapest method changes with the duration."""
-    changes = []
-    for earlier, later in pairwise(advice):
-        before = _winner(earlier)
-        after = _winner(later)
-        if before != after:
-            when = f"from {later.time:g} s on (not yet at {earlier.time:g} s)"
-            changes.append(f"{after} instead of {before} {when}")
-    return "; ".join(changes or [f"{_winner(advice[0])} for all these times"]) + "."
-
-
-def _winner(advice: Advice) -> str:
-    return advice.point.method.label if advice.point else "no method"
-
-
 def _attempt_fields(results: Results, attempt: Attempt) -> dict[str, Any]:
     numbers = ("h", "z", "steps_per_swing", "force_evaluations")
     fields = {"method": attempt.method.key, **dict.fromkeys((*numbers, "error", "seconds"))}
     point = attempt.point
     if point:
         fields |= fields_of(point, *numbers, "seconds")
+        fields["force_evaluations"] = point.force_evaluations or None
         fields["error"] = point.error(results.options.error)
     return fields | {"times_the_cheapest": attempt.times, "why_not": attempt.why_not}
 
 
 def _advice_fields(results: Results, advice: Advice) -> dict[str, Any]:
     attempts = [_attempt_fields(results, attempt) for attempt in advice.attempts]
-    options = fields_of(results.options, "target", "budget", "safety")
     best = attempts[0]
     if not advice.point:
         best = dict.fromkeys(best) | {"why_not": "no method gets there"}
-    return {"time": advice.time, **options, **best, "attempts": attempts}
+    target = results.options.target
+    return {"time": advice.time, "target": target, **best, "attempts": attempts}

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run import compiled, loops
@@ -16,7 +17,6 @@ from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
-from pendu_tui.recordings.fields import NUMBERS, OPTIONAL
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.checks import Check, Gate, conclude
@@ -43,6 +43,10 @@ MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between bat
 MAX_POINTS = 20_000  # samples for a figure
 
 Row = dict[str, Any]
+ALWAYS = [each.name for each in quantities.RECORDED if each.recorded == "always"]
+IF_KNOWN = [
+    each.name for each in quantities.RECORDED if each.recorded == "if known" and each.in_gate
+]
 
 
 def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
@@ -114,10 +118,10 @@ def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) ->
     rows = []
     methods = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
     for method, reading, judgement in methods:
-        row = {"method": method.key, **fields_of(reading, *NUMBERS)}
-        if not model.energy_error.conserved:
-            row["log_energy_error"] = reading.energy_error
-        optional = fields_of(reading, *OPTIONAL)
+        row = {"method": method.key, **fields_of(reading, *ALWAYS)}
+        if not model.conserves_energy:
+            row[quantities.LOG_ENERGY_ERROR.name] = reading.energy_error
+        optional = fields_of(reading, *IF_KNOWN)
         row |= {name: value for name, value in optional.items() if value is not None}
         row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
         theta_error = math.nan
@@ -159,7 +163,7 @@ def _report(
     scene: Scene, sample: Sample, lockstep: Lockstep, rows: Sequence[Row], wall_seconds: float
 ) -> Report:
     notes = [
-        sentence(milestone_insight(milestone, scene.equations.energy_error.conserved))
+        sentence(milestone_insight(milestone, scene.equations.conserves_energy))
         for milestone in lockstep.milestones
         if milestone.kind in ("over the top", "errors cross")
     ]
@@ -171,7 +175,7 @@ def _report(
         name="run",
         title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
         f"{counted(sample.step, 'step')} to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
-        columns=columns_of(scene, Column("per second", "drift_per_second", "+.1e")),
+        columns=columns_of(scene, quantity_column(quantities.TREND)),
         rows=rows,
         notes=notes,
         fields={
@@ -195,16 +199,25 @@ def for_csv(rows: Sequence[Row]) -> list[Row]:
     return [{name: row[name] for name in row if name != "progress"} for row in rows]
 
 
+def quantity_column(quantity: quantities.Quantity) -> Column:
+    return Column(quantity.label, quantity.name, quantity.form)
+
+
 def columns_of(scene: Scene, *trend: Column) -> list[Column]:
+    model = scene.equations
     return [
         method_column(scene.cast),
         Column("verdict", verdict_of),
-        *(Column(value.label, value.name, ".4g") for value in scene.equations.quantities()),
-        Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
-        Column("largest", "max_energy_error", ".2e"),
+        *(
+            Column(each.chart.title, each.name, ".4g")
+            for each in model.variables
+            if each.chart.title
+        ),
+        quantity_column(model.error),
+        quantity_column(quantities.LARGEST),
         *trend,
-        Column("theta error [rad]", "theta_error", ".2e"),
-        Column("force evaluations", "force_evaluations", "d"),
+        quantity_column(quantities.THETA_ERROR),
+        quantity_column(quantities.EVALUATIONS),
     ]
 
 

@@ -4,11 +4,10 @@ import math
 from collections.abc import Sequence
 
 from pendu_tui.engine.accuracy.front import Cost, cost_of
-from pendu_tui.engine.accuracy.references import TAYLOR_20, References
 from pendu_tui.engine.accuracy.study import ErrorKind, Flaw, Point
 from pendu_tui.engine.methods import Cast
 from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
-from pendu_tui.tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
+from pendu_tui.tui.drawing.palette import FRAME, ink_of
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.words.accuracy import COSTS
 
@@ -62,12 +61,8 @@ def accuracy_series(
     cast: Cast,
     *,
     marks: Sequence[tuple[str, Point]] = (),
-    references: References | None = None,
 ) -> list[Series]:
-    """Return points as letters, x if useless, ~ if limited by rounding; orders as dots.
-
-    The reference lines are Taylor's series and, upright, what the closed form takes.
-    """
+    """Return points as letters, x if useless, ~ if limited by rounding; orders as dots."""
 
     def series(ink: int, mark: str, *some: Point) -> Series:
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
@@ -85,14 +80,6 @@ def accuracy_series(
             slopes |= _slope(ours, kind, cost)
         lines.append(series(ink, method.letter, *ours))
         flaws += flawed(ink, ours)
-    if references:
-        taylor = references.taylor
-        if taylor:
-            lines.append(series(TEXT, TAYLOR_20.letter, *taylor))
-        flaws += flawed(TEXT, taylor)
-        errors = [error for p in (*points, *taylor) if 0 < (error := p.error(kind)) < math.inf]
-        ends = [min(errors), max(errors)] if errors else []
-        flaws.append(Series(EXACT, "c", [references.closed_form] * len(ends), ends))
     marked = [series(ink_of(point.method, cast), mark, point) for mark, point in marks]
     return [*slopes.values(), *lines, *flaws, *marked]
 

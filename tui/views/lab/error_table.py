@@ -8,6 +8,16 @@ from textual import events
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import ExtraColumn, Model
+from pendu_tui.engine.quantities import (
+    ENERGY_ERROR,
+    EVALUATIONS,
+    LARGEST,
+    OMEGA,
+    THETA,
+    THETA_ERROR,
+    TREND,
+    Quantity,
+)
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.run.verdicts import FAILED, VERDICTS, Judgement
@@ -63,20 +73,20 @@ def _verdict(line: TableLine, width: int) -> str:
     return text
 
 
+def _quantity(quantity: Quantity, keep: int, cell: Callable[[TableLine, int], str]) -> Column:
+    return Column(keep, *quantity.head, cell)
+
+
 COLUMNS = (
     Column(9, "h", 6, "h [s]", 8, lambda line, width: f"{line.h:.4g}"[:width]),
-    Column(4, "theta", 11, "theta [rad]", 18, _angle),
-    Column(2, "omega", 6, "omega [rad/s]", 13, _omega),
-    Column(7, "dE/E0", 8, "dE/E0", 8, lambda line, w: scientific(line.reading.energy_error, w)),
-    Column(6, "largest", 7, "largest", 8, lambda line, w: scientific(line.largest, w, 1, "-")),
-    Column(5, "per s", 8, "trend per s", 11, lambda line, w: scientific(line.judgement.slope, w)),
+    _quantity(THETA, 4, _angle),
+    _quantity(OMEGA, 2, _omega),
+    _quantity(ENERGY_ERROR, 7, lambda line, w: scientific(line.reading.energy_error, w)),
+    _quantity(LARGEST, 6, lambda line, w: scientific(line.largest, w, 1, "-")),
+    _quantity(TREND, 5, lambda line, w: scientific(line.judgement.slope, w)),
     Column(8, "verdict", 9, "verdict", 13, _verdict),
-    Column(
-        3, "th.err", 7, "theta error", 11, lambda line, w: scientific(line.theta_error, w, 1, "-")
-    ),
-    Column(
-        1, "evals/step", 10, "evals/step", 10, lambda line, w: f"{line.method.force_evaluations}"
-    ),
+    _quantity(THETA_ERROR, 3, lambda line, w: scientific(line.theta_error, w, 1, "-")),
+    _quantity(EVALUATIONS, 1, lambda line, w: f"{line.method.force_evaluations}"),
 )
 
 
@@ -129,7 +139,7 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     gap = " " * (1 + min(spare // max(len(columns), 1), 3))
     row = [(head.ljust(room), QUIET)]
     for column in columns:
-        title = column.head.replace("dE/E0", model.energy_error.symbol)
+        title = column.head.replace(ENERGY_ERROR.head.narrow, model.error.head.narrow)
         row.append((gap + title.rjust(column.width), QUIET))
     rows = [row]
     for place in shown.places(cast):

@@ -19,14 +19,6 @@ from pendu_tui.tui.words.numbers import about, seconds
 if TYPE_CHECKING:
     from pendu_tui.tui.drawing.time_chart import Reading, TimePlot
 
-NAMES: dict[Quantity, tuple[str, str]] = {
-    "energy_error": ("energy error dE/E0", "|dE/E0|"),
-    "theta_error": ("theta - exact theta [rad]", "theta error [rad]"),
-    "shadow_error": ("shadow energy error", "|shadow error|"),
-    "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
-}
-"""A quantity, and its magnitude for logarithmic charts; models add their own quantities."""
-
 
 def modified_energy_of(cast: Cast) -> str:
     """Return a note that names the methods with a modified energy, "" if all have one."""
@@ -37,10 +29,9 @@ def modified_energy_of(cast: Cast) -> str:
 
 
 def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
-    if quantity == "energy_error" and not model.energy_error.conserved:
-        return model.energy_error.name, f"|{model.energy_error.name}|"
-    labels = {variable.name: (variable.label, variable.label) for variable in model.variables}
-    return (NAMES | labels)[quantity]
+    charts = {each.name: each.chart for each in model.charted()}
+    chart = charts[quantity]
+    return chart.title, chart.magnitude or chart.title
 
 
 def title(shown: Shown, exact: ExactMotion, model: Model, room: int = 100) -> str:

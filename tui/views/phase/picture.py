@@ -242,7 +242,7 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
     def cells(*texts: str) -> str:
         return "".join(text.rjust(CELL) for text in texts[:fit])
 
-    heads = cells("ln area ratio", "area/area0", "theta error", model.energy_error.symbol)
+    heads = cells("ln area ratio", "area/area0", "theta error", model.error.head.narrow)
     rows: list[Row] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * NAME + heads, QUIET)],

@@ -1,0 +1,178 @@
+"""The gates of the pytest plugin on right and broken integrators."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pendu_tui.engine.methods import GENERAL
+from pendu_tui.recordings.pytest import EnergyDrift, MethodProperties
+
+SEEDS = 50
+PARTICLES = 16
+
+
+def kicks(first=0.5, second=0.5, rounded=float, dropped=None):
+    """Return velocity Verlet with other factors of its kicks; each `dropped`-th step has but one."""
+
+    def step(force, phase, h):
+        q, p = phase
+        count = 0
+        while True:
+            count += 1
+            p = rounded(p + first * h * force(q))
+            q = rounded(q + h * p)
+            if dropped is None or count % dropped:
+                p = rounded(p + second * h * force(q))
+            yield q, p
+
+    return step
+
+
+def as_it_is(value):
+    return value
+
+
+def float32(value):
+    return float(np.float32(value)) if isinstance(value, float) else value
+
+
+def stale(force, phase, h):
+    """Velocity Verlet whose second kick uses the force of before the drift."""
+    q, p = phase
+    while True:
+        old = force(q)
+        p = p + 0.5 * h * old
+        q = q + h * p
+        p = p + 0.5 * h * old
+        yield q, p
+
+
+RIGHT = kicks(rounded=as_it_is)
+
+
+@pytest.fixture
+def method_gate():
+    return MethodProperties([])
+
+
+@pytest.fixture
+def energy_gate():
+    return EnergyDrift([])
+
+
+@pytest.mark.parametrize(
+    ("broken", "reason"),
+    [
+        (stale, "its order is 1.0"),
+        (kicks(second=0.0, rounded=as_it_is), "no order: its error stays above"),
+        (kicks(first=0.5001, rounded=as_it_is), "order 0.008: the error does not fall with h"),
+        (kicks(first=0.55, rounded=as_it_is), "the error does not fall with h"),
+        (kicks(rounded=float32), "float"),
+        (kicks(rounded=as_it_is, dropped=40), "keeps more than theta and omega"),
+        (kicks(rounded=as_it_is, dropped=1000), "the error does not fall with h"),
+    ],
+    ids=["stale", "no second kick", "0.5001", "0.55", "float32", "1 of 40 dropped", "1 of 1000"],
+)
+def test_a_broken_method_fails_for_what_is_broken(method_gate, broken, reason):
+    with pytest.raises(pytest.fail.Exception, match=reason):
+        method_gate.check(broken, order=2, symplectic=True)
+
+
+def test_a_right_method_passes(method_gate):
+    found = method_gate.check(RIGHT, order=2, symplectic=True, reversible=True)
+    assert found.order == pytest.approx(2, abs=0.001)
+    for method in GENERAL:
+        claims = {name: getattr(method, name) for name in ("symplectic", "reversible")}
+        method_gate.check(method.phases, order=method.order, **claims)
+
+
+def test_each_property_is_compared(method_gate):
+    for claim in ({"order": 2.2}, {"symplectic": False}, {"reversible": False}):
+        with pytest.raises(pytest.fail.Exception):
+            method_gate.check(RIGHT, **claim)
+    assert method_gate.check(RIGHT, order=2.05)
+    assert ("symplectic", True) in method_gate._properties
+
+
+def chains(step, h, seconds, seeds=SEEDS):
+    """Simulate chains with cubic and quartic springs; return times and the energies of each."""
+    random = np.random.default_rng(2026)
+    q = np.zeros((seeds, PARTICLES))
+    p = random.normal(size=(seeds, PARTICLES))
+
+    def stretched(q):
+        return np.roll(q, -1, axis=1) - q
+
+    def force(q):
+        d = stretched(q)
+        pull = d + 0.5 * d**2 + d**3
+        return pull - np.roll(pull, 1, axis=1)
+
+    energies = []
+    steps = round(seconds / h)
+    phases = step(force, (q, p), h)
+    for _ in range(steps):
+        q, p = next(phases)
+        d = stretched(q)
+        potential = d**2 / 2 + d**3 / 6 + d**4 / 4
+        energies.append((p**2 / 2 + potential).sum(axis=1))
+    return h * np.arange(1, steps + 1), np.transpose(energies)
+
+
+STEPS = (0.05, 0.1)
+
+
+def records(step, seeds):
+    """Return (h, times, energies) at two steps for each seed."""
+    simulated = [(h, *chains(step, h, 60.0, seeds)) for h in STEPS]
+    for seed in range(seeds):
+        yield [(h, times, energies[seed]) for h, times, energies in simulated]
+
+
+def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
+    found = [energy_gate.check_order(runs, at_least=1.8).power for runs in records(RIGHT, SEEDS)]
+    assert np.mean(found) == pytest.approx(2, abs=0.05)
+
+
+def langevin(force, phase, h):
+    random = np.random.default_rng(3)
+    for q, p in RIGHT(force, phase, h):
+        while True:
+            p = p * math.exp(-0.1 * h) + math.sqrt(1 - math.exp(-0.2 * h)) * random.normal(
+                size=p.shape
+            )
+            q, p = next(RIGHT(force, (q, p), h))
+            yield q, p
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        kicks(second=0.0, rounded=as_it_is),
+        kicks(first=0.55, rounded=as_it_is),
+        kicks(rounded=as_it_is, dropped=100),
+        langevin,
+    ],
+    ids=["no second kick", "0.55", "dropped steps", "thermostat"],
+)
+def test_the_order_of_broken_runs_fails(energy_gate, broken):
+    for runs in records(broken, seeds=5):
+        with pytest.raises(pytest.fail.Exception, match="the energy fluctuates as h"):
+            energy_gate.check_order(runs, at_least=1.8)
+
+
+def test_runs_that_are_too_short_to_tell_fail_and_say_how_long_they_must_be(energy_gate):
+    random = np.random.default_rng(5)
+    runs = [(h, np.arange(64.0), h**2 * random.standard_cauchy(size=64)) for h in (0.1, 0.11)]
+    with pytest.raises(pytest.fail.Exception, match=r"cannot tell.* times as long"):
+        energy_gate.check_order(runs, at_least=1.8)
+
+
+def test_energies_that_end_fail_with_their_place(energy_gate):
+    times = np.arange(100.0)
+    with pytest.raises(pytest.fail.Exception, match=r"energies at h = 0.2\[3\] is nan"):
+        energy_gate.check_order(
+            [(0.1, times, np.sin(times)), (0.2, times, np.where(times == 3, np.nan, 1.0))],
+            at_least=1.8,
+        )

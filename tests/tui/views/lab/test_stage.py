@@ -1,0 +1,251 @@
+"""One pendulum with a lane for each method, its letters, and a bob under the mouse."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendu_tui.engine.scenes import MAX_METHODS, SCENES
+from pendu_tui.tui.drawing.palette import EXACT, faint
+from pendu_tui.tui.terminal.options import SMALLEST
+from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.lab.lanes import Bob, Look, lanes, stage_picture
+from pendu_tui.tui.views.lab.stage import Lens, Stage
+from tests.tui.drawing.test_canvas import dots
+from tests.tui.drawn import cells, places, size
+from tests.tui.harness import lab, player, recorded
+
+LETTERS = "esvrmp"
+ANGLES = st.floats(-1e9, 1e9)
+SMALL = (20, 6)  # columns and rows of the stage on the smallest screen
+
+
+def picture(columns, rows, *thetas, **look):
+    bobs = [Bob(theta, ink, LETTERS[ink]) for ink, theta in enumerate(thetas)]
+    return stage_picture(columns, rows, bobs, Look(**look))
+
+
+def letters(drawn):
+    return sorted(each for each, _ in cells(drawn).values() if each.isalpha())
+
+
+@given(
+    st.integers(SMALL[0], 80),
+    st.integers(SMALL[1], 50),
+    st.lists(st.tuples(ANGLES, st.floats(0.0, 1e9)), min_size=1, max_size=MAX_METHODS),
+    st.floats(0.1, math.pi),
+    st.booleans(),
+)
+def test_each_letter_stands_once_on_the_stage_wherever_the_bobs_are(
+    columns, rows, bobs, widest, rigid
+):
+    """Coinciding bobs and those of springs that flew off have theirs, too."""
+    drawn = stage_picture(
+        columns,
+        rows,
+        [
+            Bob(theta, ink, LETTERS[ink], length=1.0 if rigid else length)
+            for ink, (theta, length) in enumerate(bobs)
+        ],
+        Look(widest, rigid=rigid),
+    )
+    assert letters(drawn) == sorted(LETTERS[: len(bobs)])
+    assert size(drawn) == (columns, rows)
+
+
+@pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22), (73, 38)])
+@pytest.mark.parametrize("count", range(2, MAX_METHODS + 1))
+def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pane, count):
+    for widest in (0.5, 1.1, 2.0, math.pi):
+        found = lanes(*pane, count, widest, rigid=True)
+        apart = found.radii[0] - found.radii[1]
+        assert apart >= min(2 * found.bob, 0.6 * found.radii[0] / (count - 1))
+        assert min(found.radii) >= 0.3 * found.radii[0]
+        for theta in (-widest, 0.0, widest):
+            x, y = found.point(found.radii[0], theta)
+            assert found.bob - 1e-9 <= x <= 2 * pane[0] - found.bob + 1e-9
+            assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
+
+
+@pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22)])
+def test_a_narrow_swing_has_longer_lanes_and_its_pivot_above_the_middle(pane):
+    narrow, wide = (lanes(*pane, 4, widest, rigid=True) for widest in (1.1, math.pi))
+    assert narrow.radii[0] > wide.radii[0]
+    assert narrow.y < wide.y == 2 * pane[1]
+
+
+@given(st.integers(1, 10_000).map(lambda number: number * 0.6180339887))  # never between two dots
+def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
+    """So equal angles lie on one ray from the pivot, for odd and even panes."""
+    for columns, rows in ((36, 18), (37, 19)):
+        right, left, up = (
+            {
+                (x, y)
+                for x, y in dots(stage_picture(columns, rows, [Bob(angle, 0, " ")], Look()))
+                if math.hypot(x + 0.5 - columns, y + 0.5 - 2 * rows) > 4  # rods begin in a dot
+            }
+            for angle in (theta, -theta, math.pi - theta)
+        )
+        assert left == {(2 * columns - 1 - x, y) for x, y in right}
+        assert up == {(x, 4 * rows - 1 - y) for x, y in right}
+
+
+def test_a_trail_covers_its_lane_from_sample_to_sample_and_is_bright_near_the_bob():
+    trail = [0.05 * nth for nth in range(16)]
+    drawn = stage_picture(43, 22, [Bob(trail[-1], 0, "e", trail=trail)], Look())
+    bright, dim = places(drawn, 0), places(drawn, faint(0))
+    assert min(column for column, _ in bright) > 21 + 5  # the first third is faint
+    assert {row for column, row in dim if column in (22, 23)} >= {20}
+    found = lanes(43, 22, 1, math.pi, rigid=True)
+    assert len(found.arc(found.radii[0], 0.0, 0.75)) == pytest.approx(0.9 * found.radii[0], rel=0.1)
+
+
+@pytest.mark.parametrize(("trail", "joins"), [([-1.5, 0.0, 1.5], True), ([-0.4, -0.2, 0.0], False)])
+def test_nothing_is_drawn_between_samples_a_radian_apart_or_when_steps_are_long(trail, joins):
+    found = lanes(43, 22, 1, math.pi, rigid=True)
+    bob = Bob(math.pi, 0, "e", trail=trail)
+    drawn = dots(stage_picture(43, 22, [bob], Look(joins=joins)))
+    between = [(before + after) / 2 for before, after in pairwise(trail)]
+    for theta, is_drawn in [
+        *((each, True) for each in trail),
+        *((each, False) for each in between),
+    ]:
+        x, y = found.point(found.radii[0], theta)
+        near = {(i, j) for i, j in drawn if math.hypot(i + 0.5 - x, j + 0.5 - y) < 2}
+        assert bool(near) == is_drawn
+
+
+def test_the_exact_pendulum_is_a_dotted_ray_under_all_others():
+    assert EXACT in {ink for _, ink in cells(picture(43, 22, 1.0, exact=0.5)).values()}
+    covered = picture(43, 22, 0.5, exact=0.5)
+    rod = places(covered, faint(0)) | places(covered, 0)
+    assert len(places(picture(43, 22, 0.5), EXACT)) == 0
+    assert rod == places(picture(43, 22, 0.5), faint(0)) | places(picture(43, 22, 0.5), 0)
+
+
+def test_a_ghost_is_a_hollow_bob_in_the_same_lane_and_a_diverged_one_is_crossed_out():
+    plain = picture(43, 22, 1.0)
+    ghost = stage_picture(43, 22, [Bob(1.0, 0, "e", ghost=-1.0)], Look())
+    assert min(column for column, _ in places(ghost, faint(0))) < 21
+    assert max(column for column, _ in places(ghost, 0)) > 21
+    crossed = stage_picture(43, 22, [Bob(1.0, 0, "e", diverged=True)], Look())
+    assert len(dots(crossed)) < len(dots(plain))
+
+
+def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
+    def lowest(length):
+        drawn = stage_picture(40, 20, [Bob(0.0, 2, "v", length=length)], Look(rigid=False))
+        return max(row for row, _ in cells(drawn))
+
+    assert lowest(0.5) < lowest(0.9) < lowest(1.08)
+    assert lowest(1e300) <= 20
+
+
+@given(st.floats(-100, 100), st.floats(1e-6, 0.3), st.integers(2, 8))
+def test_a_lens_enlarges_small_angles_and_keeps_turns_order_and_the_top(theta, half, times):
+    half = min(half, 0.8 / times)
+    lens = Lens(half, times)
+    assert lens(half / 2) == pytest.approx(times * half / 2)
+    assert lens(theta + math.tau) == pytest.approx(lens(theta) + math.tau, abs=1e-6)
+    assert lens(-theta) == -lens(theta)
+    assert lens(math.pi) == pytest.approx(math.pi)
+    assert lens(theta + 0.01) > lens(theta)
+
+
+async def test_small_swings_are_enlarged_though_explicit_euler_leaves_and_o_shows_them_as_they_are():
+    async with lab(SCENES["gentle"]) as theatre:
+        await theatre.run(14)
+        stage = theatre.stage.query_one(Stage)
+        assert abs(theatre.source.sample.readings[0].theta) > 1
+        assert "small angles ×" in stage.border_title
+        rk4 = next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3))
+        await theatre.press("o")
+        assert "×" not in stage.border_title
+        assert next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3)) != rk4
+
+
+@pytest.mark.parametrize("name", ["drift", "gentle", "crossover", "stiff-limit", "learned"])
+async def test_each_shown_method_has_its_letter_on_the_stage_of_the_smallest_screen(name):
+    async with lab(SCENES[name], size=SMALLEST) as theatre:
+        for _ in range(4):
+            await theatre.run(2)
+            stage = theatre.stage.query_one(Stage)
+            shown = [theatre.source.scene.cast[place].letter for place in stage.places]
+            assert letters(stage._picture) == sorted(shown)
+        assert stage.border_subtitle == "drag: throw it"
+
+
+def on_lane(theatre, place):
+    """The cell of the stage in which a method's lane is at its lowest."""
+    stage = theatre.stage.query_one(Stage)
+    bobs, look = stage._drawn
+    found = lanes(*stage.room, len(bobs), look.widest, look.rigid)
+    x, y = found.point(found.radii[place], 0.0)
+    return stage, (int(x) // 2 + 1, int(y) // 4 + 1)
+
+
+async def grabbed(theatre, *moves, wait=0.3):
+    """Drag the stage over these cells of it, wait, and let it go."""
+    stage = theatre.stage.query_one(Stage)
+    await theatre.pilot.mouse_down(stage, offset=(12, 9))
+    for move in moves:
+        await theatre.pilot.hover(stage, offset=move)
+    await theatre.pilot.pause(wait)
+    held = theatre.stage.shown.held
+    texts = theatre.text(ErrorTable), stage.text, str(stage.border_subtitle)
+    await theatre.pilot.mouse_up(stage, offset=moves[-1])
+    await theatre.pilot.pause()
+    return held, *texts
+
+
+async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go():
+    """As one step of undo."""
+    async with lab() as theatre:
+        await theatre.run(2)
+        before = theatre.source.sample
+        held, table, _, below = await grabbed(theatre, (30, 9), (40, 8))
+        assert held == pytest.approx(1.9, abs=0.4)
+        assert table.count(f"{held:+.3f}") == 4
+        assert below == "let go: start here"
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega) == (held, 0.0)
+        assert [event.kind for event in theatre.source.events] == ["start", "start"]
+        assert theatre.stage.shown.held is None
+        await theatre.press("u")
+        assert theatre.source.scene == SCENES["drift"]
+        assert theatre.source.sample.step == before.step
+
+
+async def test_a_thrown_bob_has_the_speed_of_the_pointer():
+    async with lab() as theatre:
+        theatre.source.set_speed(2.0)
+        theatre.stage.query_one(Stage)._throw([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        await theatre.pilot.pause()
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
+
+
+async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
+    async with lab() as theatre:
+        await theatre.run(1)
+        for place in (2, 0):
+            stage, cell = on_lane(theatre, place)
+            await theatre.pilot.click(stage, offset=cell)
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(theatre.source.scene.cast) == [place]
+            assert theatre.source.sample.run == 1
+            assert stage.border_title == theatre.source.scene.cast[place].label
+            await theatre.pilot.click(stage, offset=on_lane(theatre, 0)[1])
+            await theatre.run(0.1)
+            assert not theatre.stage.shown.hidden
+
+
+async def test_a_bob_of_a_recording_cannot_be_grabbed_and_a_sentence_says_so(tmp_path):
+    async with player(recorded(tmp_path / "a.mcap", 2.0)) as theatre:
+        assert "drag" not in str(theatre.stage.query_one(Stage).border_subtitle)
+        await grabbed(theatre, (20, 4))
+        (notice,) = theatre.app._notifications
+        assert "cannot be changed" in notice.message
+        assert not theatre.stage.shown.hidden
