@@ -127,24 +127,6 @@ def own_phases(source: str, name: str, file: str) -> Phases:
     return guarded(function, name, source, file)
 
 
-def _check_caught(tree: ast.AST, file: str) -> None:
-    """Raise OwnMethodError for code that would catch KeyboardInterrupt and TooLongError."""
-    for node in ast.walk(tree):
-        match node:
-            case ast.ExceptHandler(type=None) | ast.Name(id="BaseException"):
-                where = f"{file}, line {node.lineno}"
-                raise OwnMethodError(f"{where}: this would catch Ctrl+C; use Exception.")
-
-
-class _PrintedError(Exception): ...
-
-
-def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
-    if file is None:
-        raise _PrintedError
-    print(*values, file=file, **settings)
-
-
 def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
     """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
     where = file

@@ -1,8 +1,10 @@
 """The options --methods and --method, which choose built-in methods and the user's own."""
 
 import argparse
+import os
 import string
 from collections.abc import Sequence
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
