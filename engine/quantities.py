@@ -44,7 +44,7 @@ THETA = Quantity(
     "rad",
     recorded="always",
     in_gate=True,
-    head=Head("theta", 11, "theta [rad]", 18),
+    head=Head("theta", 11, "theta [rad]", 16),
     sentence="angle from the downward vertical [rad], -5 turns +0.89: five turns back and 0.89",
 )
 OMEGA = Quantity(

@@ -21,9 +21,8 @@ class Verdict(NamedTuple):
 
     word: str
     sign: str  # before the word, for those who cannot tell colours
-    ink: Literal["good", "warn", "quiet"]
+    ink: Literal["good", "text", "warn", "quiet"]
     meaning: str
-    event: str  # in the list of events, after the method's name
     sentence: str  # a format of method names {0}, {names} and the judgement's numbers
 
 
@@ -35,31 +34,27 @@ VERDICTS: dict[str, Verdict] = {
             sign="=",
             ink="good",
             meaning="the energy stays in a band; a drift is smaller than the band, and bounded",
-            event="stays bounded",
             sentence="{names} bounded; no trend over {seconds:about}.",
         ),
         Verdict(
             GROWS,
             sign="+",
-            ink="warn",
+            ink="text",
             meaning="the energy rises for good; if it rests elsewhere now, its slope is that of rest",
-            event="gains energy",
             sentence="{0} gains {rate:share} of {unit} per s.",
         ),
         Verdict(
             LOSES,
             sign="-",
-            ink="warn",
+            ink="text",
             meaning="the energy falls for good; if it rests elsewhere now, its slope is that of rest",
-            event="loses energy",
             sentence="{0} loses {rate:share} of {unit} per s.",
         ),
         Verdict(
             CHAOTIC,
             sign="!",
-            ink="warn",
+            ink="text",
             meaning="nearby starts of a symplectic method separate exponentially",
-            event="turns chaotic",
             sentence="{0} is chaotic: nearby starts separate {seconds:tenfold}.",
         ),
         Verdict(
@@ -67,15 +62,13 @@ VERDICTS: dict[str, Verdict] = {
             sign="!",
             ink="warn",
             meaning="the numbers have ended: nan, infinite, too large, or a step without solution",
-            event="failed",
-            sentence="{0} failed at {t:.4g} s: its energy error is no longer finite.",
+            sentence="{0} failed at {t:seconds}: its energy error is no longer finite.",
         ),
         Verdict(
             UNDECIDED,
             sign="",
             ink="quiet",
             meaning="the data support none of these; the reason says what is missing",
-            event="is undecided again",
             sentence="{0} is undecided: {reason}.",
         ),
     )

@@ -21,7 +21,7 @@ from pendu_tui.tui.drawing.picture import Picture, Row
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.insight import insight_text
+from pendu_tui.tui.words.insight import insight_text, painted
 from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
 from pendu_tui.tui.words.tour import Tour
 
@@ -45,7 +45,7 @@ class Badged(CellWidget):
 
     def style_of(self, ink: int, base: Style) -> Style:
         if ink == BADGE:
-            return super().style_of(WARN, base) + Style(reverse=True, bold=True)
+            return super().style_of(QUIET, base) + Style(reverse=True, bold=True)
         return super().style_of(ink, base)
 
 
@@ -92,8 +92,8 @@ def _time(source: Source) -> Iterator[Segment]:
         yield Segment(12, "running")
     speed = speed_text(playhead.speed)
     yield Segment(7, speed)
-    if (share := source.pace) < 0.99:
-        yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", WARN)
+    if 0.01 <= (share := source.pace) < 0.99:
+        yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", QUIET)
     yield Segment(11, f"t {seconds(source.sample.t)}")
 
 
@@ -172,7 +172,7 @@ class InsightLine(Pane):
             height -= 1
         if text != watch or not lines:
             lines += [(line, ink) for line in fitted(text, width - 2, height)]
-        return Picture([[(f" {line}", each)] for line, each in lines])
+        return Picture([[(" ", each), *painted(line, self.cast, each)] for line, each in lines])
 
 
 def fitted(text: str, width: int, height: int) -> list[str]:
@@ -210,7 +210,8 @@ class TourPanel(Badged):
         lines = [(line, EXACT) for sentence in others for line in sentence]
         lines += [(line, TEXT) for line in last]
         head = [(title, BADGE), ("  ", TEXT), (keys, EXACT)]
-        below = [[(f" {line}", ink)] for line, ink in lines[-(height - 1) :]]
+        cast = self.tour.live.scene.cast
+        below = [[(" ", ink), *painted(line, cast, ink)] for line, ink in lines[-(height - 1) :]]
         self.show(Picture([head, *below]))
 
     def on_click(self) -> None:

@@ -1,6 +1,6 @@
 """The list of events: the user's changes and the methods' milestones."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method
@@ -8,7 +8,7 @@ from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.verdicts import FAILED, VERDICTS
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import energy_ratio, short_name
-from pendu_tui.tui.words.numbers import start, two_digits
+from pendu_tui.tui.words.numbers import seconds, start, two_digits
 
 
 class EventLine(NamedTuple):
@@ -22,21 +22,21 @@ class EventLine(NamedTuple):
     method: Method | None = None  # None for a user's change
 
     def __str__(self) -> str:
-        if abs(self.t) < 1e4:
-            return f"{self.t:7.2f} {self.text}"
-        return f"{self.t:7.1e} {self.text}"
+        return f"{seconds(self.t):>7} {self.text}"
 
 
-def event_lines(source: Source) -> list[EventLine]:
+def event_lines(source: Source, hidden: Collection[str] = ()) -> list[EventLine]:
     """Return starts, changes and marks of all runs and this run's milestones, in order.
 
-    Pauses and speeds are not listed, because they change no number.
+    Those of methods with `hidden` keys are not listed, nor pauses and speeds, because they change
+    no number.
     """
     run = source.sample.run
     conserved = source.scene.equations.conserves_energy
     milestones = [
         EventLine(run, each.step, each.t, _milestone(each, conserved), "milestone", each.method)
         for each in source.milestones
+        if not {each.method.key, each.other and each.other.key}.intersection(hidden)
     ]
     # sorting is stable, so changes come first
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])
@@ -66,7 +66,7 @@ def _inputs(source: Source) -> Iterator[EventLine]:
         elif event.h is not None:
             parts = [f"h {abs(event.h):.4g} s"]
             if event.h < 0:
-                parts.insert(0, "time reversed")
+                parts.insert(0, "time runs back")
             if event.equal_cost:
                 parts.append("equal cost")
             yield EventLine(*place, ", ".join(parts), "change")
@@ -77,8 +77,8 @@ def _milestone(milestone: Milestone, conserved: bool) -> str:
     if milestone.other:
         return f"{name}'s error > {short_name(milestone.other)}'s"
     if milestone.kind != "over the top":
-        verdict = FAILED if milestone.kind == FAILED else milestone.verdict
-        return f"{name} {VERDICTS[verdict].event}"
+        word = FAILED if milestone.kind == FAILED else milestone.verdict
+        return f"{name}: {VERDICTS[word].sign} {word}".replace(":  ", ": ")
     text = f"{name} over the top"
     if ratio := energy_ratio(milestone, conserved):
         unit = "E0" if conserved else "E(t)"

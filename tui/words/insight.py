@@ -4,12 +4,13 @@ Insights state what was measured; a forecast extrapolates a measured slope.
 """
 
 import math
+import re
 import string
 from collections.abc import Callable, Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from pendu_tui.engine.methods import USUAL_CAST, Method
+from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
 from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import SteppingChange
@@ -23,8 +24,10 @@ from pendu_tui.engine.run.verdicts import (
     Judgement,
 )
 from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.drawing.palette import ink_of
+from pendu_tui.tui.drawing.picture import Row
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.words.numbers import about, two_digits
+from pendu_tui.tui.words.numbers import about, seconds, two_digits
 
 SENTENCES = {
     **{each.word: each.sentence for each in VERDICTS.values()},
@@ -32,19 +35,15 @@ SENTENCES = {
     "returned": "Back at t = 0; off in angle and speed [rad]: {misses}.",
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
-    "over the top": "{0} went over the top at {t:.3g} s{energy}.",
-    "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
+    "over the top": "{0} went over the top at {t:seconds}{energy}.",
+    "errors cross": "{0}'s error passed {1}'s at {t:seconds}: smaller at first, it kept growing.",
     "rests": "{0} has settled at an energy error of about {error:+.3g}.",
     "lost": "{0} has lost {share:percent} of its energy.",
     "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
     "will pass": (
         "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}."
     ),
-    "exceeds": (
-        "{0} {gains} {rate:share} of {unit} per s; its error is {ratio:two} × {1}'s maximum."
-    ),
-    "so far alone": "{0}'s largest energy error so far is {most:share}.",
-    "so far": "Energy errors so far: {least:share} ({0}) to {most:share} ({1}).",
+    "so far": "Largest energy error so far: {errors}.",
 }
 
 WATCH = 8.0  # s of the clock for the scene's own sentence, at the beginning of a run
@@ -66,7 +65,7 @@ def _share(value: float) -> str:
 
 FORMATS: dict[str, Callable[[Any], str]] = {
     "about": about,
-    "two": two_digits,
+    "seconds": seconds,
     "share": _share,
     "percent": lambda value: "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %",
     "tenfold": lambda value: f"tenfold every {about(value)}" if value else "exponentially",
@@ -104,6 +103,15 @@ def short_name(method: Method) -> str:
     if alone and method in USUAL_CAST:
         return last
     return method.label
+
+
+def painted(text: str, cast: Cast, ink: int) -> Row:
+    """Return a text in pieces: the names of a cast in the methods' inks, all else in `ink`."""
+    names = {name: method for method in cast for name in (method.label, short_name(method))}
+    longest_first = sorted(map(re.escape, names), key=len, reverse=True)
+    pieces = re.split(rf"\b({'|'.join(longest_first)})\b", text, flags=re.IGNORECASE)
+    inks = {name.lower(): ink_of(method, cast) for name, method in names.items()}
+    return [(piece, inks.get(piece.lower(), ink)) for piece in pieces if piece]
 
 
 def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
@@ -263,13 +271,10 @@ def drift(source: Source, index: int) -> Insight | None:
     if judgement.growth and not loses:
         return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
     unit = "E0" if conserved else "the true energy"
-    values = {"rate": rate, "unit": unit, "gains": "loses" if loses else "gains"}
+    values = {"rate": rate, "unit": unit}
     if ahead := forecast(source, index):
         seconds, other = ahead
         return Insight("will pass", (method, other), values | {"seconds": seconds})
-    smallest, other = next(iter(_bands(source)), (0.0, method))
-    if abs(error) > smallest > 0:
-        return Insight("exceeds", (method, other), values | {"ratio": abs(error) / smallest})
     return Insight(judgement.verdict, (method,), values)
 
 
@@ -309,15 +314,12 @@ def _bands(source: Source) -> list[tuple[float, Method]]:
 
 def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
     each = zip(source.scene.cast, source.sample.readings, strict=True)
-    errors = {one: now.max_energy_error for one, now in each if one.key not in hidden}
-    if not errors:
+    largest = {one: now.max_energy_error for one, now in each if one.key not in hidden}
+    if not largest:
         return Insight("watch", values={"text": ""})
-    best = min(errors, key=errors.__getitem__)
-    worst = max(reversed(errors), key=errors.__getitem__)
-    values = {"least": errors[best], "most": errors[worst]}
-    if len(errors) == 1:
-        return Insight("so far alone", (worst,), values)
-    return Insight("so far", (best, worst), values)
+    ends = dict.fromkeys(sorted(largest, key=largest.__getitem__)[:: max(len(largest) - 1, 1)])
+    errors = " to ".join(f"{_share(largest[each])} ({short_name(each)})" for each in ends)
+    return Insight("so far", tuple(ends), {"errors": errors})
 
 
 def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Insight:

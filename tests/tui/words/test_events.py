@@ -20,10 +20,18 @@ def texts(source: Source) -> list[str]:
 
 def test_the_events_of_the_first_twenty_seconds():
     lines = event_lines(after(DRIFT, 20))
-    assert str(lines[1]) == "   7.15 Explicit Euler over the top, 5.1 E0"
+    assert str(lines[1]) == " 7.15 s Explicit Euler over the top, 5.1 E0"
+    assert [str(line)[8:] for line in lines[2:4]] == ["Explicit Euler: + grows", "RK4: - loses"]
     assert [line.t for line in lines] == pytest.approx([0.0, 7.15, 9.0, 9.0, 18.0, 18.0])
     assert "".join(line.method.letter if line.method else "-" for line in lines) == "-eersv"
-    assert "  33.40 RK4's error > Verlet's" in map(str, event_lines(after(SCENES["crossover"], 36)))
+
+
+def test_events_of_hidden_methods_are_not_listed():
+    live = after(SCENES["crossover"], 36)
+    assert "33.40 s RK4's error > Verlet's" in map(str, event_lines(live))
+    shown = "".join(map(str, event_lines(live, {"velocity_verlet"})))
+    assert "RK4: - loses" in shown
+    assert "Verlet" not in shown
 
 
 def test_changes_and_marks_are_listed_and_pauses_are_not():
@@ -39,14 +47,14 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
     live.set_stepping(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert numbered(event_lines(live)) == [
-        " 1    0.00 start drift, h 0.05 s",
-        " 1    1.00 mark 1",
-        " 1    1.00 h 0.1 s",
-        " 1    1.10 mark 2: question 2",
-        " 1    1.10 time reversed, h 0.1 s",
-        " 1    1.10 h 0.4 s, equal cost",
-        " 2    0.00 start 114.6° 0 rad/s, h 0.05 s",
-        " 2    0.00 h 0.2 s, equal cost",
+        " 1  0.00 s start drift, h 0.05 s",
+        " 1  1.00 s mark 1",
+        " 1  1.00 s h 0.1 s",
+        " 1  1.10 s mark 2: question 2",
+        " 1  1.10 s time runs back, h 0.1 s",
+        " 1  1.10 s h 0.4 s, equal cost",
+        " 2  0.00 s start 114.6° 0 rad/s, h 0.05 s",
+        " 2  0.00 s h 0.2 s, equal cost",
     ]
 
 

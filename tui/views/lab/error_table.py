@@ -1,5 +1,6 @@
-"""ErrorTable: each method's state and energy error now, and the verdict on its error so far."""
+"""ErrorTable: the verdict on each method's energy error so far, its errors, and its state now."""
 
+import math
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 from typing import NamedTuple
@@ -16,17 +17,20 @@ from pendu_tui.engine.quantities import (
     THETA,
     THETA_ERROR,
     TREND,
-    Quantity,
+    Head,
 )
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.stepping import change_before
-from pendu_tui.engine.run.verdicts import FAILED, VERDICTS, Judgement
+from pendu_tui.engine.run.verdicts import FAILED, GROWS, VERDICTS, Judgement
 from pendu_tui.tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
 from pendu_tui.tui.drawing.picture import Picture, Row
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.numbers import angle, decimal, scientific
+
+WIDE = 120  # columns, from which heads are written in full, in every scene
+LARGE = 1.0  # an error that grows to the size of the energy itself
 
 
 class TableLine(NamedTuple):
@@ -36,17 +40,30 @@ class TableLine(NamedTuple):
     h: float  # s, the method's own step size
     largest: float  # |dE/E0|, since h last changed
     theta_error: float  # rad, since h last changed
+    held: bool  # by the user: there is no run
+
+    @property
+    def verdict(self) -> str:
+        return FAILED if self.reading.diverged_at is not None else self.judgement.verdict
 
 
 class Column(NamedTuple):
-    """A column: its heads and widths, narrow and wide, and its cells."""
-
     keep: int  # where there is no room the smallest goes first
-    head: str
-    width: int
-    wide_head: str
-    wide_width: int
+    head: Head
     cell: Callable[[TableLine, int], str]  # at most so many characters
+
+
+def _verdict(line: TableLine, width: int) -> str:
+    """Return "+ grows"; of an undecided one what is missing, as far as it fits."""
+    if line.held:
+        return "held"
+    verdict = VERDICTS[line.verdict]
+    texts = [f"{verdict.sign} {verdict.word}".strip()]
+    if (missing := line.judgement.progress) and not verdict.sign:
+        texts = [str(missing), f"{missing.have}/{missing.need} {missing.unit}", *texts]
+    elif line.judgement.reason:
+        texts.insert(0, str(line.judgement))
+    return next((text for text in texts if len(text) <= width), verdict.word)
 
 
 def _angle(line: TableLine, width: int) -> str:
@@ -57,36 +74,17 @@ def _omega(line: TableLine, width: int) -> str:
     return decimal(line.reading.omega, width, max(width - 8, 3))
 
 
-def _judgement(line: TableLine) -> Judgement:
-    if line.reading.diverged_at is not None:
-        return Judgement(FAILED)
-    return line.judgement
-
-
-def _verdict(line: TableLine, width: int) -> str:
-    """Return a verdict: "+ grows", or "undecided 4/8" where there is room."""
-    judgement = _judgement(line)
-    far = "{}/{}".format(*judgement.progress or ("", ""))
-    text = f"{VERDICTS[judgement.verdict].sign} {judgement.verdict} {far}".strip(" /")
-    if len(text) > width:
-        return judgement.verdict
-    return text
-
-
-def _quantity(quantity: Quantity, keep: int, cell: Callable[[TableLine, int], str]) -> Column:
-    return Column(keep, *quantity.head, cell)
-
-
+VERDICT = Column(9, Head("verdict", 9, "verdict", 13), _verdict)
 COLUMNS = (
-    Column(9, "h", 6, "h [s]", 8, lambda line, width: f"{line.h:.4g}"[:width]),
-    _quantity(THETA, 4, _angle),
-    _quantity(OMEGA, 2, _omega),
-    _quantity(ENERGY_ERROR, 7, lambda line, w: scientific(line.reading.energy_error, w)),
-    _quantity(LARGEST, 6, lambda line, w: scientific(line.largest, w, 1, "-")),
-    _quantity(TREND, 5, lambda line, w: scientific(line.judgement.slope, w)),
-    Column(8, "verdict", 9, "verdict", 13, _verdict),
-    _quantity(THETA_ERROR, 3, lambda line, w: scientific(line.theta_error, w, 1, "-")),
-    _quantity(EVALUATIONS, 1, lambda line, w: f"{line.method.force_evaluations}"),
+    VERDICT,
+    Column(8, ENERGY_ERROR.head, lambda line, w: scientific(line.reading.energy_error, w)),
+    Column(7, LARGEST.head, lambda line, w: scientific(line.largest, w, 1, "-")),
+    Column(5, TREND.head, lambda line, w: scientific(line.judgement.slope, w)),
+    Column(3, THETA_ERROR.head, lambda line, w: scientific(line.theta_error, w, 1, "-")),
+    Column(4, THETA.head, _angle),
+    Column(2, OMEGA.head, _omega),
+    Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width]),
+    Column(1, EVALUATIONS.head, lambda line, w: f"{line.method.force_evaluations}"),
 )
 
 
@@ -99,22 +97,32 @@ def extra_columns(model: Model) -> list[Column]:
                 text = scientific(value, width, 1, "-")
             return text
 
-        return Column(8, extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7), cell)
+        head = Head(extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7))
+        return Column(6, head, cell)
 
     return [column(each) for each in model.extra_columns]
 
 
-def _columns(source: Source, room: int) -> list[Column]:
-    """Return the columns that fit; that of h only where methods differ in it."""
-    columns = [*COLUMNS[:-1], *extra_columns(source.scene.equations), COLUMNS[-1]]
+def _columns(source: Source, width: int, names: int) -> list[tuple[str, int, Column]]:
+    """Return heads and widths of the columns that fit; h only where methods differ in it."""
+    columns = [*COLUMNS[:5], *extra_columns(source.scene.equations), *COLUMNS[5:]]
     if len(set(source.stepping.own)) == 1:
-        columns = columns[1:]
-    wide = [each._replace(head=each.wide_head, width=each.wide_width) for each in columns]
-    if sum(column.width + 1 for column in wide) <= room:
-        return wide
-    while columns and sum(column.width + 1 for column in columns) > room:
+        columns = [column for column in columns if column.head.narrow != "h"]
+    first = 0
+    if width >= WIDE:
+        first = 2
+    room = width - names - 1
+
+    def needed() -> int:
+        return sum(int(column.head[first + 1]) + 1 for column in columns)
+
+    while columns and needed() > room:
         columns.remove(min(columns, key=lambda column: column.keep))
-    return columns
+    spare = {VERDICT: min(room - needed(), 4)}  # "2 of 5 swings"
+    return [
+        (str(column.head[first]), int(column.head[first + 1]) + spare.get(column, 0), column)
+        for column in columns
+    ]
 
 
 def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[float], str]:
@@ -130,41 +138,66 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     """Return the rows, the head first."""
     cast = source.scene.cast
     model = source.scene.equations
+    names = [f" {mark(place, method)} {method.label}" for place, method in enumerate(cast)]
+    room = max([20, *map(len, names)])
+    columns = _columns(source, width, room)
+    spare = width - 1 - room - sum(width + 1 for _, width, _ in columns)
+    gap = " " * (1 + min(spare // max(len(columns), 1), 3))
+    lines, head = _lines(source, sample, shown)
+    row = [(f" {head}".ljust(room), QUIET)]
+    for title, size, column in columns:
+        title = title.replace(ENERGY_ERROR.head.narrow, model.error.head.narrow)
+        row.append((gap + _aligned(title, size, column), QUIET))
+    rows = [row]
+    for place, line in lines.items():
+        row = [(names[place].ljust(room), inks(cast)[place])]
+        for _, size, column in columns:
+            text = _aligned(column.cell(line, size), size, column)
+            row.append((gap + text, _ink(column, line)))
+        rows.append(row)
+    return list[Row](rows)
+
+
+def _lines(source: Source, sample: Sample, shown: Shown) -> tuple[dict[int, TableLine], str]:
+    """Return the methods shown by their place, and the head of their names."""
+    model = source.scene.equations
     exact = source.exact.at(sample.t).theta
     largest, theta_errors, head = _since_change(source, sample)
-    names = [f"{mark(place, method)} {method.label}" for place, method in enumerate(cast)]
-    room = max([20, *map(len, names)])
-    columns = _columns(source, width - room)
-    spare = width - room - sum(column.width + 1 for column in columns)
-    gap = " " * (1 + min(spare // max(len(columns), 1), 3))
-    row = [(head.ljust(room), QUIET)]
-    for column in columns:
-        title = column.head.replace(ENERGY_ERROR.head.narrow, model.error.head.narrow)
-        row.append((gap + title.rjust(column.width), QUIET))
-    rows = [row]
-    for place in shown.places(cast):
+    lines = {}
+    for place in shown.places(source.scene.cast):
         reading = sample.readings[place]
         line = TableLine(
-            cast[place],
+            source.scene.cast[place],
             reading,
             source.judgements[place],
             h=source.stepping.own[place],
             largest=largest[place],
             theta_error=abs(model.theta_error(reading.theta, exact) - theta_errors[place]),
+            held=shown.held is not None,
         )
-        row = [(names[place].ljust(room), inks(cast)[place])]
-        for column in columns:
-            text = column.cell(line, column.width)
-            row.append((gap + text.rjust(column.width), _ink(column, line)))
-        rows.append(row)
-    return list[Row](rows)
+        if line.held:
+            line = line._replace(
+                reading=reading._replace(energy_error=math.nan, diverged_at=None),
+                judgement=Judgement(),
+                largest=math.nan,
+                theta_error=math.nan,
+            )
+        lines[place] = line
+    return lines, head
+
+
+def _aligned(text: str, width: int, column: Column) -> str:
+    return text.ljust(width) if column is VERDICT else text.rjust(width)
 
 
 def _ink(column: Column, line: TableLine) -> int:
-    if column.head == "verdict":
-        return {"good": GOOD, "warn": WARN, "quiet": QUIET}[VERDICTS[_judgement(line).verdict].ink]
+    """Return the ink of a cell: red is for failures, and for errors as large as the energy."""
+    if column is VERDICT and not line.held:
+        is_red = line.verdict == GROWS and line.largest >= LARGE
+        inks = {"good": GOOD, "warn": WARN, "quiet": QUIET, "text": TEXT}
+        return WARN if is_red else inks[VERDICTS[line.verdict].ink]
     if line.reading.diverged_at is not None:
-        return WARN
+        return QUIET
     return TEXT
 
 

@@ -18,7 +18,7 @@ class EventList(Pane):
         self._listed: list[EventLine] = []
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        lines = event_lines(source)
+        lines = event_lines(source, self.shown.hidden)
         texts = numbered(lines)[-self.room.height :]
         self._listed = lines[-self.room.height :]
         pairs = zip(self._listed, texts, strict=True)
