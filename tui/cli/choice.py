@@ -1,4 +1,4 @@
-"""Which columns are the time and the total energy: as the user says, or a guess by their names."""
+"""Which columns are the time and the conserved energy: as the user says, or a certain guess."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -6,22 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendu_tui.tui.cli.layouts import (
-    ENERGIES,
-    ERRORS,
-    KINETIC,
-    OTHERS,
-    POTENTIAL,
-    STEPS,
-    TIMES,
-    key,
-)
+from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.units import plain, split_unit
-
-NO_ENERGIES = ("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%")
 
 Group = tuple[int, ...]
 """Columns to add up."""
+
+NO_ENERGIES = ("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%")
 
 
 @dataclass(frozen=True)
@@ -53,19 +44,19 @@ def choose(
 ) -> Choice | None:
     """Return the columns to judge, None if one that the user names is missing.
 
-    `samples` are the first values of each column.
+    `samples` are the first values of each column; a column without a name is called "".
     """
-    named = [wanted.time, wanted.energy, wanted.kinetic]
-    groups = [name and find(names, name) for name in named]
-    if any(name and not group for name, group in zip(named, groups, strict=True)):
+    asked = (wanted.time, wanted.energy, wanted.kinetic)
+    groups = [name and find(names, name) for name in asked]
+    if any(name and not group for name, group in zip(asked, groups, strict=True)):
         return None
     time, energy, kinetic = (group or () for group in groups)
     doubts = []
-    if not time:
+    if not wanted.time:
         guess = _time(names, samples, excluded=energy)
+        time = guess or ()
         if guess is None:
             doubts.append("the time")
-        time = guess or ()
     if not energy:
         energy = _energy(names, units, excluded=time)
         if not energy:
@@ -74,64 +65,61 @@ def choose(
 
 
 def find(names: Sequence[str], text: str) -> Group | None:
-    """Return the columns of a name, a number from 1, or several joined by +.
+    """Return the columns of a name, a number from 1, or several joined by +, None without them.
 
-    Case and unit of a name do not count.  Without a name that fits, it is None.
+    Case and unit of a name do not count, if it is not there to the letter.
     """
-    last_first = [*enumerate(names)][::-1]
-    known = {split_unit(name)[0].casefold(): place for place, name in last_first}
-    known |= {name.strip().casefold(): place for place, name in last_first}
-    known |= {name.strip(): place for place, name in last_first}
-    known |= {str(place + 1): place for place, _ in last_first}
+    known: dict[str, int] = {}
+    for ways in (str.strip, _bare, lambda name: name.strip().casefold()):
+        for place, name in enumerate(names):
+            known.setdefault(ways(name), place)
+    known |= {str(place + 1): place for place in range(len(names))}
     known.pop("", None)
-    for parts in ([text], text.split("+")):
-        group = [_place(known, part.strip()) for part in parts]
-        if None not in group:
-            return tuple(place for place in group if place is not None)
+    for parts in ([text.strip()], text.split("+")):
+        keys = [
+            next(
+                (
+                    way
+                    for way in (part.strip(), part.strip().casefold(), _bare(part))
+                    if way in known
+                ),
+                None,
+            )
+            for part in parts
+        ]
+        if None not in keys:
+            return tuple(known[key] for key in keys if key is not None)
     return None
 
 
-def _place(known: dict[str, int], name: str) -> int | None:
-    for each in (name, name.casefold(), split_unit(name)[0].casefold()):
-        if each in known:
-            return known[each]
-    return None
+def _bare(name: str) -> str:
+    return split_unit(name)[0].casefold()
 
 
 def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Group | None:
     """Return the column of times, () if there is none, None if it is not certain."""
-    keys = [key(split_unit(name)[0]) for name in names]
-    for known in (*TIMES, *STEPS):
-        places = [place for place, each in enumerate(keys) if each == known]
-        if known == "t":  # T is a temperature, unless it increases
-            lower = [place for place in places if names[place].strip().startswith("t")]
-            places = lower or [place for place in places if _increases(samples[place])]
-        if places:
-            return (places[0],)
     rising = [
         place
         for place, sample in enumerate(samples)
-        if place not in excluded and _increases(sample)
+        if place not in excluded and len(sample) > 2 and (np.diff(sample) > 0).all()
     ]
+    for known in ("time", "step"):
+        places = [place for place, name in enumerate(names) if role(name)[0] == known]
+        # T is a temperature, unless it increases
+        places = [
+            place
+            for place in places
+            if _bare(names[place]) != "t" or names[place][0] == "t" or place in rising
+        ]
+        if places:
+            return (
+                min(places, key=lambda place: (_bare(names[place]) not in ("t", "time"), place)),
+            )
     if not rising:
         return ()
-    if len(rising) == 1 and (not names[rising[0]] or _is_even(samples[rising[0]])):
-        return (rising[0],)
-    return None
-
-
-def _is_no_energy(unit: str) -> bool:
-    return bool(plain("time", unit)) or unit.casefold() in NO_ENERGIES
-
-
-def _increases(sample: Any) -> bool:
-    differences = np.diff(sample)
-    return len(differences) > 1 and bool(np.all(differences > 0))
-
-
-def _is_even(sample: Any) -> bool:
-    differences = np.diff(sample)
-    return bool(np.ptp(differences) < 1e-3 * abs(differences).max())  # printed with few digits
+    steps = np.diff(samples[rising[0]])
+    is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
+    return (rising[0],) if len(rising) == 1 and (is_even or not names[rising[0]]) else None
 
 
 def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Group:
@@ -139,42 +127,31 @@ def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Grou
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
         return tuple(places) if len(places) == 1 else ()
-    keys = {
-        place: key(split_unit(names[place])[0])
-        for place in places
-        if plain("energy", units[place]) or not _is_no_energy(units[place])
-    }
-    for known in ENERGIES:
-        found = tuple(place for place, each in keys.items() if each in known)
-        if found:
-            return found if len(found) == 1 else ()
+    roles: dict[tuple[str, int], list[int]] = {}
+    for place in places:
+        unit = units[place]
+        is_energy = plain("energy", unit) or not (
+            plain("time", unit) or unit.casefold() in NO_ENERGIES
+        )
+        if is_energy:
+            roles.setdefault(role(names[place]), []).append(place)
+    ranked = [roles[each] for each in sorted(roles, key=lambda each: each[1])]
+    best = [found for found in ranked if role(names[found[0]])[0] in ("conserved", "total")]
+    if best:
+        return tuple(best[0]) if len(best[0]) == 1 else ()
     parts = [
-        [place for place, each in keys.items() if each in known] for known in (KINETIC, POTENTIAL)
+        place
+        for (name, _), found in sorted(roles.items())
+        for place in found
+        if name in ("kinetic", "potential")
     ]
-    if all(len(part) == 1 for part in parts) and len({units[part[0]] for part in parts}) == 1:
-        return (parts[0][0], parts[1][0])
-    errors = tuple(place for place in places if is_error(names[place]))
-    return errors if len(errors) == 1 else ()
-
-
-def is_error(name: str) -> bool:
-    """Return whether a column of this name holds relative errors of the energy."""
-    return any(ERRORS.fullmatch(key(each)) for each in (name, split_unit(name)[0]))
-
-
-def is_energy(name: str) -> bool:
-    each = key(split_unit(name)[0])
-    return any(each in known for known in (*ENERGIES, KINETIC, POTENTIAL))
-
-
-def is_time(name: str) -> bool:
-    return key(split_unit(name)[0]) in TIMES
+    if [role(names[place])[0] for place in parts] == ["kinetic", "potential"]:
+        return tuple(parts) if len({units[place] for place in parts}) == 1 else ()
+    errors = [place for place in places if role(names[place])[0] == "error"]
+    return tuple(errors) if len(errors) == 1 else ()
 
 
 def known_names(names: Sequence[str]) -> int:
     """Return how many of these are names of an energy, a step or the like, 0 without a time."""
-    keys = [key(split_unit(name)[0]) for name in names]
-    if not any(each in TIMES or each in STEPS for each in keys):
-        return 0
-    others = sum(each in OTHERS or each in STEPS for each in keys)
-    return others + sum(is_time(name) or is_energy(name) or is_error(name) for name in names)
+    roles = [role(name)[0] for name in names]
+    return len(roles) - roles.count("") if {"time", "step"} & set(roles) else 0

@@ -6,6 +6,9 @@ ASE, CP2K's .ener, SIESTA's .MDE, Tinker's tables, GENESIS.
 
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
+
+from pendu_tui.tui.cli.units import split_unit
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\))?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
@@ -20,13 +23,13 @@ class Layout:
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
     columns below; a `row`, which may begin with words; a `name` and its `value`, perhaps with a
     `unit`; `over`, names above a line of numbers; the `place` of a column, from 1, or the `set` of
-    xmgrace, from 0, and its `label`; the beginning of a new run (`part`); what is no longer data
+    xmgrace, from 0, and its `label`; the name of the `first` column, `units` of the others; the beginning of a new run (`part`); what is no longer data
     (`end`), up to the next `part`.  A group of any other name is a value of that name.
     """
 
     programs: str
     line: str = r"(?!)"
-    units: str = ""  # of times and energies without one
+    units: tuple[str, str] = ("", "")  # of times and energies without one
     file: str = r"(?!)"  # the end of the name of a file whose first columns are `columns`
     columns: tuple[str, ...] = ()
     cells: str = ""  # finds each of the names, if neither blanks nor commas part them
@@ -45,34 +48,34 @@ LAYOUTS = (
     Layout(
         programs="GROMACS .xvg, xmgrace",
         line=r'^@ *s(?P<set>\d+) +legend +"(?P<label>[^"]*)"|^(?P<part>&)'
-        r'|^@ *(?P<axis>[xy])axis +label +"(?P<about>[^"]*)"',
+        r'|^@ *xaxis +label +"(?P<first>[^"]*)"|^@ *yaxis +label +"(?P<units>[^"]*)"',
     ),
     Layout(
         programs="GROMACS md.log",
         line=r"^(?P<over> {11}Step {11}Time\b.*|(?=.*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
         r"|(?P<end><=+  A V E R A G E S)|^(?P<part>Started mdrun)",
         cells=".{15}",
-        units="time=ps,energy=kJ/mol",
+        units=("ps", "kJ/mol"),
     ),
     Layout(
         programs="NAMD",
         line=r"^(?P<names>ETITLE:.*)|^(?P<row>ENERGY:.*)|^TCL: (?P<part>Running|Minimizing) for",
-        units="energy=kcal/mol",
+        units=("", "kcal/mol"),
     ),
     Layout(
         programs="CHARMM",
         line=r"^DYNA (?P<names>DYN: .*)|^(?P<row>DYNA> .*)",
-        units="time=ps,energy=kcal/mol",
+        units=("ps", "kcal/mol"),
     ),
     Layout(
         programs="Amber mden",
         line=r"^(?P<names>L0 +[A-Z].*)|^(?P<row>L0 .*)",
-        units="time=ps,energy=kcal/mol",
+        units=("ps", "kcal/mol"),
     ),
     Layout(
         programs="Amber mdout",
         line=r"^ (?=NSTEP +=)|(?P<end>A V E R A G E S   O V E R)",
-        units="time=ps,energy=kcal/mol",
+        units=("ps", "kcal/mol"),
     ),
     Layout(
         programs="CP2K's output",
@@ -81,7 +84,7 @@ LAYOUTS = (
     Layout(
         programs="Quantum ESPRESSO .evp",
         line=r"^# *(?P<names>nfi .*)",
-        units="energy=hartree",
+        units=("", "hartree"),
     ),
     Layout(
         programs="i-PI",
@@ -90,12 +93,12 @@ LAYOUTS = (
     Layout(
         programs="xtb",
         line=r"^ +(?P<names>time \(ps\) +<Epot>.*)",
-        units="energy=hartree",
+        units=("", "hartree"),
     ),
     Layout(
         programs="VASP OSZICAR",
         line=r"^ *(?P<Step>\d+)(?= +T= )",
-        units="energy=eV",
+        units=("", "eV"),
     ),
     Layout(
         programs="Tinker",
@@ -129,42 +132,45 @@ LAYOUTS = (
 )
 """The layouts, in the order in which they are tried on a line."""
 
-TIMES = ("time", "t", "simtime", "simulationtime", "simulatedtime", "mdtime", "currenttime")
-STEPS = (
-    *("step", "steps", "nstep", "nsteps", "nfi", "ts", "stepnr", "stepnumber", "mdstep"),
-    *("timestep", "iteration", "iter", "frame", "cycle"),
+ROLES = (
+    ("time", r"time|t|sim(ulat(ion|ed))?time|mdtime|currenttime"),
+    ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle"),
+    ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
+    ("conserved", r"conserved(en(ergy)?)?"),
+    ("conserved", r"econs"),
+    (
+        "total",
+        r"e?tote?|e?total(e|ene|energy)?|e(nergy)?tot(al)?|tote(ng|ner|nergy)|etot(al)?(n|peratom)",
+    ),
+    ("total", r"e|ener(gy)?"),
+    (
+        "kinetic",
+        r"(tot|md|current)?(ke|e?k|e?kin|kineng|e?kinetic(e|en|ene|energy)?|energykinetic|ektot)",
+    ),
+    (
+        "potential",
+        r"(current)?(pe|ep|u|e?pot|poteng|e?potential(e|en|ene|energy)?|energypotential|eptot)",
+    ),
+    ("error", r"(rel(ative)?)?d(elta)?ee0?|.*e0e0|(rel(ative)?)?e(nergy)?(err(or)?|drift)"),
+    ("error", r"rel(ative)?err(or)?"),
+    ("other", r"temp(erature)?|press?(ure)?|vol(ume)?|density|epair"),
 )
-ENERGIES = (
-    frozenset(("econt", "econserve", "consqty", "totalmdenergy", "ekin+etotconst", "conserved")),
-    frozenset(("conserveden", "conservedenergy", "conservedquantity", "econserved")),
-    frozenset(("econs",)),
-    frozenset(
-        ("etot", "etotal", "total", "totalenergy", "energytotal", "toteng", "totener", "tote")
-    )
-    | frozenset(("totenergy", "totalene", "totale", "energytot", "etotn", "etotalperatom")),
-    frozenset(("e", "energy", "ener")),
-)
-"""Names of the conserved energy as `key` writes them, the best first."""
+"""Roles of columns and their names as `key` writes them; the best comes first."""
 
-KINETIC = frozenset(
-    ("ke", "ekin", "kineng", "kinetic", "kineticenergy", "kineticen", "k", "ek", "ekinetic")
-) | frozenset(
-    ("totke", "currentkinetic", "kineticene", "ektot", "energykinetic", "mdkineticenergy")
-)
-POTENTIAL = frozenset(
-    ("pe", "epot", "poteng", "potential", "potentialenergy", "potentialen", "u", "ep")
-) | frozenset(("epotential", "currentpotential", "potentialene", "eptot", "energypotential"))
-OTHERS = frozenset(
-    ("temp", "temperature", "press", "pressure", "pres", "volume", "vol", "density", "epair")
-)
-ERRORS = re.compile(
-    r"(?:rel(?:ative)?)?d(?:elta)?e(?:e0?)?|.*e0e0|(?:rel(?:ative)?)?e(?:nergy)?(?:err(?:or)?|drift)"
-    r"|rel(?:ative)?err(?:or)?"
-)
-"""Names of relative errors of the energy."""
+_ROLES = [(role, re.compile(names)) for role, names in ROLES]
 
 
 def key(name: str) -> str:
     """Return a name without its unit, in letters, digits and + alone, to compare it."""
     name = re.sub(r"^[\w.]+\.(?=\w{4,}$)|^[vcf]_", "", name.casefold())  # HOOMD, LAMMPS
     return re.sub(r"[^a-z0-9+]", "", name)
+
+
+@lru_cache(4096)
+def role(name: str) -> tuple[str, int]:
+    """Return the role of a column by its name, "" for none, and its rank."""
+    keys = [key(split_unit(name)[0]), key(name)]
+    for rank, (each, names) in enumerate(_ROLES):
+        if any(map(names.fullmatch, keys)):
+            return each, rank
+    return "", len(_ROLES)

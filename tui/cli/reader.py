@@ -7,9 +7,8 @@ import io
 import json
 import lzma
 import re
-from array import array
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from itertools import chain, groupby, islice
 from typing import Any
@@ -17,14 +16,15 @@ from typing import Any
 import numpy as np
 
 from pendu_tui.recordings.errors import printable
-from pendu_tui.tui.cli.choice import Wanted, choose, find, is_energy, is_time, known_names
+from pendu_tui.tui.cli.choice import Wanted, choose, known_names
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout
-from pendu_tui.tui.cli.tables import MAX_ROWS, SAMPLE, Sheet
-from pendu_tui.tui.cli.units import assignments, plain, split_unit
+from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, role
+from pendu_tui.tui.cli.tables import SAMPLE, Sheet
+from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
+MAX_ROWS = 20_000_000  # half a minute; the input may be endless
 MAX_DOCUMENT = 1 << 28  # characters of JSON
 MAX_NAMES = 500  # of values that are printed with their names
 MAX_SHAPES = 10_000
@@ -34,24 +34,23 @@ _NOT_TEXT = {
     b"PAR1": "Parquet; save it as CSV",
     b"\x89HDF": "HDF5; save its arrays with numpy.savez",
     b"MATLAB 5": "a MAT-file; save its arrays with numpy.savez",
-    b"SQLite": "a database; export a table as CSV",
 }
 _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"\x1f\x8b": gzip.open,
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
+_NUMBER = re.compile(NUMBER)
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _FAILED_IN_TEXT = re.compile(rf"(?<![\w.#])(?:{FAILED})(?!\w)", re.IGNORECASE)
-_NUMBER = re.compile(NUMBER)
-_NO_NUMBERS = {ord(sign): None for sign in "0123456789.+- "}
-_MEANINGS = frozenset(
-    ("names", "row", "name", "value", "unit", "over", "place", "set", "label", "part", "end")
-) | frozenset(("axis", "about"))
-_IS_BRACKETED = re.compile(r"[(\[][^()\[\]]*[)\]]")  # a unit alone
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _FORTRAN_POWER = re.compile(r"(?<=[\d.])[dD](?=[-+]?\d)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
+_IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
+_NO_NUMBERS = {ord(sign): None for sign in "0123456789.+- "}
+_PARTS = {"names", "row", "name", "value", "unit", "over", "place", "set", "label"} | {
+    *("first", "units", "part", "end")
+}
 
 
 def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> list[Sheet]:
@@ -59,11 +58,16 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     start = stream.peek(MAX_LINE)
     for magic, unpack in _UNPACK.items():
         if start.startswith(magic):
-            return _unpacked(unpack(stream), wanted, file)
+            try:
+                unpacked = io.BufferedReader(unpack(stream))
+                return read_sheets(unpacked, wanted, file.rpartition(".")[0])
+            except (EOFError, OSError, lzma.LZMAError) as error:
+                why = printable(str(error), 100)
+                raise unreadable(f"it cannot be unpacked: {why}.") from None
     if not start:
         raise unreadable("the input is empty; nothing to judge.")
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return _of_arrays(stream, wanted)
+        return [_of_arrays(stream, wanted)]
     for magic, kind in _NOT_TEXT.items():
         if start.startswith(magic):
             raise unreadable(f"this is {kind}.")
@@ -82,13 +86,6 @@ def unreadable(sentence: str) -> UserError:
     return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
-def _unpacked(stream: Any, wanted: Wanted, file: str) -> list[Sheet]:
-    try:
-        return read_sheets(io.BufferedReader(stream), wanted, file.rpartition(".")[0])
-    except (EOFError, OSError, lzma.LZMAError) as error:
-        raise unreadable(f"it cannot be unpacked: {printable(str(error), 100)}.") from None
-
-
 def _lines(text: io.TextIOBase) -> Iterator[str]:
     while line := text.readline(MAX_LINE):
         if len(line) == MAX_LINE:
@@ -102,23 +99,34 @@ def number(text: str) -> float | None:
     It may have a decimal comma, Fortran's D, a unit or brackets.
     """
     text = text.strip("()[] \t\"'")
-    try:
+    with suppress(ValueError):
         return float(text)
-    except ValueError:
-        if _IS_FAILED.fullmatch(text):
-            return float("nan")
+    if _IS_FAILED.fullmatch(text):
+        return float("nan")
     match = _WITH_UNIT.fullmatch(text)
-    if match and _is_unit(match[2]):
+    if match and is_unit(match[2]):
         text = match[1]
-    try:
+    with suppress(ValueError):
         return float(_FORTRAN_POWER.sub("e", text.replace(",", ".")))
-    except ValueError:
-        return None
+    return None
 
 
-def _is_unit(text: str) -> bool:
-    text = text.strip("()[]")
-    return bool(plain("time", text) or plain("energy", text))
+class _Prints:
+    """Values that are printed with their names."""
+
+    def __init__(self, wanted: Wanted, line: int = 0) -> None:
+        self.sheet = Sheet(wanted, line, is_printed=True)
+        self._places: dict[str, int] = {}
+
+    def add(self, line: int, name: str, value: float | None, unit: str = "") -> None:
+        if value is None:
+            return
+        if name not in self._places:
+            if len(self._places) == MAX_NAMES:
+                return
+            bare = "" if name.isdecimal() else name
+            self._places[name] = self.sheet.add_column(bare, unit or split_unit(name)[1])
+        self.sheet.put(self._places[name], line, value)
 
 
 class _Text:
@@ -126,55 +134,58 @@ class _Text:
 
     def __init__(self, wanted: Wanted, file: str) -> None:
         self._wanted = wanted
-        self._layouts = list(LAYOUTS)  # the one found last comes first
-        self._units: dict[str, str] = {}  # of the layout, for columns without one
+        self._units = ("", "")  # of times and energies, if the layout has only these
         self._heads: list[list[list[str]]] = []  # lines without numbers, each divided in ways
-        self._places: dict[int, str] = {}  # names of columns by place
+        self._labels: dict[int, str] = {}  # names of columns by place
         self._passed = 0  # columns of earlier sets
         self._shared: list[str] = []  # units of xmgrace's y axis
-        self._first = [names for names in (_columns_of(file),) if names]
+        named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
+        self._columns = list(next(named, ()))
         self._sheets: list[Sheet] = []
         self._sheet: Sheet | None = None
         self._delimiter: str | None = None
         self._opening = ""  # the word with which each row begins
         self._width = 0  # fields in a row
-        self._printed = [_Pairs()]  # one for each run
+        self._prints = [_Prints(wanted)]  # one for each run
         self._over: list[str] = []  # names above a line of numbers
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
+        self._words: set[int] = set()  # places of words in the rows
         self._line = 0
-        self._shapes: dict[str, list[tuple[str, int]]] = {}  # of lines that need no other look
+        self._shapes: dict[str, list[tuple[str, int]]] = {}  # lines that need no other look
 
     def read(self, lines: Iterator[str]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
         while block := list(islice(lines, BLOCK)):
             for is_alike, group in groupby(block, self._is_like_a_row):
                 self._read(list(group), is_alike)
-            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._printed[-1].names:
+            check_size(*self._sheets[-1:], self._prints[-1].sheet)
+            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0].sheet:
                 raise unreadable(f"{self._line:,} lines without a row; is this a table?")
-        sheets = self._sheets
-        named = [sheet for sheet in sheets if any(sheet.names)]
-        for pairs in self._printed:
-            printed = pairs.sheet(self._wanted)
-            if printed and printed.choice and (not printed.choice.doubt or not named):
-                named.append(printed)
-        return sorted(named or sheets, key=lambda sheet: sheet.line)
+        named = [sheet for sheet in self._sheets if any(sheet.names)]
+        for sheet in (prints.sheet for prints in self._prints):
+            sheet.choose()
+            if sheet.choice and sheet.choice.energy and not (named and sheet.choice.doubt):
+                named.append(sheet)
+        return sorted(named or self._sheets, key=lambda sheet: sheet.line)
 
     def _is_like_a_row(self, line: str) -> bool:
-        return (
-            line.startswith(self._opening)
-            and len(line.split(self._delimiter)) == self._width
-            and '"' not in line
-        )
+        is_wide = len(line.split(self._delimiter)) == self._width
+        return is_wide and line.startswith(self._opening) and '"' not in line
 
     def _read(self, lines: list[str], are_alike: bool) -> None:
         """Read rows like the last one at once, other lines one by one."""
         for at, line in enumerate(lines):
             sheet = self._sheet
-            if are_alike and sheet and sheet.is_chosen and not self._heads and not self._over:
+            is_plain = are_alike and not (
+                self._heads or self._over or self._is_over or self._begins
+            )
+            if is_plain and sheet and len(sheet) >= SAMPLE:
+                if sheet.choice is None:
+                    sheet.choose()
                 block = self._block(sheet, lines[at:])
                 if block is not None:
-                    sheet.extend(block)
+                    sheet.extend(self._line + 1, block)
                     self._line += len(block)
                     return
             self._line += 1
@@ -182,15 +193,13 @@ class _Text:
 
     def _block(self, sheet: Sheet, lines: list[str]) -> Any:
         """Return the kept columns of rows, (n, len(kept)), None if one has no number there."""
-        if self._is_over or self._begins or not sheet.kept:
-            return None
         text = "".join(lines)
         for is_clean in (False, True):
             if is_clean:
                 text = _FORTRAN_POWER.sub("e", _FAILED_IN_TEXT.sub("nan", text))
+                text = re.sub(r"[()\[\]]", "", text)
                 if self._delimiter != ",":
                     text = text.replace(",", ".")
-                text = re.sub(r"[()\[\]]", "", text)
             with suppress(ValueError):
                 return np.loadtxt(
                     text.splitlines(),
@@ -209,7 +218,7 @@ class _Text:
             values = [number(field) for field in line.split()]
             if len(values) == len(names) and None not in values:
                 for name, value in zip(names, values, strict=True):
-                    self._pair(name, value)
+                    self._print(name, value)
                 return
         shape = line.translate(_NO_NUMBERS)
         prints = self._shapes.get(shape)
@@ -221,7 +230,7 @@ class _Text:
         numbers = _NUMBER.findall(line)
         if prints and len(numbers) == prints[0][1] and not self._is_over:
             for name, at in prints[1:]:
-                self._pair(name, float(_FORTRAN_POWER.sub("e", numbers[at])))
+                self._print(name, float(_FORTRAN_POWER.sub("e", numbers[at])))
         elif prints:
             self._by_layout(line)
 
@@ -231,32 +240,28 @@ class _Text:
         Return what lines of this shape hold, if it is nothing, or numbers with their names: the
         names with the places of their numbers, behind the count of all numbers in the line.
         """
-        prints: dict[str, int] = {}  # where the numbers begin
-        is_known = False
-        for layout in self._layouts:
-            found = list(layout.pattern.finditer(line))
-            if found:
-                self._units |= assignments(layout.units) if layout.units else {}
-            is_data = False
-            for match in found:
+        begins: dict[str, int] = {}  # of the numbers
+        is_data = False
+        for layout in LAYOUTS:
+            for match in layout.pattern.finditer(line):
+                self._units = layout.units if any(layout.units) else self._units
                 groups = {
                     name: text for name, text in match.groupdict().items() if text is not None
                 }
-                for name in groups.keys() - _MEANINGS:
-                    prints[name] = match.start(name)
-                    self._pair(name, number(groups[name]))
+                for name in groups.keys() - _PARTS:
+                    begins[name] = match.start(name)
+                    self._print(name, number(groups[name]))
                 if "value" in groups:
-                    prints[groups["name"]] = match.start("value")
+                    begins[groups["name"]] = match.start("value")
                 is_data |= self._found(layout, groups)
-            is_known |= is_data
             if is_data:
                 break
-        if not is_known:
+        if not is_data:
             is_noise = not self._is_over and self._words_or_row(line)
             return [] if is_noise else None
         places = [match.start() for match in _NUMBER.finditer(line)]
-        if prints and set(prints.values()) <= set(places):
-            return [("", len(places)), *((name, places.index(at)) for name, at in prints.items())]
+        if begins and set(begins.values()) <= set(places):
+            return [("", len(places)), *((name, places.index(at)) for name, at in begins.items())]
         return None
 
     def _found(self, layout: Layout, groups: dict[str, str]) -> bool:
@@ -266,13 +271,13 @@ class _Text:
                 self._begins = True
                 self._is_over = False
                 self._passed += max(self._width - 1, 0)
-                self._printed.append(_Pairs())
+                self._prints.append(_Prints(self._wanted, self._line))
             case {"end": _}:
                 self._is_over = True
             case _ if self._is_over:
                 pass
-            case {"name": name, "value": value, **more}:
-                self._pair(name, number(value), more.get("unit", ""))
+            case {"name": name, "value": value}:
+                self._print(name, number(value), groups.get("unit", ""))
             case {"names": text}:
                 self._heads = [_ways(text, layout.cells)]
             case {"over": text}:
@@ -280,48 +285,44 @@ class _Text:
             case {"row": text}:
                 fields, delimiter = _fields(text, glued=True)
                 self._row(fields, delimiter, opening=fields[0] if number(fields[0]) is None else "")
-            case {"label": label, **places}:
-                first = int(places.get("place", 0)) - 1
-                if "set" in places:
-                    first = int(places["set"]) + 1
-                self._places[first] = label
-            case {"axis": "x", "about": label}:
-                self._places[0] = label
-            case {"about": label}:
-                self._shared = re.findall(r"\(([^()]*)\)", label)
+            case {"set": place, "label": label}:
+                self._labels[int(place) + 1] = label
+            case {"place": place, "label": label}:
+                self._labels[int(place) - 1] = label
+            case {"first": label}:
+                self._labels[0] = label
+            case {"units": units}:
+                self._shared = re.findall(r"\(([^()]*)\)", units)
             case _:
                 return False
         return True
 
-    def _pair(self, name: str, value: float | None, unit: str = "") -> None:
-        pairs = self._printed[-1]
-        if name not in pairs.names:
-            unit = unit or split_unit(name)[1] or self._default_unit(name)
-        pairs.add(name, value, unit, self._line)
+    def _print(self, name: str, value: float | None, unit: str = "") -> None:
+        self._prints[-1].add(self._line, name, value, unit or self._unit(name))
 
-    def _default_unit(self, name: str) -> str:
-        if is_time(name):
-            return self._units.get("time", "")
-        return self._units.get("energy", "") if is_energy(name) else ""
+    def _unit(self, name: str) -> str:
+        """Return the unit of a column by its name, or by what the layout says of times, energies."""
+        kind = role(name)[0]
+        default = {"time": self._units[0], "step": "", "other": "", "error": "", "": ""}
+        return split_unit(name)[1] or default.get(kind, self._units[1])
 
     def _words_or_row(self, line: str) -> bool:
         """Read a row, or words that may be a head.  Return whether it is neither."""
         text = line.strip()
         bare = text.lstrip("#@!%; \t")
-        is_comment = bare != text and number(text.split()[0]) is None
         if text.startswith("@") or not re.search(r"[\w*]", text):
             return False  # what else xmgrace is told, or a rule
+        is_comment = bare != text and number(text.split()[0]) is None
         fields, delimiter = _fields(bare)
         if delimiter is None and len(fields) != self._width:
             divided = _fields(bare, glued=True)[0]
             fields = divided if len(divided) == self._width else fields
-        numbers = [number(each) for each in fields]
-        some = len(numbers) > numbers.count(None)
-        if some and not is_comment and self._row(fields, delimiter):
+        has_number = any(number(each) is not None for each in fields)
+        if has_number and not is_comment and self._row(fields, delimiter):
             return False
-        if not some:
+        if not has_number:
             self._heads = [*self._heads[-20:], _ways(bare)]
-        return some and (is_comment or numbers[0] is None)
+        return has_number and (is_comment or number(fields[0]) is None)
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to its table, which may begin here.  Return whether it is a row."""
@@ -332,126 +333,114 @@ class _Text:
             self._delimiter = delimiter
             self._width = len(fields)
             self._opening = opening
+            is_like = True
         sheet = self._sheet
-        if sheet is None or len(fields) != self._width or self._opening != opening:
-            is_broken = opening == self._opening and (opening or numbers[0] is not None)
-            if sheet is not None and is_broken:
-                sheet.without_numbers += 1
+        if sheet is None or not is_like:
+            if sheet and opening == self._opening and (opening or numbers[0] is not None):
+                sheet.skipped += 1
             return False
-        sheet.add(numbers, is_cell=delimiter is not None or not _has_words(fields, numbers))
+        words = {at for at, value in enumerate(numbers) if value is None and fields[at]}
+        if is_new:
+            self._words = words
+        elif delimiter is None and words > self._words:
+            sheet.skipped += 1
+            return False
+        sheet.put_row(self._line, numbers)
         return True
 
     def _begin(self, fields: list[str], numbers: list[float | None], opening: str) -> bool:
-        """Look for the head of this row; begin a table, unless it is the head of the present."""
-        width = len(fields)
-        names = self._head(fields, numbers)
+        """Look for the head of this row.  Return whether a table begins, or goes on below it."""
         before = self._sheet
-        is_same = width == self._width and opening == self._opening
-        if names is None and before is not None and not self._begins and is_same:
-            self._heads = []
-            return False
+        names = self._head(fields, numbers)
         if names is None:
-            names = self._placed(width)
-            is_data = None not in numbers or (opening and None not in numbers[1:])
-            if not is_data or (before is not None and not self._begins and any(before.names)):
+            is_like = len(fields) == self._width and opening == self._opening
+            is_row = None not in (numbers[1:] if opening else numbers)
+            is_below = before and not self._begins and (is_like or any(before.names))
+            if is_below or not is_row:
+                self._heads = self._heads if not is_like else []
                 return False
+            names = self._labelled(len(fields))
         units = self._units_of(names, fields)
-        text_between = len(self._heads) > 1
+        has_text = len(self._heads) > 1  # between this head and the rows above
         self._heads = []
-        is_page = before is not None and before.names == names and not self._begins
-        if is_page and not (text_between and _repeats(before, numbers)):
-            return True
+        if before and before.names == names and not self._begins:
+            time = before.last_time() if has_text else None
+            if time is None or time not in numbers:  # a page of the same table, or a restart
+                return True
         self._begins = False
-        self._sheet = Sheet(names, units, self._wanted, self._line)
+        self._sheet = Sheet(self._wanted, self._line)
+        for name, unit in zip(names, units, strict=True):
+            self._sheet.add_column(name, unit)
         self._sheets.append(self._sheet)
         return True
 
     def _head(self, fields: list[str], numbers: list[float | None]) -> list[str] | None:
         """Return the best names above that fit a row, None without any."""
-        best: list[str] | None = None
+        found: list[str] | None = None
         most = 0
         width = len(fields)
-        for names in (names for ways in reversed([*self._heads, self._first]) for names in ways):
+        heads = (names for ways in reversed(self._heads) for names in ways)
+        for names in chain(heads, [self._columns] if self._columns else []):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
-            if len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
+            elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
                 names = ["", *names]  # the rows are numbered
-            if names in self._first:
+            elif names is self._columns:
                 names = [*names, *[""] * (width - len(names))]
-            if len(names) != width:
-                continue
-            worth = self._worth(names, numbers)
-            if worth > most:
-                best = names
+            if len(names) == width and (worth := self._worth(names, numbers)) > most:
+                found = names
                 most = worth
-        return best
+        return found
 
     def _worth(self, names: list[str], numbers: list[float | None]) -> int:
         """Return how sure it is that these are the names of a row, 0 if they are not."""
-        wanted = (self._wanted.time, self._wanted.energy)
-        groups = [find(names, text) for text in wanted if text and not text.isdecimal()]
-        places = [place for group in groups if group for place in group]
-        if None in [numbers[place] for place in places]:
+        if any(map(_IS_UNIT_ALONE.fullmatch, names)):
             return 0
-        if groups and None not in groups:
-            return 100
-        if any(self._places.values()) or any(map(_IS_BRACKETED.fullmatch, names)):
-            return 0
+        choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
         known = known_names(names)
-        if known > 1:
-            choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
-            if choice and None in [numbers[place] for place in choice.columns]:
-                return 0
-        if known < 2 and (None in numbers or any(number(name) is not None for name in names)):
+        asked = [text for text in (self._wanted.time, self._wanted.energy) if text]
+        if choice and None in [numbers[place] for place in choice.columns]:
             return 0
-        return max(known, int(self._sheet is None or self._begins))
+        if choice and asked and not all(text.isdecimal() for text in asked):
+            return len(names) + 1
+        is_named = any(self._labels.values()) or None in numbers
+        if known > 1 and not any(self._labels.values()):
+            return known
+        is_numeric = any(number(name) is not None for name in names)
+        is_first = self._sheet is None or self._begins
+        return int(is_first and not is_numeric and not is_named)
 
-    def _placed(self, width: int) -> list[str]:
-        names = [self._places.get(0, ""), *[""] * (width - 1)]
-        for place in range(1, width):
-            names[place] = self._places.get(place + self._passed, "")
-        return names
+    def _labelled(self, width: int) -> list[str]:
+        """Return the names that lines above gave to single columns."""
+        places = [0, *range(1 + self._passed, width + self._passed)]
+        return [self._labels.get(place, "") for place in places]
 
     def _units_of(self, names: list[str], fields: list[str]) -> list[str]:
         """Return the unit of each column, as far as it is certain to be its own."""
-        units = [split_unit(name)[1] for name in names]
-        for row in (row for ways in self._heads for row in ways):
-            if len(row) == len(names) and not any(units) and any(map(_is_unit, row)):
-                units = [each.strip("()[]") for each in row]
+        units = [self._unit(name) for name in names]
+        rows = (row for ways in self._heads if names not in ways for row in ways)
+        for row in ([each.strip("()[]") for each in row] for row in rows):
+            if len(row) == len(names) and any(map(is_unit, row)) and not any(units):
+                units = row
         energies = [unit for unit in self._shared if plain("energy", unit) and unit != "K"]
         for place, name in enumerate(names):
+            match = _WITH_UNIT.fullmatch(fields[place])
+            is_energy = role(name)[0] in ("conserved", "total", "kinetic", "potential")
             if units[place]:
                 continue
-            if len(self._shared) == 1 and place and self._places:
+            if place and len(self._shared) == 1:
                 units[place] = self._shared[0]
-            elif len(energies) == 1 and is_energy(name):
+            elif is_energy and len(energies) == 1:
                 units[place] = energies[0]
-            elif (match := _WITH_UNIT.fullmatch(fields[place])) and _is_unit(match[2]):
+            elif match and is_unit(match[2]):
                 units[place] = match[2]
-            else:
-                units[place] = self._default_unit(name)
         return units
 
 
-def _columns_of(file: str) -> list[str]:
-    fitting = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
-    return list(next(fitting, ()))
-
-
-def _has_words(fields: Sequence[str], numbers: Sequence[float | None]) -> bool:
-    pairs = zip(fields, numbers, strict=True)
-    return any(value is None and field for field, value in pairs)
-
-
-def _repeats(sheet: Sheet | None, numbers: Sequence[float | None]) -> bool:
-    """Return whether a row has the time of the last one, as at the beginning of a new run."""
-    if sheet is None:
-        return False
-    sheet.end()
-    time = (sheet.choice and sheet.choice.time) or ()
-    if len(time) != 1 or not sheet.rows:
-        return False
-    return sheet.columns[sheet.kept.index(time[0])][-1] == numbers[time[0]]
+def check_size(*sheets: Sheet) -> None:
+    """Raise UserError if there are too many rows; the input may be endless."""
+    if any(len(sheet) > MAX_ROWS for sheet in sheets):
+        raise unreadable(f"more than {MAX_ROWS:,} rows; leave some out.")
 
 
 def _ways(text: str, cells: str = "") -> list[list[str]]:
@@ -459,28 +448,23 @@ def _ways(text: str, cells: str = "") -> list[list[str]]:
     text = _without_bars(text.strip().rstrip(",; "))
     if cells:
         return [[name.strip() for name in re.findall(cells, text)]]
-    ways = [_split(text, sign) for sign in "\t;,|" if sign in text]
-    ways.append(_split(text, " "))
+    ways = [_split(text, sign) for sign in "\t;,| " if sign in text or sign == " "]
     ways.append(re.split(r"\s{2,}", text))  # names may contain single blanks
     ways.append(re.sub(r"\s+(?=[(\[])", "\0", text).split())  # or a blank before the unit
     ways.append(re.findall(r"[^)\]]+[)\]]", text))  # or end with the unit
-    clean = [[name.replace("\0", " ").strip(" '\"#") for name in names] for names in ways]
-    return [names for names in clean if names]
+    return [[name.replace("\0", " ").strip(" '\"#") for name in names] for names in ways if names]
 
 
 def _without_bars(text: str) -> str:
     """Return a row without the bars at its ends, as Markdown has them."""
-    if len(text) > 1 and text[0] == text[-1] == "|":
-        return text[1:-1]
-    return text
+    return text[1:-1] if len(text) > 1 and text[0] == text[-1] == "|" else text
 
 
 def _split(text: str, delimiter: str) -> list[str]:
-    try:
+    with suppress(csv.Error, ValueError):
         (fields,) = csv.reader([text.strip(" \r\n")], delimiter=delimiter, skipinitialspace=True)
-    except (csv.Error, ValueError):
-        return []
-    return [field.strip() for field in fields]
+        return [field.strip() for field in fields]
+    return []
 
 
 def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
@@ -488,72 +472,35 @@ def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
     text = _without_bars(text.strip())
     bare = re.sub(r'"[^"]*"', "", text)
     for sign in "\t;,|":
-        if sign in bare:
-            fields = _split(text, sign)
-            if not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
-                return fields, sign
-    if glued:
-        text = _GLUED.sub(" ", text)
-    return _split(text, " "), None
-
-
-class _Pairs:
-    """Values that a program prints with their names."""
-
-    def __init__(self) -> None:
-        self.names: dict[str, tuple[array[int], array[float], str]] = {}  # lines, values, unit
-
-    def add(self, name: str, value: float | None, unit: str, line: int) -> None:
-        if value is None or (name not in self.names and len(self.names) == MAX_NAMES):
-            return
-        lines, values, _ = self.names.setdefault(name, (array("q"), array("d"), unit))
-        if len(lines) == MAX_ROWS:
-            raise unreadable(f"more than {MAX_ROWS:,} rows; leave some out.")
-        lines.append(line)
-        values.append(value)
-
-    def sheet(self, wanted: Wanted) -> Sheet | None:
-        """Return a table of what is printed repeatedly, a row for each time, None without any."""
-        names = [name for name, (lines, _, _) in self.names.items() if len(lines) > 1]
-        found = [self.names[name] for name in names]
-        units = [unit for _, _, unit in found]
-        samples = [np.asarray(values[:SAMPLE]) for _, values, _ in found]
-        choice = choose(names, units, samples, wanted)
-        if not names or choice is None or not choice.energy:
-            return None
-        leader = np.asarray(found[(choice.time or choice.energy)[0]][0])
-        columns = np.zeros((len(leader), len(choice.columns)))
-        is_whole = np.ones(len(leader), dtype=bool)
-        for column, place in enumerate(choice.columns):
-            lines = np.asarray(found[place][0])
-            record = np.searchsorted(leader, lines, side="right") - 1
-            if np.array_equal(record + 1, np.arange(len(leader))):
-                record += 1  # each is printed before the leader
-            inside = record >= 0
-            columns[record[inside], column] = np.asarray(found[place][1])[inside]
-            is_whole &= np.isin(np.arange(len(leader)), record)
-        sheet = Sheet(names, units, wanted, int(leader[0]))
-        sheet.fill(choice, columns[is_whole])
-        sheet.without_numbers = int(np.count_nonzero(~is_whole))
-        return sheet
+        fields = _split(text, sign) if sign in bare else []
+        if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
+            return fields, sign
+    return _split(_GLUED.sub(" ", text) if glued else text, " ") or [""], None
 
 
 def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
-    """Read JSON: an object a line, or one document."""
-    first = text.readline(MAX_DOCUMENT)
-    while first.isspace():
-        first = text.readline(MAX_DOCUMENT)
-    item = _parsed(first)
+    """Read JSON: an object or a list a line, or one document."""
+    first = next(
+        (line for line in iter(lambda: text.readline(MAX_DOCUMENT), "") if line.strip()), ""
+    )
     second = text.readline(MAX_DOCUMENT)
-    if item is not None and second.strip():
-        lines = (_parsed(line) for line in chain([second], _lines(text)))
-        return _documents(chain([item], lines), wanted)
-    if item is None:
+    items: Any = [_parsed(first)]
+    if items[0] is not None and second.strip():
+        items = chain(items, map(_parsed, chain([second], _lines(text))))
+    elif items[0] is None:
         whole = first + second + text.read(MAX_DOCUMENT)
-        item = _parsed(whole)
-        if item is None:
+        items = [_parsed(whole)]
+        if items[0] is None:
             return _Text(wanted, file).read(iter(whole.splitlines(keepends=True)))
-    return _documents(item, wanted)
+    if isinstance(items, list):
+        items = _records(items[0])
+    prints = _Prints(wanted)
+    for line, item in enumerate(items):
+        for name, value in _flat(item):
+            prints.add(line, name, number(str(value)))
+        if line % BLOCK == 0:
+            check_size(prints.sheet)
+    return [prints.sheet]
 
 
 def _parsed(text: str) -> Any:
@@ -562,95 +509,60 @@ def _parsed(text: str) -> Any:
     return None
 
 
-def _documents(item: Any, wanted: Wanted) -> list[Sheet]:
-    sheets: list[Sheet] = []
-    for names, rows in _in_document(item):
-        sheet = Sheet(names, [split_unit(name)[1] for name in names], wanted, len(sheets))
-        for row in rows:
-            sheet.add([_value(each) for each in row])
-        sheets.append(sheet)
-    return sheets
+def _records(item: Any) -> Iterable[Any]:
+    """Return the objects or rows in a document: those of a list, or of lists in an object."""
+    if isinstance(item, list):
+        return item
+    if not isinstance(item, dict):
+        return []
+    if isinstance(item.get("columns"), list) and isinstance(item.get("data"), list):
+        return [dict(zip(item["columns"], row, strict=False)) for row in item["data"]]
+    columns = {
+        name: [*each.values()] if isinstance(each, dict) else each
+        for name, each in item.items()
+        if isinstance(each, list) or (isinstance(each, dict) and all(map(str.isdecimal, each)))
+    }
+    flat = {
+        name: each
+        for name, each in columns.items()
+        if len(each) > 1 and not isinstance(each[0], (dict, list))
+    }
+    size = max(map(len, flat.values()), default=0)
+    names = [name for name, each in flat.items() if len(each) == size]
+    if names:
+        return [
+            dict(zip(names, row, strict=True))
+            for row in zip(*(flat[name] for name in names), strict=True)
+        ]
+    found = (_records(each) for each in item.values())
+    return next((each for each in found if each), [])
 
 
-def _in_document(item: Any) -> Iterator[tuple[list[str], Iterable[Sequence[Any]]]]:
-    """Yield names and rows of each table: lists of objects or of rows, objects of lists."""
-    match item:
-        case {"columns": [str(), *_] as names, "data": [[*_], *_] as rows}:
-            yield names, rows
-        case [int() | float(), *_]:
-            yield [""], zip(item)
-        case dict():
-            lists = {name: [*each.values()] for name, each in item.items() if _is_numbered(each)}
-            lists |= {name: each for name, each in item.items() if isinstance(each, list)}
-            flat = {name: each for name, each in lists.items() if not _is_nested(each)}
-            sizes = Counter(map(len, flat.values()))
-            most = max(sizes, key=lambda size: (sizes[size], size), default=0)
-            names = [name for name, each in flat.items() if len(each) == most > 1]
-            if names:
-                yield names, zip(*(flat[name] for name in names), strict=True)
-            for name, each in item.items():
-                if name not in flat and isinstance(each, (dict, list)):
-                    yield from _in_document(each)
-        case str() | None | int() | float() | []:
-            pass
-        case _:
-            yield _of_records(iter(item))
+def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of an object with their names; those of a list have numbers."""
+    if isinstance(item, dict):
+        for inner, value in item.items():
+            yield from _flat(value, f"{name}.{inner}".lstrip("."))
+    elif isinstance(item, list) and not name:
+        for place, value in enumerate(item, 1):
+            yield str(place), value
+    elif not isinstance(item, list):
+        yield name, item
 
 
-def _of_records(items: Iterator[Any]) -> tuple[list[str], Iterable[Sequence[Any]]]:
-    """Return names and rows of objects, or of lists without names."""
-    sample = list(islice(items, SAMPLE))
-    everything = chain(sample, items)
-    keys = dict.fromkeys(name for each in sample if isinstance(each, dict) for name in _flat(each))
-    if keys:
-        objects = (_flat(each) for each in everything if isinstance(each, dict))
-        return list(keys), ([each.get(name) for name in keys] for each in objects)
-    rows = (each for each in everything if isinstance(each, list))
-    width = max((len(each) for each in sample if isinstance(each, list)), default=0)
-    return [""] * width, (each for each in rows if len(each) == width)
-
-
-def _flat(item: dict[str, Any], above: str = "") -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in item.items():
-        if isinstance(value, dict) and above.count(".") < 3:
-            found |= _flat(value, f"{above}{name}.")
-        else:
-            found[above + name] = value
-    return found
-
-
-def _is_numbered(item: Any) -> bool:
-    """Return whether this is a column as pandas writes it, {"0": 1.5, "1": 1.6}."""
-    return isinstance(item, dict) and len(item) > 1 and all(name.isdecimal() for name in item)
-
-
-def _is_nested(items: list[Any]) -> bool:
-    return any(isinstance(each, (dict, list)) for each in items)
-
-
-def _value(item: Any) -> float | None:
-    if isinstance(item, (int, float, str)):
-        return number(str(item))
-    return None
-
-
-def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> list[Sheet]:
+def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> Sheet:
     """Read an .npz of columns, or an .npy of a column, of columns or of records."""
     try:
         loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
-        if not isinstance(loaded, np.ndarray):
-            members = loaded.zip.namelist()
-            if not all(name.endswith(".npy") for name in members):
-                raise unreadable("this is a workbook or another archive; save the table as CSV.")
-            arrays = {name: loaded[name] for name in loaded}
-        elif loaded.dtype.names:
-            arrays = {name: loaded[name] for name in loaded.dtype.names}
-        else:
-            arrays = {"": loaded}
+        names: Any = getattr(loaded, "files", None) or loaded.dtype.names
+        if hasattr(loaded, "zip") and not all(
+            name.endswith(".npy") for name in loaded.zip.namelist()
+        ):
+            raise unreadable("this is a workbook or another archive; save the table as CSV.")
+        arrays = [(name, loaded[name]) for name in names] if names else [("", loaded)]
         columns = [
             (name, column.astype(float))
-            for name, each in arrays.items()
+            for name, each in arrays
             if each.ndim in (1, 2) and each.size
             for column in np.reshape(each, (len(each), -1)).T
         ]
@@ -658,10 +570,10 @@ def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> list[Sheet]:
         raise
     except Exception as error:  # a broken archive may raise anything
         raise unreadable(f"its arrays cannot be read: {printable(str(error), 100)}.") from None
+    sheet = Sheet(wanted)
     rows = Counter(len(column) for _, column in columns).most_common(1)
-    names = [name for name, column in columns if len(column) == rows[0][0]]
-    table = np.stack([column for _, column in columns if len(column) == rows[0][0]])
-    choice = choose(names, [split_unit(name)[1] for name in names], list(table), wanted)
-    sheet = Sheet(names, [split_unit(name)[1] for name in names], wanted)
-    sheet.fill(choice, table[choice.columns].T if choice else table.T)
-    return [sheet]
+    long = [(name, column) for name, column in columns if len(column) == rows[0][0]]
+    for name, _ in long:
+        sheet.add_column(name, split_unit(name)[1])
+    sheet.extend(0, np.stack([column for _, column in long], axis=1))
+    return sheet

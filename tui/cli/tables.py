@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from pendu_tui.tui.cli.choice import Choice, Wanted, choose, is_error, is_time
+from pendu_tui.tui.cli.choice import Choice, Wanted, choose
 from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.units import shown, split_unit
 
 LATEST = 1e300  # of times; squares and differences of later ones overflow
@@ -32,108 +33,104 @@ REASONS = {
 
 
 class Sheet:
-    """The rows under one head.  Once the columns are chosen, only they are kept."""
+    """The columns under one head, or of values printed with their names.
 
-    def __init__(self, names: Sequence[str], units: Sequence[str], wanted: Wanted, line: int = 0):
-        self.names = list(names)
-        self.units = list(units)
+    Each value has the line where it was found.  A column without a name is called "".
+    """
+
+    def __init__(self, wanted: Wanted, line: int = 0, is_printed: bool = False):
+        self.names: list[str] = []
+        self.units: list[str] = []
         self.line = line  # where it begins
+        self.kept: Sequence[int] = ()  # the columns that are still read
         self.choice: Choice | None = None
-        self.kept: list[int] = []
-        self.columns: list[array[float]] = []
-        self.rows = 0
-        self.without_numbers = 0
-        self._gaps = array("q")  # rows without an energy
+        self.skipped = 0  # rows without numbers
+        self._lines: list[array[int]] = []
+        self._values: list[array[float]] = []
         self._wanted = wanted
-        self._sample: list[Sequence[float | None]] | None = []  # None: the columns are chosen
+        self._is_printed = is_printed
 
-    @property
-    def is_numbered(self) -> bool:
-        """Whether the head is thought to have no name for the first column."""
-        return len(self.names) > 1 and not self.names[0] and any(self.names)
+    def add_column(self, name: str, unit: str = "") -> int:
+        """Add an empty column and return its place."""
+        self.names.append(name)
+        self.units.append(unit)
+        self._lines.append(array("q"))
+        self._values.append(array("d"))
+        self.kept = range(len(self.names))
+        return len(self.names) - 1
 
-    @property
-    def is_chosen(self) -> bool:
-        return self._sample is None
+    def put(self, place: int, line: int, value: float) -> None:
+        self._lines[place].append(line)
+        self._values[place].append(value)
 
-    def add(self, numbers: Sequence[float | None], is_cell: bool = True) -> None:
-        """Add a row of numbers; where an energy is missing in a cell, it may have failed."""
-        self._check_size(1)
-        if self._sample is not None:
-            self._sample.append(numbers)
-            if len(self._sample) == SAMPLE:
-                self.end()
-            return
-        time = [numbers[place] for place in (self.choice or Choice()).time]
-        values = [numbers[place] for place in self.kept]
-        if None in time or (None in values and not is_cell):
-            self.without_numbers += 1
-            return
-        if None in values:
-            self._gaps.append(self.rows)
-        self.rows += 1
-        for column, value in zip(self.columns, values, strict=True):
-            column.append(math.nan if value is None else value)
+    def put_row(self, line: int, numbers: Sequence[float | None]) -> None:
+        for place in self.kept:
+            value = numbers[place]
+            if value is not None:
+                self.put(place, line, value)
 
-    def extend(self, block: Any) -> None:
+    def extend(self, line: int, block: Any) -> None:
         """Add rows of the kept columns, (n, len(kept))."""
-        self._check_size(len(block))
-        self.rows += len(block)
-        for column, values in zip(self.columns, block.T, strict=False):
-            column.frombytes(values.tobytes())
+        lines = np.arange(line, line + len(block)).tobytes()
+        for place, values in zip(self.kept, block.T, strict=True):
+            self._lines[place].frombytes(lines)
+            self._values[place].frombytes(values.astype(float).tobytes())
 
-    def fill(self, choice: Choice | None, block: Any) -> None:
-        """Set the columns of the choice, (n, len(kept))."""
-        self._sample = None
-        self.choice = choice
-        self.kept = choice.columns if choice else []
-        self.columns = [array("d") for _ in self.kept]
-        self.extend(block)
+    def __len__(self) -> int:
+        """Return the length of the longest column."""
+        return max(map(len, self._values), default=0)
 
-    def end(self) -> None:
-        """Choose the columns, if that was not done yet."""
-        if self._sample is None:
-            return
-        rows = self._sample
-        self._sample = None
-        values = np.array(rows, dtype=float).reshape(len(rows), len(self.names))
-        if self.is_numbered and not _counts(values):
-            self.names = [""] * len(self.names)
-        self.choice = choose(self.names, self.units, list(values.T), self._wanted)
-        if self.choice:
-            self.kept = self.choice.columns
-        self.columns = [array("d") for _ in self.kept]
-        for numbers in rows:
-            self.add(numbers)
+    def choose(self) -> None:
+        """Choose the columns of time and energy.  The others are no longer read."""
+        samples = [np.asarray(values[:SAMPLE]) for values in self._values]
+        if len(self.names) > 1 and not self.names[0] and any(self.names) and not _counts(samples):
+            self.names = [""] * len(self.names)  # the head does not belong to these rows
+        if self._is_printed:  # once is not repeatedly
+            named = zip(self.names, samples, strict=True)
+            samples = [sample for name, sample in named if len(sample) > 1]
+            once = [place for place, values in enumerate(self._values) if len(values) < 2]
+            for place in reversed(once):
+                for columns in (self.names, self.units, self._lines, self._values):
+                    del columns[place]
+        self.choice = choose(self.names, self.units, samples, self._wanted)
+        self.kept = self.choice.columns if self.choice else ()
+        if not self.kept and len(self):
+            self.kept = [0]  # to count rows
 
-    def _check_size(self, more: int) -> None:
-        if self.rows + more > MAX_ROWS:
-            raise UserError(f"more than {MAX_ROWS:,} rows; leave some out.", Exit.INPUT_UNREADABLE)
+    def last_time(self) -> float | None:
+        """Return the time of the last row; None if it is not known which column that is."""
+        if self.choice is None:
+            self.choose()
+        time = self.choice.time if self.choice else ()
+        return self._values[time[0]][-1] if len(time) == 1 and len(self._values[time[0]]) else None
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
-        self.end()
+        self.choose()
         choice = self.choice or Choice()
-        columns = dict(zip(self.kept, map(np.asarray, self.columns), strict=True))
-        here = np.ones(self.rows, dtype=bool)
-        gaps = np.asarray(self._gaps)
-        whole = [place for place in (*choice.energy,) if len(gaps)]
-        if whole:
-            used = np.flatnonzero(np.isfinite(sum(columns[place] for place in whole)))
-            last = used.max(initial=-1)
-            here[gaps[gaps < last]] = False  # the energy went on later
-            longest = np.diff(used, prepend=-1).max(initial=0) - 1
-            if len(here) - 1 - last <= longest:  # the gap at the end is one like the others
-                here[gaps] = False
+        leading = (*choice.time, *choice.energy, 0)[0]
+        lines = np.asarray(self._lines[leading])
+        columns = {}
+        here = np.ones(len(lines), dtype=bool)
+        for place in choice.columns:
+            columns[place], has_value = self._joined(place, lines)
+            here &= has_value
+        last = np.flatnonzero(here).max(initial=-1)
+        inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
+        if len(here) - 1 - last > max(inner, 1):  # the energy ended, it is not only rarer
+            here[last + 1 :] = True
         columns = {place: column[here] for place, column in columns.items()}
         rows = int(np.count_nonzero(here))
         times: Any = sum(columns[place] for place in choice.time)
         if not choice.time:
             times = np.arange(rows, dtype=float)
-        skipped = self.without_numbers + self.rows - rows
         runs = list(_runs(times))
         if len(runs) == rows > 1:
             raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
+        skipped = self.skipped + len(here) - rows
+        if choice.energy and not self._is_printed:  # energies without a time
+            own = np.asarray(self._lines[choice.energy[0]])
+            skipped += int(np.count_nonzero(~np.isin(own, lines)))
         for first, last in runs:
             part = {place: column[first:last] for place, column in columns.items()}
             series = Series(self, choice, times[first:last], part)
@@ -141,14 +138,32 @@ class Sheet:
             skipped = 0
             yield series
 
+    def _joined(self, place: int, lines: Any) -> tuple[Any, Any]:
+        """Return a column at the lines of the leading one, nan where it has no value, and where.
 
-def _counts(values: Any) -> bool:
+        What is printed belongs to the time before it, or to that after it if all come before.
+        """
+        own = np.asarray(self._lines[place])
+        record = np.searchsorted(lines, own, side="right") - 1
+        if self._is_printed and np.array_equal(record + 1, np.arange(len(lines))):
+            record += 1
+        fits = record >= 0
+        if not self._is_printed:
+            fits &= lines[record] == own
+        column = np.full(len(lines), np.nan)
+        column[record[fits]] = np.asarray(self._values[place])[fits]
+        has_value = np.zeros(len(lines), dtype=bool)
+        has_value[record[fits]] = True
+        return column, has_value
+
+
+def _counts(samples: Sequence[Any]) -> bool:
     """Return whether the first column counts rows or steps, and the second does not fall."""
-    steps = np.diff(values[:, 0])
+    steps = np.diff(samples[0])
     return bool(
-        (values[:, 0] % 1 == 0).all()
-        and np.median(steps, axis=0) > 0
-        and np.median(np.diff(values[:, 1])) >= 0
+        (samples[0] % 1 == 0).all()
+        and (len(steps) == 0 or np.median(steps) > 0)
+        and (len(samples[1]) < 2 or np.median(np.diff(samples[1])) >= 0)
     )
 
 
@@ -187,13 +202,13 @@ class Series:
 
     @property
     def rows(self) -> int:
-        return len(self.times) if self.sheet.kept else self.sheet.rows
+        return len(self.times)
 
     @property
     def holds_errors(self) -> bool:
         """Whether the energies are relative errors already."""
         energy = self.choice.energy
-        return len(energy) == 1 and is_error(self.sheet.names[energy[0]])
+        return len(energy) == 1 and role(self.sheet.names[energy[0]])[0] == "error"
 
     def named(self, group: Sequence[int]) -> str:
         """Return the names of columns that are added up, "row" if there is none."""
@@ -235,7 +250,8 @@ class Series:
         names = self.sheet.names
         units = [self.sheet.units[place] for place in (*self.choice.time[:1],)] or [""]
         time = units[0]
-        if wanted.step and (time or any(is_time(names[place]) for place in self.choice.time)):
+        is_time = any(role(names[place])[0] == "time" for place in self.choice.time)
+        if wanted.step and (time or is_time):
             raise UserError(
                 f"--step is for steps, but {self.named(self.choice.time)} is a time already; "
                 "name the column of steps with --time, or leave out --step."
