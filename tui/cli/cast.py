@@ -32,8 +32,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         "--methods",
         metavar="KEY,KEY",
         choices=Suggestions(KEYS),
-        help=f"these methods, 1 to {MAX_METHODS}, in this order (default: {default}); the start "
-        "of a name is enough",
+        help=f"these methods, in this order (default: {default}); the start of a name is enough",
     )
     add_file(
         parser,
@@ -49,7 +48,6 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
 def cast_of(
     options: argparse.Namespace,
     default: Cast,
-    most: int | None = MAX_METHODS,
     model: str | None = None,
 ) -> Cast:
     """Return the methods that the options choose, `default` without --methods.
@@ -70,11 +68,16 @@ def cast_of(
                 raise UserError(f"--methods: {method.key} is given twice; name each method once.")
             cast.append(method)
     cast += [method for method in own if method not in cast]
-    if most is not None and len(cast) > most:
-        raise UserError(
-            f"{len(cast)} methods are too many; name those to show, at most {most}, with --methods."
-        )
     return tuple(cast)
+
+
+def check_fits(cast: Cast) -> None:
+    """Raise UserError for more methods than a screen and a recording hold."""
+    if len(cast) > MAX_METHODS:
+        raise UserError(
+            f"{len(cast)} methods are too many for a screen or a recording; name those to show, at "
+            f"most {MAX_METHODS}, with --methods."
+        )
 
 
 def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:

@@ -3,7 +3,8 @@
 An expression, `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`, joins comparisons
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
-(None, missing, not finite).  Hence there is no `not`.  Only `diverged_at` is compared as it is;
+(None, missing, not finite, or another verdict than undecided asked of what cannot be judged).
+Hence there is no `not`.  Only `diverged_at` is compared as it is;
 None means that the method never failed.  A field that is a word, such as `verdict`, is compared by
 == or !=, so `!= bounded` is strict.
 
@@ -24,7 +25,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import QUANTITIES
-from pendu_tui.engine.run.verdicts import VERDICTS, Progress
+from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, Progress
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import Suggestions, did_you_mean
@@ -166,7 +167,8 @@ def _found(
         return f"{method or 'the energy'} failed at {diverged_at:g}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return f"{name} is not known"
-    if not compare(ours, limit):
+    unknown = ours == UNDECIDED != limit
+    if not (unknown or compare(ours, limit)):
         return ""
     if isinstance(ours, str):
         progress = reading.get("progress")

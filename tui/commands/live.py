@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.options import add_file, positive
 from pendu_tui.tui.cli.scene import add_scene_options, scene_of
 from pendu_tui.tui.cli.scene_file import read_scenes
@@ -50,6 +51,7 @@ def run(options: argparse.Namespace) -> int:
     from pendu_tui.tui.screens import launch
 
     scene = scene_of(options, lecture=True)
+    check_fits(scene.cast)
     launch.check(options)
     live = lab_of(scene, options)
     name = options.scene or options.scene_option or ""

@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
-    cast = cast_of(options, () if options.method else METHODS, most=None)
+    cast = cast_of(options, () if options.method else METHODS)
     gate = parse(options.fail_if, GATE_NUMBERS, words=GATE_WORDS) if options.fail_if else None
     rows = [_row(method) for method in cast]
     columns = (

@@ -4,6 +4,7 @@ import argparse
 import os
 from pathlib import Path
 
+from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import add_file, count
 from pendu_tui.tui.cli.report import warn
@@ -36,6 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
+    check_fits(scene.cast)
     try:
         from pendu_tui.tui.commands.web.server import serve
     except ImportError:

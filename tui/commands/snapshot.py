@@ -4,6 +4,7 @@ import argparse
 import os
 from pathlib import Path
 
+from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import add_file, number
@@ -38,6 +39,7 @@ def run(options: argparse.Namespace) -> int:
     from pendu_tui.tui.screens.still import still
 
     scene = scene_of(options)
+    check_fits(scene.cast)
     display = terminal_options_of(options, os.environ, "utf-8")
     path = options.output or Path(f"{scene.name}.svg")
     with whole_file(path, options.force) as file:

@@ -19,6 +19,7 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
@@ -51,6 +52,7 @@ IF_KNOWN = [
 
 def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
     if options.record:
+        check_fits(scene.cast)
         check_free(options.record, options.force)
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
