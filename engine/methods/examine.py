@@ -14,8 +14,9 @@ from pendu_tui.engine.methods.own import (
     OwnMethod,
     OwnMethodError,
     guarded,
+    on_force,
+    own_function,
     own_method,
-    own_phases,
 )
 from pendu_tui.engine.models.model import Phase
 
@@ -39,7 +40,7 @@ def examined(source: str, key: str, file: str) -> Measured:
         raise OwnMethodError(
             f"{file} is too long; use a file of at most {MAX_SOURCE:,} characters."
         )
-    phases = own_phases(source, key, file)
+    phases = on_force(own_function(source, key, file))
     try:
         _examine(phases, f"{file}: {key}")
         return measured(phases)
@@ -54,7 +55,7 @@ def properties(function: Phases) -> Measured:
     """
     name = getattr(function, "__name__", "step")
     file = getattr(getattr(function, "__code__", None), "co_filename", name)
-    phases = guarded(function, name, "".join(getlines(file)), file)
+    phases = on_force(guarded(function, name, "".join(getlines(file)), file))
     try:
         _examine(phases, name)
         return measured(phases)

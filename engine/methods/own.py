@@ -9,7 +9,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, wraps
+from inspect import CO_GENERATOR
 from numbers import Complex, Real
 from typing import TYPE_CHECKING, Any
 
@@ -76,14 +77,17 @@ class OwnMethod(Method):
 @cache
 def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
     """Return the method of a measured text, the same for equal texts."""
-    phases = own_phases(source, key, file)
+    function = own_function(source, key, file)
+    rates = function if takes_rates(function) else None
     name = key.replace("_", " ").strip()
     return OwnMethod(
         key=key,
         label=name[:1].upper() + name[1:],
         letter=letter,
-        phases=phases,
-        formula=(phases.__doc__ or "").strip().partition("\n")[0],
+        phases=on_force(function),
+        on_rates=rates,
+        models=("pendulum", "linear", "damped") if rates else ("pendulum", "linear"),
+        formula=(function.__doc__ or "").strip().partition("\n")[0],
         order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),
         first_same_as_last=measured.more_at_the_start > 0,
@@ -104,8 +108,33 @@ copyreg.pickle(
 )
 
 
+def takes_rates(function: Phases) -> bool:
+    """Return whether a user's function takes the rates of a phase in place of the force.
+
+    It calls its first parameter `rates`; `rates(phase)` are the derivatives of theta and omega.
+    """
+    wrapped = getattr(function, "__wrapped__", function)
+    code = getattr(wrapped, "__code__", None)
+    return code is not None and code.co_varnames[:1] == ("rates",)
+
+
+def on_force(function: Phases) -> Phases:
+    """Return a user's function for a force, theta'' = force(theta)."""
+    if not takes_rates(function):
+        return function
+
+    def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+        def rates(phase: Phase) -> Phase:
+            theta, omega = phase
+            return omega, force(theta)
+
+        return function(rates, phase, h)
+
+    return phases
+
+
 @cache
-def own_phases(source: str, name: str, file: str) -> Phases:
+def own_function(source: str, name: str, file: str) -> Phases:
     """Return the guarded generator function of this name in a text.  Raises OwnMethodError."""
     namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file}
     try:
@@ -130,9 +159,14 @@ def own_phases(source: str, name: str, file: str) -> Phases:
 def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
     """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
     where = file
+    form = _FORM
     if code := getattr(function, "__code__", None):
         where = f"{file}, line {code.co_firstlineno}"
+        if not code.co_flags & CO_GENERATOR:
+            taken = ", ".join(code.co_varnames[: code.co_argcount])
+            form = f"it takes ({taken}); make it a generator function (force, phase, h): {_FORM}"
 
+    @wraps(function)
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         floats = type(phase[0]) is float
         following: Any = None
@@ -140,7 +174,10 @@ def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> 
             try:
                 with USER_CODE:
                     if following is None:
-                        following = _iterator(function(force, phase, h), f"{where}: {name}")
+                        following = function(force, phase, h)
+                        if not hasattr(following, "__next__"):
+                            what = f"{where}: {name} returns {_short(following)}"
+                            raise OwnMethodError(f"{what}; {form}.")
                     value = next(following)
             except StopIteration:
                 break
@@ -149,22 +186,17 @@ def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> 
             except BaseException as error:
                 if _is_of_force(error, force):
                     raise
-                raise OwnMethodError(_sentence(error, source, file, where)) from None
+                what = _sentence(error, source, file, where)
+                if following is None and form != _FORM:
+                    what = f"{what.rstrip('.')}; {form}."
+                raise OwnMethodError(what) from None
             if floats and type(value) is tuple and [*map(type, value)] == FLOATS:
                 yield value
             else:
                 yield _phase(value, phase, f"{where}: {name}")
         raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
 
-    phases.__doc__ = function.__doc__
-    phases.__name__ = name
     return phases
-
-
-def _iterator(returned: Any, who: str) -> Iterator[Any]:
-    if not hasattr(returned, "__next__"):
-        raise OwnMethodError(f"{who} returns {_short(returned)}; {_FORM}.")
-    return returned  # type: ignore[no-any-return]
 
 
 FLOATS = [float, float]

@@ -10,14 +10,14 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import VELOCITY_VERLET
+from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
 from pendu_tui.engine.methods.examine import load
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.compiled import compiled
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from pendu_tui.engine.stability.grid import Grid, Part
 
 VERLET = '''
@@ -73,6 +73,43 @@ def test_verlet_written_again_is_measured_to_be_verlet():
         assert getattr(mine, field) == getattr(verlet, field)
     assert (mine.key, mine.label, mine.letter) == ("mine", "Mine", "m")
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
+
+
+RATES = """
+def mine(rates, phase, h):
+    theta, omega = phase
+    while True:
+        velocity, acceleration = rates((theta, omega))
+        theta = theta + h * velocity
+        omega = omega + h * acceleration
+        yield theta, omega
+"""
+
+
+def test_a_method_that_takes_rates_integrates_friction_too():
+    mine = loaded(RATES)
+    assert (mine.order, mine.force_evaluations) == (1, 1)
+    assert pickle.loads(pickle.dumps(mine)) is mine
+    for name in ("damped", "drift"):
+        lockstep = Lockstep(SCENES[name].with_cast((mine, method_of("explicit_euler"))))
+        lockstep.advance(300)
+        own, listed = lockstep.sample().readings
+        assert (own.theta, own.omega) == (listed.theta, listed.omega)
+    with pytest.raises(SceneError, match="is for pendulum and linear"):
+        SCENES["damped"].with_cast((loaded(VERLET),))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "def mine(theta, omega, dt):\n    return theta + omega * dt, omega",
+        "def mine(theta, omega, dt):\n    return theta + dt, omega - dt * theta.x",
+    ],
+)
+def test_a_function_of_another_kind_is_told_what_to_take(function):
+    said = refusal(function)
+    assert "it takes (theta, omega, dt)" in said
+    assert "a generator function (force, phase, h)" in said
 
 
 def test_it_has_the_same_bits_in_another_process():
