@@ -68,6 +68,9 @@ class Memo(Generic[Result]):
             self.arguments = arguments
         return self.result
 
+    def forget(self) -> None:
+        self.arguments = None
+
 
 class Box(Container):
     BLANK = True  # covered by its children; saves Textual a style lookup per paint

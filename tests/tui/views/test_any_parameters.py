@@ -17,7 +17,7 @@ from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities
 from pendu_tui.tui.screens.lines import status_row
 from pendu_tui.tui.views.lab.error_table import table
-from pendu_tui.tui.views.phase.picture import fact_rows
+from pendu_tui.tui.views.phase.view import fact_rows
 from pendu_tui.tui.words.insight import insight_text, lasting, sentence
 from pendu_tui.tui.words.plain_text import description
 from tests.tui.command_line import pendu

@@ -10,8 +10,7 @@ from pendu_tui.tui.drawing.palette import FAINT, inks
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.phase.picture import method_points, phase_picture
-from pendu_tui.tui.views.phase.portrait import Portrait
+from pendu_tui.tui.views.phase.portrait import Portrait, method_points, phase_picture
 from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui.drawn import cells
 

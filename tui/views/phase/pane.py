@@ -57,8 +57,8 @@ class PhasePane(Chooser[State]):
     @property
     def viewport(self) -> Viewport:
         if self.zoomed is not None:
-            self.zoomed = self.zoomed.resized(*self._cells)
-            return self.zoomed
+            columns, rows = self._cells
+            return self.zoomed._replace(columns=columns, rows=rows)
         scene = self.source.scene
         half = math.pi
         if self.sample is not None and not self.shown.overview:
@@ -75,10 +75,14 @@ class PhasePane(Chooser[State]):
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        from pendu_tui.tui.views.phase.picture import caption, method_points, phase_picture
-        from pendu_tui.tui.views.phase.portrait import Portrait
+        from pendu_tui.tui.views.phase.portrait import (
+            Portrait,
+            caption,
+            method_points,
+            phase_picture,
+        )
 
-        below = "wheel: zoom"
+        below = "wheel: zoom, g: ring"
         if self.is_live:
             below = f"click: start, {below}"
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)

@@ -1,24 +1,38 @@
-"""The theoretical phase portrait: energy contours, separatrix, regimes and axes."""
+"""The phase portrait: energy contours, separatrix, regimes, axes, and the methods on it."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pendu_tui.engine.models.model import Model
-from pendu_tui.tui.drawing.axes import nice, number_ticks, theta_ticks
+from pendu_tui.engine.models.model import Model, State
+from pendu_tui.engine.phase_space.area import Neighbourhood
+from pendu_tui.engine.phase_space.section import Points
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import Line
+from pendu_tui.tui.drawing.axes import in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
+from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT, faint, inks
+from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.terminal.options import FPS
 from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.words.numbers import energy_share, motion_text, regime
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
-Mask = NDArray[np.bool_]  # (dots down, dots right), or (rows, columns)
+Mask = NDArray[np.bool_]  # (dots down, dots right)
 Word = tuple[int, int, str, int]  # column, row, text, ink
-LABEL = 4  # columns for the numbers along the left edge
+Floats = NDArray[np.float64]
+SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
+BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
+CHORDS = 24  # steps
+# where to write a letter, in columns and rows from its point
+BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +55,7 @@ class Portrait:
         separatrix = _dots(_border((levels < 0) & model.has_separatrix, heavy=True))
         words = axes(viewport)
         if model.has_separatrix:
-            words += _names(levels, omega)
+            words += _names(viewport, model.w0)
         ground = Canvas(viewport.columns, viewport.rows)
         ground.scatter(*_dots(_border(_bands(levels))), FRAME)
         ground.scatter(*separatrix, TEXT)
@@ -58,6 +72,155 @@ class Portrait:
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows * omega > 0)[:, None]
         return _dots(curve)
+
+
+class PhasePoint(NamedTuple):
+    theta: float  # rad
+    omega: float  # rad/s
+    ink: int
+    letter: str
+    trail: Points | None = None
+    chords: int = 0  # how many of the trail's last points are joined
+    ring: Points | None = None
+
+
+# a diverging method may be too far out to count in dots
+@np.errstate(over="ignore", invalid="ignore")
+def phase_picture(
+    portrait: Portrait,
+    points: Sequence[PhasePoint],
+    crosshair: State | None = None,
+    orbit: State | None = None,
+    line: Line | None = None,
+) -> Picture:
+    """Draw trails, rings and points, and a crosshair, an orbit or a line if given."""
+    viewport = portrait.viewport
+    canvas = portrait.ground.copy()
+    if line is not None and line.quantity == "omega":
+        for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
+            y = float(viewport.y(omega))
+            canvas.line(0, y, canvas.width, y, EXACT, dotted=True)
+            canvas.label(1, int(y) // 4, name, EXACT)
+    if crosshair is not None:
+        draw_crosshair(canvas, viewport, crosshair)
+    if orbit is not None:
+        canvas.scatter(*portrait.orbit(*orbit), EXACT)
+    for point in points:
+        if point.trail is not None:
+            thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
+            draw_dots(canvas, viewport, point.trail, faint(point.ink), thick)
+        if point.trail is not None and point.chords:
+            joined = [each[-point.chords :] for each in point.trail]
+            canvas.path(*on_screen(viewport, *joined), faint(point.ink))
+        if point.ring is not None:
+            closed = [np.append(each, each[0]) for each in point.ring]
+            canvas.path(*on_screen(viewport, *closed), point.ink)
+    for point in points:
+        draw_point(canvas, viewport, point)
+    write_words(canvas, portrait.words)
+    return canvas.picture()
+
+
+def draw_dots(
+    canvas: Canvas, viewport: Viewport, points: Points, ink: int, dots: Sequence[tuple[int, int]]
+) -> None:
+    x = viewport.x(points[0])
+    y = viewport.y(points[1])
+    for right, down in dots:
+        canvas.scatter(x + right, y + down, ink)
+
+
+def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
+    x = float(viewport.x(state.theta))
+    y = float(viewport.y(state.omega))
+    canvas.line(0, y, canvas.width, y, TEXT, dotted=True)
+    canvas.line(x, 0, x, canvas.height, TEXT, dotted=True)
+
+
+def on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
+    """Return a line in dots, broken where it wraps around the edge."""
+    x = viewport.x(theta)
+    y = viewport.y(omega)
+    if viewport.wrap:
+        across = np.flatnonzero(np.abs(np.diff(x)) > np.pi / viewport.theta_per_dot) + 1
+        x = np.insert(x, across, np.nan)
+        y = np.insert(y, across, np.nan)
+    return x, y
+
+
+def draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
+    """Draw a disc with its letter beside it, at the nearest edge if it is outside."""
+    x = float(viewport.x(np.float64(point.theta)))
+    y = float(viewport.y(np.float64(point.omega)))
+    canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
+    if not (math.isfinite(x) and math.isfinite(y)):
+        return
+    places = BESIDE
+    if not (0 <= x < canvas.width and 0 <= y < canvas.height):
+        places = (0, 0), *BESIDE
+    column = int(min(max(x, 0), canvas.width - 1)) // 2
+    row = int(min(max(y, 0), canvas.height - 1)) // 4
+    for right, down in places:
+        if canvas.is_free(column + right, row + down):
+            canvas.label(column + right, row + down, point.letter, point.ink)
+            return
+
+
+def method_points(
+    source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None
+) -> list[PhasePoint]:
+    """Return the points to draw, the exact one first.
+
+    Steps that are neither close nor far apart are joined: a spiral is seen at once.
+    """
+    points = []
+    exact = source.exact.at(sample.t)
+    if shown.exact and math.isfinite(exact.theta):
+        points.append(PhasePoint(*exact, EXACT, "x"))
+    trails = source.history.trails
+    cast = source.scene.cast
+    for place in shown.places(cast):
+        reading = sample.readings[place]
+        h = abs(source.stepping.own[place])
+        is_each_step_seen = h * FPS >= abs(source.playhead.speed)
+        chords = CHORDS if is_each_step_seen and 0.3 <= h * source.scene.w0 <= 1 else 0
+        points.append(
+            PhasePoint(
+                reading.theta,
+                reading.omega,
+                inks(cast)[place],
+                cast[place].letter,
+                trail=(trails[:, place, 0], trails[:, place, 1]),
+                chords=chords,
+                ring=ring.rings[place] if ring else None,
+            )
+        )
+    return points
+
+
+def caption(source: Source, aim: State | None, width: int) -> Row:
+    """Return the line below the portrait: the state at the cursor, and the motion."""
+    model = source.scene.equations
+    motion = model.caption or motion_text(source.scene, source.exact)
+    if aim is None:
+        return ((motion, QUIET),)
+    room = width - len(motion) - 2
+    if room < 60:
+        return ((place_text(model, aim, width), TEXT),)
+    return (place_text(model, aim, room).ljust(room + 2), TEXT), (motion, QUIET)
+
+
+def place_text(model: Model, state: State, width: int) -> str:
+    """Return a state in words, with E/Es and regime where the model has a separatrix."""
+    theta, omega = state
+    half_turns = round(theta / math.pi)
+    angle = f"{theta:.15g}"
+    if theta == half_turns * math.pi:
+        angle = in_pi(half_turns)
+    text = f"theta {angle}  omega {omega:.15g}"
+    if model.has_separatrix:
+        text += f"  E/Es {energy_share(model, theta, omega)}  {regime(model, theta, omega)}"
+    return text[:width]
 
 
 def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
@@ -92,6 +255,28 @@ def axes(viewport: Viewport) -> list[Word]:
     return words
 
 
+def _names(viewport: Viewport, w0: float) -> list[Word]:
+    """Return the names of the regimes in their middle, and of the separatrix beside it."""
+    crest = 2 * w0  # rad/s
+    spin = (crest + max(viewport.omega_at(0.0), crest)) / 2
+    slope = math.pi / 2  # rad
+    places = (
+        (" libration ", 0.0, 0.0, QUIET),
+        (" rotation ", 0.0, spin, QUIET),
+        (" rotation ", 0.0, -spin, QUIET),
+        ("separatrix", slope, crest * math.cos(slope / 2), TEXT),
+    )
+    words: list[Word] = []
+    for text, theta, omega, ink in places:
+        column = int(viewport.x(theta)) // 2 - len(text) // 2
+        row = int(viewport.y(omega)) // 4
+        if theta:
+            column = int(viewport.x(theta)) // 2 + 2
+        if 0 < column <= viewport.columns - len(text) and 0 <= row < viewport.rows - 1:
+            words.append((column, row, text, ink))
+    return words
+
+
 def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return each dot's energy band: even steps of amplitude, above the separatrix of omega."""
     inside = np.arcsin(np.sqrt(np.clip(levels, 0, 1)))
@@ -116,35 +301,3 @@ def _border(values: NDArray[Any], heavy: bool = False) -> Mask:
 def _dots(mask: Mask) -> Dots:
     y, x = np.nonzero(mask)
     return x, y
-
-
-def _names(levels: Any, omega: Any) -> list[Word]:
-    spins = levels < 0
-    words: list[Word] = []
-    regions = (
-        (" libration ", ~spins),
-        (" rotation ", spins & (omega > 0)),
-        (" rotation ", spins & (omega < 0)),
-    )
-    for text, region in regions:
-        inside = _whole_cells(region)
-        if not inside.any():
-            continue
-        column = round(float(np.nonzero(inside)[1].mean())) - len(text) // 2
-        free = inside[:-1, max(column, 0) : column + len(text)].sum(axis=1) == len(text)
-        rows = np.flatnonzero(free).tolist()
-        if rows and column > LABEL:
-            words.append((column, rows[len(rows) // 2], text, QUIET))
-    beside = ~(_whole_cells(spins) | _whole_cells(~spins))
-    for row, cells in enumerate(beside[:-1]):
-        end = int(np.flatnonzero(cells)[-1]) + 1 if cells.any() else 0
-        if LABEL < end <= len(cells) - len("separatrix"):
-            words.append((end, row, "separatrix", TEXT))
-            break
-    return words
-
-
-def _whole_cells(dots: Mask) -> Mask:
-    """Return the cells that lie in a region with all their dots."""
-    rows, columns = dots.shape
-    return np.array(dots.reshape(rows // 4, 4, columns // 2, 2).all(axis=(1, 3)))

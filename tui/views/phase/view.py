@@ -1,27 +1,96 @@
 """PhaseView: phase space over the whole screen, with a table of areas."""
 
+import math
 from functools import lru_cache
 from typing import ClassVar
 
+import numpy as np
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.reactive import var
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import Model, State
-from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces
+from pendu_tui.engine.phase_space.area import Neighbours
+from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces, spread
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.tui.drawing.palette import TEXT, inks
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.engine.run.stepping import change_before
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.palette import FRAME, QUIET, TEXT, faint, inks, mark
+from pendu_tui.tui.drawing.picture import Picture, Row
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.phase.pane import PhasePane
-from pendu_tui.tui.views.phase.picture import Section, fact_rows, starts
-from pendu_tui.tui.views.view import Pane, StudyView
+from pendu_tui.tui.views.phase.portrait import (
+    BLOCK,
+    PhasePoint,
+    Portrait,
+    axes,
+    draw_crosshair,
+    draw_dots,
+    draw_point,
+    on_screen,
+    write_words,
+)
+from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.view import Memo, Pane, StudyView
+from pendu_tui.tui.words.numbers import scientific
 from pendu_tui.tui.words.orbit import sentence
 
 STARTS = 300  # orbits of a section
 ORBIT_STEPS = 2000  # they take a few ms
+GAP = 2  # dots between orbits of a section
+NAME, CELL = 22, 14  # characters across in the table
+
+
+def starts(viewport: Viewport, count: int) -> Points:
+    across = viewport.theta_at(0.0), viewport.theta_at(2.0 * viewport.columns)
+    return spread(count, across, (viewport.omega_at(4.0 * viewport.rows), viewport.omega_at(0.0)))
+
+
+class Section:
+    """Orbits of one method, over the separatrix of the true pendulum."""
+
+    def __init__(self, viewport: Viewport, model: Model, method: Method, ink: int) -> None:
+        self._viewport = viewport
+        self._method = method
+        self._ink = ink
+        self._ground = Canvas(viewport.columns, viewport.rows)
+        self._ground.scatter(*Portrait.of(viewport, model).separatrix, FRAME)
+        size = self._ground.height + 2 * GAP, self._ground.width + 2 * GAP
+        self._near = np.zeros(size, np.bool_)
+
+    @np.errstate(all="ignore")  # a diverging method may be too far out to count in dots
+    def add(self, points: Points) -> None:
+        x = np.floor(self._viewport.x(points[0]))
+        y = np.floor(self._viewport.y(points[1]))
+        inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)
+        most = 0.3  # the share of its dots that may lie close to other orbits
+        if self._method.symplectic:
+            most = 0.6
+        for each in range(x.shape[1]):
+            at = inside[:, each]
+            i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
+            if len(i) and self._near[j + GAP, i + GAP].mean() <= most:
+                self._ground.scatter(i, j, faint(self._ink))
+                for right in range(2 * GAP + 1):
+                    for down in range(2 * GAP + 1):
+                        self._near[j + down, i + right] = True
+
+    @np.errstate(all="ignore")
+    def picture(self, orbit: Points, start: State, crosshair: State | None = None) -> Picture:
+        """Draw one orbit over the others, in thick dots or as a spiral, and its start."""
+        canvas = self._ground.copy()
+        viewport = self._viewport
+        if self._method.symplectic:
+            draw_dots(canvas, viewport, orbit, self._ink, BLOCK[:3])
+        else:  # a spiral of 300 steps
+            canvas.path(*on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
+        if crosshair is not None:
+            draw_crosshair(canvas, viewport, crosshair)
+        draw_point(canvas, viewport, PhasePoint(*start, self._ink, self._method.letter))
+        write_words(canvas, axes(viewport))
+        return canvas.picture()
 
 
 class SectionPane(PhasePane):
@@ -35,8 +104,7 @@ class SectionPane(PhasePane):
 
     def __init__(self) -> None:
         super().__init__()
-        self._drawn_for: object = None
-        self._section: Section | None = None
+        self._section = Memo(self._begun)
         self._orbits = 0  # of the section, so far
 
     @property
@@ -47,7 +115,7 @@ class SectionPane(PhasePane):
 
     def watch_shows_section(self) -> None:
         if not self.shows_section:
-            self._drawn_for = None
+            self._section.forget()
             self.workers.cancel_node(self)
         self.draw()
 
@@ -59,23 +127,25 @@ class SectionPane(PhasePane):
             return self._map(source)
         return super().picture(source, sample)
 
+    def _begun(
+        self, viewport: Viewport, model: Model, method: Method, ink: int, h: float
+    ) -> Section:
+        """Begin to compute a section, of which there is nothing yet."""
+        self._orbits = 0
+        self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
+        return Section(viewport, model, method, ink)
+
     def _map(self, source: Source) -> Picture:
         method = self.cast[self.index]
         h = abs(source.stepping.own[self.index])
         model = source.scene.equations
-        viewport = self.viewport
-        key = (method, model, h, viewport)
-        if key != self._drawn_for or self._section is None:
-            self._drawn_for = key
-            self._section = Section(viewport, model, method, inks(self.cast)[self.index])
-            self._orbits = 0
-            self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
+        section = self._section(self.viewport, model, method, inks(self.cast)[self.index], h)
         title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
         if self._orbits < STARTS:
             title += f", computing {10 * self._orbits // STARTS / 10:.0%}"
         self.write_titles(title, "wheel: zoom, tab: next method, x: back")
         start = self.cursor or State(source.scene.theta, source.scene.omega)
-        plot = self._section.picture(_orbit(method, model, h, start)[0], start, self.cursor)
+        plot = section.picture(_orbit(method, model, h, start)[0], start, self.cursor)
         _, kind = _orbit(method, model, h, self.aim or start)
         where = "start"
         if self.aim:
@@ -83,11 +153,10 @@ class SectionPane(PhasePane):
         return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
 
     def forget(self) -> None:
-        self._section = None
+        self._section.forget()
 
     def add(self, result: Points) -> None:
-        assert self._section is not None
-        self._section.add(result)
+        self._section.result.add(result)
         self._orbits += result[0].shape[1]
 
     def action_section(self) -> None:
@@ -131,3 +200,64 @@ class PhaseView(StudyView):
     def _make_room(self) -> None:
         has_room = self.size.height >= 18
         self.query_one(Facts).display = has_room and not self.pane.shows_section
+
+
+def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
+    """Return a table of the methods, as wide as fits, with a line and areas if there is a ring."""
+    scene = source.scene
+    model = scene.equations
+    exact = source.exact.at(source.sample.t)
+    ring = None
+    if neighbours is not None and not scene.why_no_ring:
+        ring = neighbours.ring_of(scene, source.sample.run)
+    fit = max((width - NAME) // CELL, 0)
+
+    def cells(*texts: str) -> str:
+        return "".join(text.rjust(CELL) for text in texts[:fit])
+
+    areas = ("ln area ratio", "area/area0") if neighbours else ()
+    heads = cells("theta error", model.error.head.narrow, *areas)
+    rows: list[Row] = [[(" " * NAME + heads, QUIET)]]
+    if shown.ring and (text := _ring_text(source, neighbours)):
+        rows.insert(0, [(text[:width], TEXT)])
+    for place in shown.places(scene.cast):
+        method = scene.cast[place]
+        reading = source.sample.readings[place]
+        area = area_text(ring.area_ratios[place]) if ring else ("-", "-")
+        off = scientific(model.theta_error(reading.theta, exact.theta), CELL, 3)
+        numbers = cells(off, scientific(reading.energy_error, CELL, 3), *area[: len(areas)])
+        name = f" {mark(place, method)} {method.label}".ljust(NAME)
+        rows.append([(name, inks(scene.cast)[place]), (numbers, TEXT)])
+    return rows
+
+
+def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
+    if why := source.scene.why_no_ring:
+        return f" {why}"
+    if neighbours is None:
+        return ""
+    step = 0
+    if neighbours.ring_of(source.scene, source.sample.run):
+        step = neighbours.step
+    change = change_before(source.changes, step)
+    left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
+    radius = f"radius {neighbours.radius:g} rad"
+    if left != 1:
+        return f" Ring, {radius}: the true motion leaves {left:.9f} of its area"
+    text = f" Ring of neighbouring starts, {radius}"
+    if behind := source.sample.step - step:
+        text += f": {behind} steps behind"
+    return text
+
+
+def area_text(ratio: float) -> tuple[str, str]:
+    """Return ln of an area ratio, and the ratio as a text that differs from 1: "1 + 2.2e-16"."""
+    if not 0 < ratio < math.inf:
+        return "-", "> 1e308" if ratio else "< 1e-308"
+    if ratio == 1:
+        text = "1"
+    elif abs(ratio - 1) < 1e-6:
+        text = f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
+    else:
+        text = f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"
+    return scientific(math.log(ratio), 10, 3), text

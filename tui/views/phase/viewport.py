@@ -70,13 +70,13 @@ class Viewport(NamedTuple):
         return self.omega - (y - self.middle[1]) * self.omega_per_dot
 
     def at(self, x: float, y: float) -> State:
-        """Return the roundest state within half a dot of (x, y), an equilibrium if possible."""
+        """Return a round state within half a dot of (x, y), an equilibrium if possible."""
         theta = self._turned(self.theta_at(x))
-        omega = roundest(self.omega_at(y), self.omega_per_dot / 2)
+        omega = rounded(self.omega_at(y), self.omega_per_dot)
         equilibrium = math.pi * round(theta / math.pi)
         if abs(theta - equilibrium) <= self.theta_per_dot / 2:
             return State(equilibrium, omega)
-        return State(roundest(theta, self.theta_per_dot / 2), omega)
+        return State(rounded(theta, self.theta_per_dot), omega)
 
     def at_cell(self, column: int, row: int) -> State:
         return self.at(2 * column + 1, 4 * row + 2)
@@ -118,19 +118,7 @@ class Viewport(NamedTuple):
             x, y = self.middle
         return self.at(min(max(x + right, 0), width - 1), min(max(y - up, 0), height - 1))
 
-    def resized(self, columns: int, rows: int) -> "Viewport":
-        return self._replace(
-            columns=columns,
-            rows=rows,
-            theta_per_dot=self.theta_per_dot * self.columns / columns,
-            omega_per_dot=self.omega_per_dot * self.rows / rows,
-        )
 
-
-def roundest(value: float, tolerance: float) -> float:
-    """Return the number with the fewest decimals that is within `tolerance` > 0 of the value."""
-    for decimals in range(-math.floor(math.log10(2 * tolerance)) - 1, 17):
-        rounded = round(value, decimals)
-        if abs(rounded - value) <= tolerance:
-            return rounded + 0.0  # -0.0 becomes 0.0
-    return value
+def rounded(value: float, unit: float) -> float:
+    """Return a number within half a unit, without the decimals below the unit."""
+    return round(value, -math.floor(math.log10(unit))) + 0.0  # -0.0 becomes 0.0

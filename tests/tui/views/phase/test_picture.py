@@ -8,8 +8,7 @@ import pytest
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.palette import EXACT, FAINT
-from pendu_tui.tui.views.phase.picture import SPARSE, PhasePoint, phase_picture
-from pendu_tui.tui.views.phase.portrait import Portrait
+from pendu_tui.tui.views.phase.portrait import SPARSE, PhasePoint, Portrait, phase_picture
 from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui.drawn import cells, places
 

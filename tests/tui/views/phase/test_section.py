@@ -10,8 +10,7 @@ from pendu_tui.engine.models.model import State
 from pendu_tui.engine.phase_space.section import iterate, orbit, pieces
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.drawing.palette import FRAME, faint
-from pendu_tui.tui.views.phase.picture import Section, starts
-from pendu_tui.tui.views.phase.view import SectionPane
+from pendu_tui.tui.views.phase.view import Section, SectionPane, starts
 from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui import drawn
 from tests.tui.drawn import places

@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.phase.viewport import MIN_SPAN, Viewport, roundest
+from pendu_tui.tui.views.phase.viewport import MIN_SPAN, Viewport, rounded
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))
@@ -59,10 +59,8 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-9, 1))
-def test_a_round_number_is_near_enough_and_no_shorter_one_is(value, tolerance):
-    rounded = roundest(value, tolerance)
-    assert abs(rounded - value) <= tolerance
-    assert str(rounded) != "-0.0"
-    decimals = len(f"{rounded:.17f}".rstrip("0").partition(".")[2])
-    if 0 < decimals < 10:
-        assert abs(round(value, decimals - 1) - value) > tolerance * (1 - 1e-9)
+def test_a_round_number_is_near_enough_and_has_no_more_decimals_than_it_needs(value, unit):
+    near = rounded(value, unit)
+    assert abs(near - value) <= unit / 2 + 1e-12
+    assert str(near) != "-0.0"
+    assert len(f"{near:.12f}".rstrip("0").partition(".")[2]) <= -math.log10(unit) + 1
