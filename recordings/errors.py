@@ -18,7 +18,7 @@ class DiskError(OSError):
         super().__init__(errno, why, str(path))
 
     def __str__(self) -> str:
-        return f"{printable(str(self.filename))}: {self.strerror}"
+        return f"{self.filename}: {self.strerror}"
 
 
 class NameTakenError(DiskError):
@@ -32,7 +32,7 @@ def named(path: Path) -> Iterator[None]:
         yield
     except (OSError, RecordingError) as error:
         why = getattr(error, "strerror", None) or str(error)
-        raise RecordingError(f"{printable(str(path))}: {why.removesuffix('.')}.") from error
+        raise RecordingError(f"{path}: {why.removesuffix('.')}.") from error
 
 
 @contextmanager

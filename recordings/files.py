@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
+from pendu_tui.recordings.errors import DiskError, NameTakenError, writing
 
 
 def check_target(path: Path, force: bool = False) -> None:
@@ -24,9 +24,7 @@ def check_target(path: Path, force: bool = False) -> None:
     if not force and os.path.lexists(path):
         raise NameTakenError(f"{why}, or --force to overwrite it", path)
     if not path.parent.is_dir():
-        raise DiskError(
-            f"no folder {printable(str(path.parent))}; choose a folder that exists", path
-        )
+        raise DiskError(f"no folder {path.parent}; choose a folder that exists", path)
 
 
 def is_stream(path: Path) -> bool:

@@ -234,8 +234,8 @@ class LiveRecorder(Recorder):
 
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
-    def __init__(self, path: Path) -> None:
-        super().__init__(path)
+    def __init__(self, path: Path, wall: Callable[[], int] | None = time.time_ns) -> None:
+        super().__init__(path, wall)
         self._lock = RLock()
         Thread(target=self._keep, name="recorder", daemon=True).start()
 
@@ -268,7 +268,7 @@ class LiveRecorder(Recorder):
         A disk that blocks another thread for too long counts as failed.
         """
         if not self._lock.acquire(timeout=MAX_WAIT):
-            self.failed = self.failed or f"{printable(str(self.part))}: the disk does not answer"
+            self._fail(DiskError("the disk does not answer", self.part))
             yield False
             return
         try:
@@ -276,7 +276,10 @@ class LiveRecorder(Recorder):
         except NameTakenError:
             pass  # `close` has found another name
         except DiskError as error:
-            self.failed = str(error)
+            self._fail(error)
             self.abandon()
         finally:
             self._lock.release()
+
+    def _fail(self, error: DiskError) -> None:
+        self.failed = self.failed or printable(str(error), 500)

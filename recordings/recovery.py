@@ -6,7 +6,7 @@ No number is repaired, guessed or changed.
 from pathlib import Path
 from typing import Any
 
-from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.reader import ShowProgress
 from pendu_tui.recordings.recorder import Recorder
@@ -34,7 +34,7 @@ def recover(
                     recorder.sample(value, clock)
             if not recorder.samples:
                 why = recording.reason or "it has no samples"
-                raise RecordingError(f"{printable(str(path))}: {why}.")
+                raise RecordingError(f"{path}: {why}.")
             recorder.close()
         finally:
             recorder.abandon(delete=True)

@@ -73,7 +73,7 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
         ("drfit", "did you mean drift?"),
         ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, damped, drift"),
         ("../../etc/passwd.mcap", "choose a file"),
-        ("\x1b[2J", "there is no recording '�"),
+        ("\x1b[2J", r"there is no recording '\\x1b"),
     ],
 )
 def test_an_unknown_name_is_refused_with_a_suggestion(name, why):

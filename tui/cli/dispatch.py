@@ -88,10 +88,9 @@ def _main(arguments: Sequence[str] | None) -> int:
         return Exit.PIPE_CLOSED
     except (KeyboardInterrupt, Exception) as error:
         refusal = explained(error)
-        from pendu_tui.recordings.errors import printable
         from pendu_tui.tui.cli.report import warn
 
-        warn(printable(str(refusal), limit=1000))
+        warn(str(refusal))
         try:
             sys.stdout.flush()
         except OSError:

@@ -50,10 +50,7 @@ def check_free(path: Path, force: bool) -> None:
 def keep_older(path: Path | None) -> None:
     """Raise UserError if an unfinished result would replace a file."""
     if path is not None and path.is_file():
-        from pendu_tui.recordings.errors import printable
-
-        why = f"interrupted; {printable(str(path))} stays as it was."
-        raise UserError(why, Exit.INTERRUPTED)
+        raise UserError(f"interrupted; {path} stays as it was.", Exit.INTERRUPTED)
 
 
 def interruptible() -> AbstractContextManager[None]:

@@ -81,7 +81,7 @@ def resolve(name: str) -> Path:
     Raises RecordingError if there is none.
     """
     from pendu_tui.recordings import library
-    from pendu_tui.recordings.errors import RecordingError, printable
+    from pendu_tui.recordings.errors import RecordingError
 
     folder = library.folder()
     file = name + library.SUFFIX
@@ -92,12 +92,12 @@ def resolve(name: str) -> Path:
     if name == "latest" and items:
         return items[0].path
     if name == "latest":
-        why = f"no recordings in {printable(str(folder))} yet; start pendu-tui to make one."
+        why = f"no recordings in {folder} yet; start pendu-tui to make one."
         raise RecordingError(why)
     bundled = ["latest", *library.golden_names()]
     advice = did_you_mean(name, [*bundled, *(item.path.name for item in items)])
-    advice = printable(advice) or f": choose a file, or one of {', '.join(bundled)}."
-    raise RecordingError(f"there is no recording {printable(name)!r}{advice}")
+    advice = advice or f": choose a file, or one of {', '.join(bundled)}."
+    raise RecordingError(f"there is no recording {name!r}{advice}")
 
 
 def _float(bare: str, text: str, what: str, example: str) -> float:

@@ -10,6 +10,7 @@ import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from time import monotonic
@@ -33,18 +34,21 @@ MAX_CELL = 1000  # characters
 
 def warn(sentence: str) -> None:
     """Print a sentence on stderr."""
-    print(_fitted(f"pendu-tui: {sentence}", sys.stderr), file=sys.stderr)
+    say(printable(f"pendu-tui: {sentence}", MAX_CELL), sys.stderr)
 
 
-def _fitted(text: str, stream: TextIO) -> str:
-    """Wrap a text to the terminal, if it is one, without breaking words or paths."""
-    if not stream.isatty():
-        return text
-    columns = shutil.get_terminal_size().columns
-    return "\n".join(
-        textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False)
-        for line in text.split("\n")
-    )
+def say(text: str, stream: TextIO | None = None) -> None:
+    """Print a text on stdout or another stream, without what would steer the terminal.
+
+    If that is a terminal, the text is wrapped without breaking words or paths.
+    """
+    out = stream or sys.stdout
+    lines = [printable(line, MAX_CELL) for line in text.split("\n")]
+    if out.isatty():
+        columns = shutil.get_terminal_size().columns
+        fill = partial(textwrap.fill, break_long_words=False, break_on_hyphens=False)
+        lines = [fill(line, columns) for line in lines]
+    print("\n".join(lines), file=out)
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:
@@ -82,11 +86,12 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
         is_long = monotonic() > began + 1 and 0 < done < total
         if bar is None and is_long and sys.stderr.isatty():
             from rich.console import Console
+            from rich.markup import escape
             from rich.progress import Progress
 
             columns = Progress.get_default_columns()
             bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
-            bar.add_task(what)
+            bar.add_task(escape(printable(what)))
             bar.start()
         if bar is not None:
             bar.update(0, completed=done, total=total)
@@ -180,7 +185,7 @@ class Report:
             parts.append(Table(self.columns, self.rows))
         for part in (*parts, *self.notes):
             if isinstance(part, str):
-                print(_fitted(part, sys.stdout))
+                say(part)
                 continue
             on = console(240)
             with on.capture() as drawn:  # Rich itself would end the process at a closed pipe

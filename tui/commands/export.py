@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import add_file, add_recording, resolve
@@ -35,18 +34,17 @@ def run(options: argparse.Namespace) -> int:
     from pendu_tui.recordings.recording import Recording
 
     path = resolve(options.file)
-    with Recording.open(path) as recording, progress(printable(path.name)) as show:
+    with Recording.open(path) as recording, progress(path.name) as show:
         columns = columns_of({run.scene.model: None for run in recording.runs})
         rows = _rows(recording, show)
         with text_file(options.output, options.force) as out:
             # NaN, because readers take an empty column for text
             write_csv(out, columns, (["NaN" if x is None else x for x in row] for row in rows))
         if recording.reason:
-            warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
+            warn(f"{path}: {recording.reason}; the rest is exported.")
     if options.output:
         size = file_size(options.output.stat().st_size)
-        name = printable(str(options.output))
-        warn(f"wrote {recording.length:g} s of {printable(path.name)}, {size}: {name}")
+        warn(f"wrote {recording.length:g} s of {path.name}, {size}: {options.output}")
     return Exit.FINE
 
 

@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import add_file, add_recording, resolve
@@ -67,11 +67,9 @@ def _list(options: argparse.Namespace) -> Report:
 
     rows = [_facts(item) for item in library.listing()]
     folder = library.folder()
-    notes = [
-        f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()
-    ]
+    notes = [f"recording now: {path.with_suffix('')}" for path in library.being_made()]
     if not (rows or notes):
-        notes = [f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."]
+        notes = [f"No recordings in {folder} yet; start pendu-tui to make one."]
     columns = (
         Column("recording, newest first", "file"),
         Column("last written", "modified", _date),
@@ -115,7 +113,7 @@ def _show(options: argparse.Namespace) -> Report:
 
     path = resolve(options.file)
     with (
-        progress(printable(path.name)) as show,
+        progress(path.name) as show,
         Recording.open(path, check=True, progress=show) as recording,
     ):
         return _contents(recording)
@@ -167,9 +165,9 @@ def _recover(options: argparse.Namespace) -> Report:
         raise UserError("name the file to write: -o OUT.")
     path = resolve(options.file)
     check_free(options.output, options.force)
-    with progress(printable(path.name)) as show:
+    with progress(path.name) as show:
         result = recover(path, options.output, show, options.force)
-    notes = [f"{printable(result['out'])}: {counted(result['samples_kept'], 'sample')} saved."]
+    notes = [f"{result['out']}: {counted(result['samples_kept'], 'sample')} saved."]
     if result["reason"]:
         notes.append(f"Problem: {result['reason']}.")
     if result["entries_lost"]:

@@ -8,7 +8,7 @@ from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import add_file, number
-from pendu_tui.tui.cli.report import file_type
+from pendu_tui.tui.cli.report import file_type, say
 from pendu_tui.tui.cli.scene import add_scene_options, scene_of
 from pendu_tui.tui.terminal.options import add_picture_options, cells, terminal_options_of
 
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
         svg = asyncio.run(still(scene, options.time, options.size, display))
         file.write_text(svg, encoding="utf-8")
     if options.output is None:
-        print(f"saved {path}")
+        say(f"saved {path}")
     return Exit.FINE
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import RecordingError, printable
+from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.options import add_recording, count, resolve
-from pendu_tui.tui.cli.report import Report, add_report_options, progress, publish, warn
+from pendu_tui.tui.cli.report import Report, add_report_options, progress, publish, say, warn
 from pendu_tui.tui.words.numbers import counted
 
 EXAMPLES = """\
@@ -52,12 +52,12 @@ def run(options: argparse.Namespace) -> int:
             if row["error"]:
                 warn(row["error"])
             else:
-                print(_sentence(row))
+                say(_sentence(row))
     passed = sum(row["passes"] for row in rows)
     if options.json:
         publish(Report(name="verify", fields={"files": rows}), options)
     elif len(rows) > 1:
-        print(f"{len(rows)} recordings, {passed} identical")
+        say(f"{len(rows)} recordings, {passed} identical")
     if any(row["error"] for row in rows):
         return Exit.INPUT_UNREADABLE
     if passed < len(rows):
@@ -80,9 +80,9 @@ def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str,
     error = None
     try:
         if path.is_dir():
-            raise RecordingError(f"{printable(str(path))}: no recordings in this folder.")
+            raise RecordingError(f"{path}: no recordings in this folder.")
         result.file = resolve(str(path))
-        with progress(printable(result.file.name)) as show:
+        with progress(result.file.name) as show:
             result = verify(result.file, show, max_steps, only)
     except RecordingError as caught:
         error = str(caught)
@@ -119,4 +119,4 @@ def _sentence(row: dict[str, Any]) -> str:
     elif row["identical"]:
         verdict = "unfinished"
         text += "; identical as far as it goes"
-    return f"{verdict:<11} {printable(row['file'])}: {text}"
+    return f"{verdict:<11} {row['file']}: {text}"

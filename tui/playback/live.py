@@ -13,6 +13,7 @@ from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement
 from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, EventKind, noticed
 from pendu_tui.tui.cli.time_limit import limited
 from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus, RunState
@@ -86,7 +87,8 @@ class Live(Playback):
         recorder = self.recorder
         if recorder is None:
             return None
-        return RecordingStatus(recorder.path.name, recorder.seconds, recorder.failed)
+        name = printable(recorder.path.name)
+        return RecordingStatus(name, recorder.seconds, recorder.failed)
 
     # Time
 

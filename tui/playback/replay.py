@@ -12,6 +12,7 @@ from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.run.verdicts import FAILED, Judgement
+from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus
 from pendu_tui.tui.playback.history import History, changes_of
@@ -87,7 +88,7 @@ class Replay(Playback):
 
     @property
     def recording_status(self) -> RecordingStatus:
-        return RecordingStatus(self.recording.path.name, self.length)
+        return RecordingStatus(printable(self.recording.path.name), self.length)
 
     @property
     def ticks(self) -> list[float]:

@@ -12,7 +12,7 @@ from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
-from pendu_tui.tui.cli.report import progress, warn
+from pendu_tui.tui.cli.report import progress, say, warn
 
 # Textual, NumPy and mcap are imported only where they are needed
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ def say_goodbye(source: "Source") -> int:
     if recorder.part.exists():
         file = recorder.part
     if file.exists():
-        print(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
+        say(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
     if recorder.failed:
         warn(f"the recording stopped: {recorder.failed}")
         return Exit.DISK

@@ -14,7 +14,6 @@ from textual.screen import Screen, ScreenResultType
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.drawing.palette import EXACT, QUIET, TEXT, WARN
 from pendu_tui.tui.drawing.picture import Picture, Row
@@ -126,7 +125,7 @@ def _recording(source: Source) -> Iterator[Segment]:
     else:
         if source.kind == "LIVE":
             yield Segment(8, f"REC {about(int(status.seconds))}")
-        yield Segment(1, printable(status.name), QUIET)
+        yield Segment(1, status.name, QUIET)
 
 
 def speed_text(speed: float) -> str:

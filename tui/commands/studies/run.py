@@ -16,7 +16,6 @@ from pendu_tui.engine.run import compiled, loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.cast import check_fits
@@ -64,7 +63,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
     rows = rows_of(scene, sample, lockstep, is_whole)
     if options.record:
         size = file_size(options.record.stat().st_size)
-        warn(f"recorded {sample.t:g} s, {size}: {printable(str(options.record))}")
+        warn(f"recorded {sample.t:g} s, {size}: {options.record}")
     if not is_whole:
         keep_older(options.output)
     if is_figure:

@@ -1,0 +1,94 @@
+"""Nothing that a name or a file says steers the terminal, wherever it is printed."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.recordings.examples import record, two_runs
+from tests.tui.command_line import own_method, pendu
+from tests.tui.pty_lab import PtyLab
+
+EVIL = "\x1b]0;evil\x07\u202e"
+"""Escape sequences that set the title, and a character that turns text around."""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """A folder with an evil name, and files with evil names and contents in it."""
+    folder = tmp_path / f"folder{EVIL}"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
+    entries = two_runs()
+    scene = replace(entries[0].value.scene, name=EVIL, watch=EVIL)
+    entries[0] = entries[0]._replace(value=entries[0].value._replace(scene=scene))
+    whole = record(folder / f"whole{EVIL}.mcap", entries)
+    (folder / f"cut{EVIL}.mcap").write_bytes(whole.read_bytes()[:-700])
+    (folder / f"killed{EVIL}.mcap.part").write_bytes(whole.read_bytes()[:-700])
+    (folder / f"none{EVIL}.mcap").write_bytes(b"nothing of ours")
+    Path(own_method(folder)).with_name(f"mine{EVIL}.py").write_text("def mine(): pass\n")
+    (folder / f"bad{EVIL}.toml").write_text(f"name = {EVIL!r}\n{EVIL} = 1\n", encoding="utf-8")
+    (folder / f"wrong{EVIL}.toml").write_text("theta = 'x\\u001b[2J'\n", encoding="utf-8")
+    rows = "".join(f"{n},{10 + (-1) ** n}\n" for n in range(200))
+    (folder / f"log{EVIL}.csv").write_text(f"t{EVIL},E{EVIL}\n{rows}", encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("command", "codes"),
+    [
+        (("verify", f"whole{EVIL}.mcap", f"cut{EVIL}.mcap"), (1,)),
+        (("verify", f"none{EVIL}.mcap"), (3,)),
+        (("verify", "."), (3,)),
+        (("verify", f"absent{EVIL}.mcap"), (3,)),
+        (("recordings",), (0,)),
+        (("recordings", "show", f"cut{EVIL}.mcap"), (0,)),
+        (("recordings", "recover", f"cut{EVIL}.mcap", "-o", f"new{EVIL}.mcap"), (0,)),
+        (("recordings", "recover", f"cut{EVIL}.mcap", "-o", f"whole{EVIL}.mcap"), (5,)),
+        (("export", f"cut{EVIL}.mcap", "-o", f"new{EVIL}.csv"), (0,)),
+        (("export", f"whole{EVIL}.mcap", "-o", f"absent{EVIL}/new.csv"), (5,)),
+        (("replay", f"none{EVIL}.mcap", "--plain"), (3,)),
+        (("run", "--time", "1", "--record", f"run{EVIL}.mcap"), (0,)),
+        (("run", "--time", "1", "--scene", f"bad{EVIL}.toml"), (3,)),
+        (("run", "--time", "1", "--scene", f"wrong{EVIL}.toml"), (3,)),
+        (("run", "--time", "1", "--scene", EVIL), (2,)),
+        (("run", "--time", "1", "--method", f"mine{EVIL}.py:mine"), (1, 2, 3)),
+        (("run", "--time", "1", "--method", f"mine{EVIL}.py:absent{EVIL}"), (2, 3)),
+        (("judge", f"log{EVIL}.csv"), (0, 2, 3)),
+        (("judge", f"log{EVIL}.csv", "--time", f"t{EVIL}", "--energy", f"E{EVIL}"), (0,)),
+        (("judge", f"log{EVIL}.csv", "--time", f"x{EVIL}", "--energy", "1"), (2, 3)),
+        (("snapshot", "-o", f"absent{EVIL}/lab.svg"), (5,)),
+        (("live", "--record", f"whole{EVIL}.mcap", "--plain"), (5,)),
+        (("doctor",), (0, 1)),
+        ((EVIL,), (2,)),
+        (("run", f"--{EVIL}"), (2,)),
+    ],
+    ids=lambda value: "",
+)
+def test_no_command_prints_what_steers_a_terminal(command, codes):
+    outcome = pendu(*command)
+    assert outcome.code in codes, outcome.err
+    said = outcome.out + outcome.err
+    assert said.strip()
+    assert said.replace("\n", "").isprintable()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("replay", f"whole{EVIL}.mcap"),
+        ("replay", f"cut{EVIL}.mcap"),
+        ("live", "--record", f"live{EVIL}.mcap"),
+        ("live",),
+    ],
+    ids=lambda value: "",
+)
+def test_no_screen_shows_what_steers_a_terminal(command):
+    with PtyLab(*command) as lab:
+        lab.run(2.0)
+        lab.type("q")
+        assert lab.end() == 0
+    assert b"\x1b]0;evil" not in lab.output
+    assert "\u202e".encode() not in lab.output
