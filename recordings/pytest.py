@@ -1,7 +1,7 @@
 """A pytest plugin: a check of energies, and recordings as tests.
 
-It is loaded by being installed (entry point `pytest11`), so it imports NumPy and the engine only when
-a test uses it.
+It is loaded by being installed (entry point `pytest11`), so it imports NumPy and the engine only
+when a test uses it.
 """
 
 import math
@@ -36,7 +36,7 @@ class EnergyDrift:
         max_drift: float | None = None,
         scale: float | str = "std",
     ) -> "Judged":
-        """Fail unless `pendu_tui.engine.judge` returns this verdict and a trend of at most `max_drift`.
+        """Fail unless `pendu_tui.engine.judge` returns this verdict and a trend up to `max_drift`.
 
         The trend is that of the energies over the scale, per unit of time.
         """

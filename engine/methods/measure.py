@@ -38,16 +38,17 @@ class Measured(NamedTuple):
     linear_limit: float  # z; 0: none; inf: none found up to WIDEST_Z
 
     def __str__(self) -> str:
-        limit = {math.inf: "at any h", 0.0: "at no h"}.get(self.linear_limit)
-        return "\n".join(
-            (
-                f"order             {no_order(self.order) or f'{self.order:.3f}'}",
-                f"force evaluations {self.force_evaluations:.3g} per step",
-                f"symplectic        {yes(self.symplectic)}",
-                f"reversible        {yes(self.reversible)}",
-                f"stable            {limit or f'up to z = h·w0 = {self.linear_limit:.4g}'} (small swings)",
-            )
+        stable = f"up to z = h·w0 = {self.linear_limit:.4g}"
+        if self.linear_limit in (0.0, math.inf):
+            stable = "at any h" if self.linear_limit else "at no h"
+        lines = (
+            f"order             {no_order(self.order) or f'{self.order:.3f}'}",
+            f"force evaluations {self.force_evaluations:.3g} per step",
+            f"symplectic        {yes(self.symplectic)}",
+            f"reversible        {yes(self.reversible)}",
+            f"stable            {stable} (small swings)",
         )
+        return "\n".join(lines)
 
 
 def no_order(order: float | None) -> str:
@@ -83,7 +84,9 @@ def after(phases: Phases, force: Force, phase: Phase, h: Any, steps: int) -> Pha
 def order(phases: Phases) -> float | None:
     """Return the slope of log theta error over log h, over half a period, of the smallest six h.
 
-    None: fewer than three h have an error below SMALL_ERROR that is no rounding.  Over longer times the loss of energy adds a power of its own, and RK4 reads 5 to 6.6.
+    None: fewer than three h have an error below SMALL_ERROR that is no rounding.
+
+    Over longer times the loss of energy adds a power of its own, and RK4 reads 5 to 6.6.
     """
     exact = PENDULUM.exact(*START)
     force = PENDULUM.force()

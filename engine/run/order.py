@@ -19,7 +19,7 @@ MIN_SAMPLES = 4 * BATCHES  # each batch has a mean of its own
 
 
 class Fluctuation(NamedTuple):
-    """The standard deviation of energies about a line, with its standard error, both in their unit."""
+    """The standard deviation of energies about a line, with its standard error, in their unit."""
 
     size: float
     uncertainty: float
