@@ -15,7 +15,11 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.dropped import DROPPED, refuse_dropped
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
-from pendu_tui.tui.cli.files import keep_results_apart, repeat_swallowed_interrupts
+from pendu_tui.tui.cli.files import (
+    keep_results_apart,
+    refuse_to_replace_inputs,
+    repeat_swallowed_interrupts,
+)
 
 if TYPE_CHECKING:
     from pendu_tui.tui.cli.options import Parser
@@ -125,6 +129,7 @@ def _dispatch(arguments: list[str]) -> int:
         options = parser.parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
         return Exit.FINE
+    refuse_to_replace_inputs(options)
     if not getattr(options, "method", None):
         return int(command.run(options))
     from pendu_tui.tui.cli.time_limit import limited, watched

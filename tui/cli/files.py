@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 from _thread import interrupt_main
+from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from io import TextIOWrapper
@@ -45,6 +46,28 @@ def check_free(path: Path, force: bool) -> None:
 
     if not is_stream(path):
         check_target(path, force)
+
+
+def refuse_to_replace_inputs(options: Namespace) -> None:
+    """Raise UserError if an output is a file that another argument names, even with --force."""
+    arguments = dict(vars(options))
+    outputs = [arguments.pop(name, None) for name in ("output", "record")]
+    inputs: list[str] = []
+    for value in arguments.values():
+        texts = value if isinstance(value, list) else [value]
+        for text in texts:
+            if isinstance(text, str | Path):
+                inputs += [str(text), str(text).rpartition(":")[0]]  # FILE.py:FUNCTION
+    for output in outputs:
+        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
+            raise UserError(f"{output} is read by this command; choose another name to write.")
+
+
+def _is_same(path: Path, other: str) -> bool:
+    try:
+        return path.is_file() and path.samefile(other)
+    except (OSError, ValueError):  # an argument may be no name of a file
+        return False
 
 
 def keep_older(path: Path | None) -> None:

@@ -165,6 +165,8 @@ def _recover(options: argparse.Namespace) -> Report:
         raise UserError("name the file to write: -o OUT.")
     path = resolve(options.file)
     check_free(options.output, options.force)
+    if options.output.exists() and path.samefile(options.output):
+        raise UserError(f"{path} is read by this command; choose another name to write.")
     with progress(path.name) as show:
         result = recover(path, options.output, show, options.force)
     notes = [f"{result['out']}: {counted(result['samples_kept'], 'sample')} saved."]

@@ -11,6 +11,7 @@ from signal import SIGHUP, SIGINT, SIGTERM
 
 import pytest
 
+from pendu_tui.recordings.library import GOLDEN
 from pendu_tui.tui.cli.files import repeat_swallowed_interrupts, whole_file
 from tests.tui.command_line import pendu
 
@@ -117,3 +118,25 @@ def test_two_commands_may_write_the_same_name_at_once(tmp_path):
         other.write_text("2")
     assert file.read_text() == "1"
     assert (tmp_path / "data.part").read_text() == "a user's own"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "recordings recover one.mcap -o one.mcap --force",
+        "recordings recover latest -o one.mcap --force",
+        "recordings recover one.mcap -o link.mcap --force",
+        "run --time 1 --scene one.toml --record one.toml --force",
+        "run --time 1 --method one.py:mine --record one.py --force",
+    ],
+)
+def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    for name in ("one.toml", "one.py", "one.csv"):
+        Path(name).write_text("theta = 1.0\n", encoding="utf-8")
+    Path("one.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes()[:-500])
+    Path("link.mcap").symlink_to("one.mcap")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert pendu(*command.split()).refused(2, "is read by this command")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
