@@ -199,7 +199,7 @@ class Pane(CellWidget):
                 self.add(result)
 
         self.failure = ""
-        self.run_worker(work(), group=group, exclusive=True, exit_on_error=False)
+        _: Worker[None] = self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def add(self, result: Any) -> None:
         """Keep a result of `compute`, to be drawn with one of the next samples."""
