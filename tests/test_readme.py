@@ -14,7 +14,7 @@ from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, split
 from pendu_tui.tui.commands.export import columns_of
 from pendu_tui.tui.screens.dialogs import bindings_of, key_lines
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / ".github" / "docs").glob("*.md"))]
@@ -171,7 +171,7 @@ def test_its_keys_are_keys_of_the_lab():
     section = README.partition("## Keys")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE)
     assert len(rows) == 8
-    assert {f"{key:<9}{does}" for key, does in rows} <= set(key_lines(bindings_of(LiveScreen)))
+    assert {f"{key:<9}{does}" for key, does in rows} <= set(key_lines(bindings_of(LabScreen)))
 
 
 def test_the_options_of_the_lab_that_are_named_are_there():

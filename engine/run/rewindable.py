@@ -9,6 +9,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
+from operator import attrgetter
 from typing import NamedTuple
 
 from pendu_tui.engine.run.compiled import TieredLoops
@@ -48,7 +49,7 @@ class RewindableRun:
         """Go to a step with these changes, taken from another run of this scene."""
         for change in changes:
             self.forward(change.step - self.step)
-            self.set_stepping(change.stepping)
+            self.change(change.stepping)
         self.forward(step - self.step)
 
     @property
@@ -67,9 +68,13 @@ class RewindableRun:
     @property
     def x(self) -> float:
         """The simulated time so far [s], which increases even while t decreases."""
-        last = self._applied - 1
+        return self.x_at(self.step)
+
+    def x_at(self, step: int) -> float:
+        """Return the simulated time [s] on the way to a step."""
+        last = bisect_right(self.changes, step, key=attrgetter("step")) - 1
         change = self.changes[last]
-        return self._x[last] + (self.step - change.step) * abs(change.stepping.h)
+        return self._x[last] + (step - change.step) * abs(change.stepping.h)
 
     @property
     def judgements(self) -> list[Judgement]:
@@ -133,12 +138,13 @@ class RewindableRun:
                 self._copies.append(self._copy())
                 self._thin()
 
-    def back_to(self, step: int) -> None:
-        """Go back to a step, before any change made there."""
+    def go_to(self, step: int) -> None:
+        """Go to a step that the run has been at, before any change made there."""
         at = bisect_right(self._copies, step, key=lambda place: place.lockstep.step) - 1
-        lockstep, self._applied = self._copies[at]
-        self._lockstep = lockstep.copy()
-        self._lockstep.run = self.run
+        if not self._copies[at].lockstep.step <= self.step <= step:
+            lockstep, self._applied = self._copies[at]
+            self._lockstep = lockstep.copy()
+            self._lockstep.run = self.run
         self.forward(step - self.step)
 
     @contextmanager
@@ -151,7 +157,7 @@ class RewindableRun:
             self._lockstep, self._applied = before
             raise
 
-    def set_stepping(self, stepping: Stepping) -> None:
+    def change(self, stepping: Stepping) -> None:
         """Step like this from here on; in the past, branch first.  Raises SceneError."""
         x = self.x
         self._lockstep.set_stepping(stepping)

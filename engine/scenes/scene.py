@@ -4,12 +4,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from pendu_tui.engine.models.model import ExactMotion, Model
-from pendu_tui.engine.quantities import ENERGY_ERROR
 
 LIMITS = {  # inclusive; a value beyond is a typo
     "theta": (-1e9, 1e9),
@@ -51,7 +50,8 @@ def _check_range(name: str, value: float, low: float, high: float) -> None:
         )
 
 
-class Line(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Line:
     """A reference line in the chart of its quantity, or on both sides of zero in phase space."""
 
     quantity: str  # of a chart, or "omega"
@@ -61,11 +61,11 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """What to show of a run at first; it changes no number."""
+    """How a lab shows a run, and what a lesson asks about it; it changes no number of the start."""
 
     view: str = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
-    quantity: str = ENERGY_ERROR.name  # of the chart
+    quantity: str = "energy_error"  # of the chart
     log: bool = True
     seconds: float | None = None  # of the chart; None: all
     line: Line | None = None
@@ -73,6 +73,12 @@ class Shot:
     ring: bool = False  # of neighbouring starts in phase space
     moment: float | None = None  # s, simulated, of a pause
     sentence: str = ""  # shown there
+    question: str = ""  # asked there
+    answers: tuple[str, ...] = ()
+    right: int = 1  # the number of the right answer
+    truth: str = ""  # told after the answer
+    equal_cost: bool = False  # each method gets the same number of force evaluations
+    returns: bool = False  # time reverses at the moment; the pause comes at t = 0
 
 
 @dataclass(frozen=True, slots=True)

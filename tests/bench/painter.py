@@ -37,12 +37,12 @@ async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
     from pendu_tui.engine.scenes import DEFAULT_SCENE
     from pendu_tui.tui.playback.live import Live
     from pendu_tui.tui.screens.app import PenduApp
-    from pendu_tui.tui.screens.live import LiveScreen
+    from pendu_tui.tui.screens.lab import LabScreen
     from pendu_tui.tui.screens.still import settled
 
     now = 0.0
     panes: dict[Widget, Pane] = {}
-    stage = LiveScreen(Live(DEFAULT_SCENE.altered(h=H), clock=lambda: 0.0), clock=lambda: now)
+    stage = LabScreen(Live(DEFAULT_SCENE.altered(h=H), clock=lambda: 0.0), clock=lambda: now)
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.pause()

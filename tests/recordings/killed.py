@@ -33,8 +33,8 @@ KEYS = (
     *[lambda live: live.step(1)] * 8,
     lambda live: live.step(10),
     lambda live: live.step(-3),
-    lambda live: live.set_stepping(live.stepping._replace(h=0.02)),
-    lambda live: live.set_stepping(live.stepping._replace(h=-0.05)),
+    lambda live: live.change(live.stepping._replace(h=0.02)),
+    lambda live: live.change(live.stepping._replace(h=-0.05)),
     lambda live: live.start(
         replace(live.scene, cast=tuple(random.sample(USUAL_CAST, 3)), model="pendulum")
     ),

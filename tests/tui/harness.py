@@ -18,9 +18,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.base import SourceScreen
-from pendu_tui.tui.screens.live import LiveScreen
-from pendu_tui.tui.screens.replay import ReplayScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.still import settled
 from pendu_tui.tui.terminal.options import FPS
 from pendu_tui.tui.views import VIEWS
@@ -55,7 +53,7 @@ class Lab(Clocked):
     ) -> None:
         self.live = Live(scene, speed, clock=work_clock)
         if isinstance(record, Path):
-            record = LiveRecorder(record, wall=lambda: 1_700_000_000_000_000_000)
+            record = LiveRecorder(record)
         if record is not None:
             self.live.record(record)
         super().__init__(self.live)
@@ -87,15 +85,15 @@ def eventful(path: Path) -> Path:
     return recorded(
         path,
         2.0,
-        lambda live: live.set_stepping(Stepping(0.1)),
+        lambda live: live.change(Stepping(0.1)),
         2.0,
         lambda live: live.mark("here"),
-        lambda live: live.set_stepping(Stepping(-0.1)),
+        lambda live: live.change(Stepping(-0.1)),
         1.0,
         lambda live: live.start(SCENES["spin"]),
         4.0,
         lambda live: live.step(-40),
-        lambda live: live.set_stepping(Stepping(0.05)),
+        lambda live: live.change(Stepping(0.05)),
         lambda live: live.pause(False),
         3.0,
     )
@@ -106,13 +104,13 @@ class Theatre:
 
     def __init__(self, make_stage: Any) -> None:
         self.now = 0.0
-        self.first: SourceScreen = make_stage(lambda: self.now)
+        self.first: LabScreen = make_stage(lambda: self.now)
         self.app = PenduApp(self.first)
         self.pilot: Pilot[Any]
 
     @property
     def stage(self) -> Any:
-        return self.app.source_screen
+        return self.app.lab
 
     @property
     def source(self) -> Any:
@@ -148,23 +146,18 @@ async def on_stage(make_stage: Any, size: tuple[int, int]) -> AsyncIterator[Thea
         await theatre.pilot.pause()
         theatre.source.tick(0.0)
         yield theatre
-        if theatre.source.kind == "REPLAY":
-            theatre.source.close()
+        theatre.app.finish()
 
 
 def lab(scene: Scene = DEFAULT_SCENE, size: tuple[int, int] = (120, 40)) -> Any:
     """A lab on screen."""
-    return on_stage(lambda clock: LiveScreen(Live(scene, clock=lambda: 0.0), clock), size)
+    return on_stage(lambda clock: LabScreen(Live(scene, clock=lambda: 0.0), clock), size)
 
 
 def player(path: Path, size: tuple[int, int] = (120, 40)) -> Any:
     """A replay on screen; going live from it is not recorded."""
-
-    def make(clock: Any) -> SourceScreen:
-        replay = Replay(Recording.open(path), clock=lambda: 0.0)
-        return ReplayScreen(replay, lambda live: LiveScreen(live, clock), clock)
-
-    return on_stage(make, size)
+    replay = Replay(Recording.open(path), clock=lambda: 0.0)
+    return on_stage(lambda clock: LabScreen(replay, clock), size)
 
 
 async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
@@ -182,7 +175,7 @@ async def uncomputed(*_: object) -> AsyncIterator[object]:
 
 @asynccontextmanager
 async def view_of(
-    stage: SourceScreen,
+    stage: LabScreen,
     key: str,
     kind: type[Any],
     complete: Callable[[Any], bool],

@@ -17,7 +17,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, Scene
 from pendu_tui.recordings.library import new_path
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from tests.tui.conftest import computed_here
 from tests.tui.harness import Theatre
 
@@ -146,12 +146,12 @@ async def still(theatre: Theatre) -> None:
 
 def wild_stage(
     library: Path, scene: Scene = DEFAULT_SCENE
-) -> Callable[[Callable[[], float]], LiveScreen]:
+) -> Callable[[Callable[[], float]], LabScreen]:
     """Return a function that makes a lab recorded in a library."""
 
-    def make(clock: Callable[[], float]) -> LiveScreen:
+    def make(clock: Callable[[], float]) -> LabScreen:
         live = Live(scene, clock=itertools.count(0.0, LOOK).__next__)
         live.record(LiveRecorder(new_path(library)))
-        return LiveScreen(live, clock)
+        return LabScreen(live, clock)
 
     return make

@@ -97,7 +97,7 @@ def scene_named(name: str, lecture: bool = False) -> Scene:
     if name.endswith(".toml"):
         first, *others = read_scenes(Path(name)).values()
         if others and not lecture:
-            raise UserError(f"{name} is a lecture of {len(others) + 1} scenes; only the lab pages.")
+            raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")
         return first
     if name not in SCENES:
         hint = did_you_mean(name, SCENES) or "; pendu-tui scenes lists them."

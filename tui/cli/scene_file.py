@@ -1,22 +1,22 @@
-"""Scene files: a scene of the user's own, or a lecture of several, as TOML.
+"""Scene files: a scene of the user's own, or a lesson of several, as TOML.
 
-The fields are those that `scenes --json` prints, and what differs in the shot; scenes under
-[[scene]] are a lecture.
+The fields are those that `scenes --json` prints, and what differs in the shot.  Scenes under
+[[scene]] are the pages of a lesson; the tour is one.
 """
 
 import argparse
 import json
 import math
 import re
-from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields as fields_of
+from dataclasses import asdict, fields, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
+from pendu_tui.engine import scenes
 from pendu_tui.engine.methods import METHODS, Cast, Method
-from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.models import MODELS, PARAMETERS
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Line, Scene, SceneError, Shot
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.cast import find, own_method_at
@@ -40,36 +40,55 @@ NUMBERS: dict[str, tuple[Callable[[str], float], str, str]] = {
 }
 """The numbers of a scene: the reader, metavar and help of each option."""
 
+TOUR = Path(scenes.__file__).with_name("tour.toml")
+MAX_ANSWERS = 4
+MAX_TEXT = 400  # characters of a sentence
 
 _READERS = {name: read for name, (read, _, _) in NUMBERS.items()}
 _READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
-_DEFAULTS = {name: each.default for name, each in PARAMETERS.items()}
-_PARAMETERS = ChainMap(*(dict(scene.parameters) for scene in SCENES.values()), _DEFAULTS)
-_EXAMPLE = """
-name = "swing"
-theta = "57deg"
-omega = 2.0
-length = 1.0
-gravity = 9.81
-h = 0.05
-watch = "Verlet keeps its energy."
-model = "damped"
-speed = 4
-methods = ["velocity_verlet", "mine.py:step"]
-shot = {view = "phase"}
-""" + "".join(f"{name} = {value:g}\n" for name, value in _PARAMETERS.items())
-_SHOT_EXAMPLE = """
-view = "phase"
-theta = "40deg"
-quantity = "theta_error"
-log = false
-seconds = 20
-line = {quantity = "energy_error", value = 0.01, name = "1 %"}
-front = ["rk4"]
-ring = true
-moment = 12.5
-sentence = "Here they part."
-"""
+_SCENE = {
+    "name": str,
+    "from": str,
+    "watch": str,
+    "model": str,
+    "speed": float,
+    "methods": list[str],
+    "shot": dict[str, Any],
+    **dict.fromkeys(NUMBERS, float),
+}
+_SHOT = get_type_hints(Shot)
+_PARAMETERS = {name: each.default for name, each in PARAMETERS.items()}
+_PARAMETERS |= {name: value for each in SCENES.values() for name, value in each.parameters.items()}
+_EXAMPLES = {
+    "name": '"swing"',
+    "from": '"near-separatrix"',
+    "theta": '"57deg"',
+    "omega": "2.0",
+    "length": "1.0",
+    "gravity": "9.81",
+    "h": "0.05",
+    "watch": '"Verlet keeps its energy."',
+    "model": '"damped"',
+    "speed": "4",
+    "methods": '["velocity_verlet", "mine.py:step"]',
+    "shot": '{view = "phase"}',
+    "view": '"phase"',
+    "quantity": '"theta_error"',
+    "log": "false",
+    "seconds": "20",
+    "line": '{quantity = "energy_error", value = 0.01, name = "1 %"}',
+    "front": '["rk4"]',
+    "ring": "true",
+    "moment": "12.5",
+    "sentence": '"Here they part."',
+    "question": '"Which one comes back?"',
+    "answers": '["Verlet.", "RK4."]',
+    "right": "1",
+    "truth": '"Its step is symmetric."',
+    "equal_cost": "true",
+    "returns": "true",
+    **{name: f"{value:g}" for name, value in _PARAMETERS.items()},
+}
 
 
 class _FieldError(Exception):
@@ -104,18 +123,20 @@ def read_scenes(path: Path) -> dict[str, Scene]:
         raise UserError(f"{path}: begin each with [[scene]].", Exit.INPUT_UNREADABLE)
     heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
     heads += [0] * len(tables)
-    scenes: dict[str, Scene] = {}
+    found: dict[str, Scene] = {}
     for nth, table in enumerate(tables, 1):
         name = f"{path.stem}-{nth}" if len(tables) > 1 else path.stem
         try:
-            scene = _scene({"name": name, **given, **table}, path.parent)
-            if scene.name in scenes:
+            scene = _scene({**given, **table}, path.parent)
+            if scene.name == "custom":
+                scene = replace(scene, name=name)
+            if scene.name in found:
                 raise _FieldError(f"there are two scenes named {scene.name}.", "name")
         except _FieldError as error:
             where = error.line(text, heads[nth - 1])
             raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
-        scenes[scene.name] = scene
-    return scenes
+        found[scene.name] = scene
+    return found
 
 
 def _read(path: Path) -> tuple[str, dict[str, Any]]:
@@ -141,85 +162,117 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
-    """Return the scene in a table; the user's own methods are in the folder."""
-    found = _values(given, _EXAMPLE, folder)
-    model = found.get("model", DEFAULT_MODEL)
-    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
-    suited = tuple(method for method in METHODS if model in method.models)
-    cast = found.pop("methods", None) or next(casts, suited[:MAX_METHODS])
-    parameters = {name: found.pop(name) for name in PARAMETERS if name in found}
+    """Return the scene of a table; the user's own methods are in the folder."""
+    found = _values(given, _SCENE)
+    base = Scene()
+    if listed := found.pop("from", ""):
+        base = _known(SCENES, listed, "from")
+    model = found.get("model", base.model)
+    if model not in MODELS:
+        raise _FieldError(f"there is no model {model!r}; choose from {', '.join(MODELS)}.", "model")
+    if "methods" in found:
+        found["cast"] = _methods(found.pop("methods"), folder)
+    elif model != base.model:
+        found["cast"] = _cast_for(model)
+    texts: dict[str, Any] = {
+        name: found.pop(name) for name in ("name", "watch", "speed") if name in found
+    }
+    shot = found.pop("shot", None)
     try:
-        scene = Scene(cast=cast, parameters=parameters, **found)
+        scene = base.altered(**found)
+        if shot is not None:
+            texts["shot"] = _shot(shot, scene)
+        return replace(scene, **{"name": scene.name, **texts})
     except SceneError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise _FieldError(error, *named[:1]) from None
-    charted = [each.name for each in MODELS[model].charted()]
-    keys = [method.key for method in cast]
+
+
+def _known(listed: Mapping[str, Any], name: str, field: str) -> Any:
+    if name not in listed:
+        hint = did_you_mean(name, listed) or "; pendu-tui scenes lists them."
+        raise _FieldError(f"{field}: there is no {name!r}{hint}", field)
+    return listed[name]
+
+
+def _cast_for(model: str) -> Cast:
+    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
+    suited = tuple(method for method in METHODS if model in method.models)
+    return next(casts, suited[:MAX_METHODS])
+
+
+def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
+    shot = Shot(**_values(given, _SHOT, "shot"))
+    charted = [each.name for each in scene.equations.charted()]
+    keys = [method.key for method in scene.cast]
     for name, words, known in (
-        ("view", [scene.shot.view], ["lab", "phase", "stability", "accuracy"]),
-        ("quantity", [scene.shot.quantity], charted),
-        ("front", scene.shot.front, keys),
+        ("view", [shot.view], ["lab", "phase", "stability", "accuracy"]),
+        ("quantity", [shot.quantity], charted),
+        ("front", shot.front, keys),
     ):
         if unknown := [word for word in words if word not in known]:
             why = f"a shot has no {unknown[0]!r}; choose from {', '.join(known)}."
             raise _FieldError(why, "shot", name)
-    return scene
+    if shot.moment is None and (shot.question or shot.returns):
+        why = f"it needs a moment; use for example moment = {_EXAMPLES['moment']}."
+        raise _FieldError(why, "shot", "question" if shot.question else "returns")
+    count = len(shot.answers)
+    if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
+        raise _FieldError(
+            f"a question has two to {MAX_ANSWERS} answers, and the number of the right one; use "
+            f"for example answers = {_EXAMPLES['answers']} and right = {_EXAMPLES['right']}.",
+            "shot",
+            "question",
+        )
+    return shot
 
 
-def _values(given: Mapping[str, Any], example: str, folder: Path, *above: str) -> dict[str, Any]:
+def _values(given: Mapping[str, Any], types: Mapping[str, Any], *above: str) -> dict[str, Any]:
     """Return the values of a table's fields; `above` is the table's name, if any."""
-    import tomllib
+    import msgspec
 
-    known = tomllib.loads(example)
     found: dict[str, Any] = {}
     for name, value in given.items():
-        names = (*above, name)
+        if name not in types:
+            advice = did_you_mean(name, types) or f"; choose from {', '.join(types)}."
+            owner = above[0] if above else "scene"
+            raise _FieldError(f"a {owner} has no field {printable(name, 40)}{advice}", *above, name)
         try:
-            if name not in known:
-                advice = did_you_mean(name, known) or f"; choose from {', '.join(known)}."
-                owner = above[0] if above else "scene"
-                raise UserError(f"a {owner} has no field {printable(name, 40)}{advice}")
-            found[name] = _value(name, value, type(known[name]), folder)
-        except UserError as error:
-            raise _FieldError(error, *names) from None
-        except (argparse.ArgumentTypeError, LookupError, TypeError, ValueError) as error:
+            if name in _READERS:
+                value = _READERS[name](str(value))
+            found[name] = _printable(msgspec.convert(value, types[name]))
+        except (argparse.ArgumentTypeError, msgspec.ValidationError) as error:
             why = str(error).partition(";")[0]
-            like = next(line for line in example.splitlines() if line.startswith(f"{name} ="))
-            raise _FieldError(f"{name}: {why}; use for example {like}.", *names) from None
+            like = f"{name} = {_EXAMPLES[name]}"
+            raise _FieldError(f"{name}: {why}; use for example {like}.", *above, name) from None
     return found
 
 
-def _value(name: str, value: Any, kind: Any, folder: Path) -> Any:
-    """Return a field's value in the type that Scene or Shot has."""
-    if name in _READERS:
-        return _READERS[name](str(value))
-    if not isinstance(value, kind):
-        kinds = {str: "a text", bool: "true or false", list: "a list", dict: "a table"}
-        raise ValueError(f"{printable(str(value), 40)!r} is not {kinds[kind]}")
-    match name:
-        case "shot":
-            return Shot(**_values(value, _SHOT_EXAMPLE, folder, name))
-        case "line":
-            return Line(value["quantity"], float(value["value"]), printable(value["name"], 40))
-        case "methods":
-            return _methods(value, folder)
-        case "front":
-            return tuple(map(str, value))
-        case "model" if value not in MODELS:
-            raise ValueError(f"{printable(value, 40)!r} is not one of {', '.join(MODELS)}")
-    return printable(value, 200) if kind is str else value
+def _printable(value: Any) -> Any:
+    if isinstance(value, str):
+        return printable(value, MAX_TEXT)
+    if isinstance(value, (tuple, list)):
+        return type(value)(map(_printable, value))
+    if isinstance(value, Line):
+        return replace(value, name=printable(value.name, 40))
+    return value
 
 
-def _methods(keys: Sequence[Any], folder: Path) -> Cast:
+def _methods(keys: Sequence[str], folder: Path) -> Cast:
     """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
     if not keys:
-        raise ValueError("the list is empty")
+        raise _FieldError(f"methods: use for example {_EXAMPLES['methods']}.", "methods")
     cast: list[Method] = []
-    for key in map(str, keys):
-        is_own = ".py:" in key
-        found = own_method_at(f"{folder / key}", cast) if is_own else find(key, METHODS, "methods")
+    for key in keys:
+        try:
+            if ".py:" in key:
+                found: Method = own_method_at(f"{folder / key}", cast)
+            else:
+                found = find(key, METHODS, "methods")
+        except UserError as error:
+            raise _FieldError(error, "methods") from None
         if found in cast:
-            raise ValueError(f"{key} is given twice")
+            raise _FieldError(f"methods: {key} is given twice.", "methods")
         cast.append(found)
     return tuple(cast)
 
@@ -227,7 +280,7 @@ def _methods(keys: Sequence[Any], folder: Path) -> Cast:
 def scene_text(scene: Scene) -> str:
     """Return a scene as TOML, which `read_scenes` reads to the last bit."""
     default = Shot()
-    shot = {each.name: getattr(scene.shot, each.name) for each in fields_of(Shot)}
+    shot = {each.name: getattr(scene.shot, each.name) for each in fields(Shot)}
     shot = {name: value for name, value in shot.items() if value != getattr(default, name)}
     methods = list(map(_method_text, scene.cast))
     lines = _lines({**scene.fields(), "methods": methods, "speed": scene.speed})
@@ -249,7 +302,7 @@ def _lines(table: Mapping[str, Any]) -> list[str]:
 def _toml(name: str, value: Any) -> str:
     """Return a value as TOML, which is JSON but for tables."""
     if isinstance(value, Line):
-        return f"{{{', '.join(_lines(value._asdict()))}}}"
+        return f"{{{', '.join(_lines(asdict(value)))}}}"
     if name == "theta" and abs(value) > math.tau:
         return f'"{value!r}rad"'  # without a unit it is refused: it may be meant in degrees
     return json.dumps(value, ensure_ascii=False)

@@ -12,6 +12,7 @@ from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
+    from pendu_tui.tui.playback.lesson import Lesson
     from pendu_tui.tui.playback.live import Live
 
 EXAMPLES = """\
@@ -43,7 +44,7 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 
     live = Live(scene, options.speed or scene.speed)
     if options.equal_cost:
-        live.set_stepping(live.stepping.toggled())
+        live.change(live.stepping.toggled())
     return live
 
 
@@ -55,9 +56,17 @@ def run(options: argparse.Namespace) -> int:
     launch.check(options)
     live = lab_of(scene, options)
     name = options.scene or options.scene_option or ""
-    lecture = None
+    lesson = None
     if name.endswith(".toml"):
-        scenes = read_scenes(Path(name))
-        if len(scenes) > 1:
-            lecture = scenes
-    return launch.open_lab(live, options, lecture=lecture)
+        lesson = lesson_of(Path(name))
+    return launch.open_lab(live, options, lesson)
+
+
+def lesson_of(file: Path) -> "Lesson | None":
+    """Return the lesson in a scene file; None for a single scene without a question."""
+    from pendu_tui.tui.playback.lesson import Lesson
+
+    pages = [*read_scenes(file).values()]
+    if len(pages) == 1 and not pages[0].shot.question:
+        return None
+    return Lesson("Page", pages)

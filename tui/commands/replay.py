@@ -1,7 +1,6 @@
 """Replay a recording in the lab: pause, step, seek, loop, play backwards, or continue live."""
 
 import argparse
-from functools import partial
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
@@ -56,9 +55,7 @@ def run(options: argparse.Namespace) -> int:
     replay.seek(options.start_at)
     replay.pause(options.paused)
     if options.plain:
-        from pendu_tui.tui.words.plain_text import print_run
-
-        return launch.print_sentences(replay, partial(print_run, only=only))
+        return launch.print_sentences(replay, only=only)
     screen = launch.replay_screen(replay, options.no_record)
     if only is not None:
         hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}

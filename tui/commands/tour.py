@@ -23,7 +23,8 @@ def run(options: argparse.Namespace) -> int:
     from pendu_tui.tui.screens import launch
 
     launch.check(options)
-    from pendu_tui.engine.scenes import DEFAULT_SCENE
+    from pendu_tui.tui.playback.lesson import tour
     from pendu_tui.tui.playback.live import Live
 
-    return launch.open_lab(Live(DEFAULT_SCENE), options, with_tour=True)
+    lesson = tour()
+    return launch.open_lab(Live(lesson.page), options, lesson)

@@ -1,17 +1,16 @@
-"""Ghost: the run before a restart, laid under the lab at the same simulated time."""
+"""Ghost: the run before a restart, for the pictures."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pendu_tui.tui.playback.history import History
-
-if TYPE_CHECKING:
-    from pendu_tui.tui.playback.rows import Window
+from pendu_tui.tui.playback.rows import Window
 
 
 class Ghost:
+    """The run before a restart, laid under the lab at the same simulated time."""
+
     def __init__(self, name: str, history: History) -> None:
         self.scene = history.scene
         steps = dict.fromkeys(f"{abs(change.stepping.h):.4g}" for change in history.changes)
@@ -37,7 +36,7 @@ class Ghost:
         pairs = zip(self.scene.cast, self._thetas[row].tolist(), strict=True)
         return {method.key: theta for method, theta in pairs if not math.isnan(theta)}
 
-    def window(self, until: float, seconds: float | None = None) -> "Window":
+    def window(self, until: float, seconds: float | None = None) -> Window:
         """Return its errors up to a simulated time [s], of the last `seconds` or all."""
         back = (seconds or math.inf) + self._window.repeats
         return self._window.cut(until - back, until)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.playback.row import Row
 from pendu_tui.tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from pendu_tui.recordings.recording import Run
     from pendu_tui.tui.playback.rows import (
         Floats,
-        Row,
         Rows,
         Window,
     )  # NumPy is imported after the first paint
@@ -92,7 +92,7 @@ class History:
             if len(self._waiting) >= 64:  # the first rows are shown without NumPy
                 _ = self.rows
 
-    def _row(self, sample: Sample, with_extremes: bool) -> "Row":
+    def _row(self, sample: Sample, with_extremes: bool) -> Row:
         """Return a row; without extremes, of the values at its end."""
         readings = sample.readings
         exact = self.exact.at(sample.t)
@@ -108,7 +108,7 @@ class History:
             low = [reading.energy_error_low for reading in readings]
             high = [reading.energy_error_high for reading in readings]
         x = self.x(sample.step, sample.t)
-        return sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others]
+        return Row(sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others])
 
     def x(self, step: int, t: float) -> float:
         """Return the simulated time [s] covered up to a step at t, forwards or backwards."""
@@ -166,7 +166,7 @@ class History:
         assert self._current is not None
         records = self.rows.until(self._current)
         if seconds is not None:
-            records = records[records["x"] >= self._current[1] - seconds - self._repeats]
+            records = records[records["x"] >= self._current.x - seconds - self._repeats]
         low = self._named(records["low"])
         high = self._named(records["high"])
         return Window(records["x"], records["t"], low, high, self._repeats)
@@ -210,5 +210,5 @@ class History:
 
     def thetas(self, index: int, length: int) -> list[float]:
         if self._rows is None:
-            return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
+            return [row.states[index][0] for row in self._waiting[-length:]]
         return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]

@@ -3,12 +3,18 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
-from typing import TYPE_CHECKING, Any, Literal
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethod, OwnMethodError
+from pendu_tui.engine.models.model import Model
+from pendu_tui.engine.run.compiled import TieredLoops, compiled
 from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.loops import Loops
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement
@@ -16,24 +22,20 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, EventKind, noticed
 from pendu_tui.tui.cli.time_limit import limited
-from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus, RunState
-from pendu_tui.tui.playback.compiler import compiled_in_background
 from pendu_tui.tui.playback.history import History
+from pendu_tui.tui.playback.source import Playhead, RecordingStatus, RunState, Source
 
 if TYPE_CHECKING:
     from pendu_tui.recordings.recorder import LiveRecorder
-    from pendu_tui.tui.playback.ghost import Ghost
 
 FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
 CHUNK = 256  # steps between clock readings, about a millisecond
 ROW_RATE = 30  # rows of the history and samples of the recording per second
 
 
-class Live(Playback):
-    kind: Literal["LIVE"] = "LIVE"
+class Live(Source):
+    kind = "LIVE"
     _run: RewindableRun
-    ghost: "Ghost | None" = None
-    """The run before a restart with another step."""
 
     def __init__(
         self,
@@ -140,29 +142,40 @@ class Live(Playback):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        target = self._run.step + n
-        while self._run.step < target and not self.failure:
-            self._forward(target - self._run.step)
-        if n < 0:
-            with self._standing_still():
-                self._run.back_to(max(0, target))
-        self.playhead.position = self._run.x
-        return self._take_sample()
+        return self._go_to(max(0, self._run.step + n))
+
+    def seek(self, position: float) -> None:
+        self._go_to(self._run.step_at(min(max(position, 0.0), self.length)))
 
     def go_to(self, run: int, step: int) -> bool:
         if reached := run == self._run.run:
-            self.step(step - self._run.step)
+            self.pause(True)
+            self._go_to(step)
         return reached
 
-    def seek_event(self, direction: int) -> None:
+    def _go_to(self, step: int) -> Sample:
+        with self._standing_still():
+            self._run.go_to(min(step, self._run.furthest))
+        while self._run.step < step and not self.failure:
+            self._forward(step - self._run.step)
+        self.playhead.position = self._run.x
+        return self._take_sample()
+
+    @property
+    def length(self) -> float:
+        return max(self._run.x_at(self._run.furthest), self.playhead.position)
+
+    @property
+    def ticks(self) -> Sequence[float]:
+        kinds = ("start", "set_h", "mark", "noticed")
         run = self._run
-        kept = ("start", "set_h", "mark", "noticed")
-        steps = {each.step for each in self._events if each.run == run.run and each.kind in kept}
-        if direction > 0:
-            target = min((step for step in steps if step > run.step), default=run.furthest)
-        else:
-            target = max((step for step in steps if step < run.step), default=0)
-        self.step(target - run.step)
+        steps = {each.step for each in self._events if each.run == run.run and each.kind in kinds}
+        return [run.x_at(step) for step in sorted(steps)]
+
+    @property
+    def counts(self) -> dict[str, tuple[int, int]]:
+        run = self._run
+        return {"run": (run.run, self._runs), "step": (run.step, run.furthest)}
 
     def pause(self, paused: bool) -> None:
         self.failure = None
@@ -193,7 +206,7 @@ class Live(Playback):
         self.ghost = None
         self._enter(run, History(scene, run.changes))
         if stepping.equal_cost:
-            self.set_stepping(stepping)
+            self.change(stepping)
 
     def restart(self) -> None:
         """Begin again with the current step; a run with another step is laid under it."""
@@ -223,7 +236,7 @@ class Live(Playback):
         self._note_start()
         self._take_sample()
 
-    def set_stepping(self, stepping: Stepping) -> None:
+    def change(self, stepping: Stepping) -> None:
         """Change the step from here on.
 
         Raises SceneError for an absurd step size, or OwnMethodError; then nothing has changed.
@@ -234,7 +247,7 @@ class Live(Playback):
             self._run.branch(self._runs)
             self._note_start()
         with _limited(self.scene, self._run):
-            self._run.set_stepping(stepping)
+            self._run.change(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
 
     # The recording
@@ -319,3 +332,28 @@ def _limited(scene: Scene, run: RewindableRun | None = None) -> Iterator[None]:
     unchanged = run.unchanged_by_errors() if run else nullcontext()
     with limited("the way there"), unchanged:
         yield
+
+
+def compiled_in_background(method: Method, model: Model) -> Loops:
+    """A method's loops: plain until a thread has compiled them, with the same bits."""
+    return TieredLoops(method, model, _ready)
+
+
+def _ready(method: Method, model: Model) -> Loops | None:
+    future = _compiling(method, model)
+    return future.result() if future.done() else None
+
+
+@cache
+def _compiling(method: Method, model: Model) -> Future[Loops]:
+    def compile_now() -> Loops:
+        loops = compiled(method, model)
+        loops.advance((0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
+        return loops
+
+    return _thread().submit(compile_now)
+
+
+@cache
+def _thread() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=1)

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
@@ -14,9 +14,9 @@ from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_befor
 from pendu_tui.engine.run.verdicts import FAILED, Judgement
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, check_present
-from pendu_tui.tui.playback.common import Playback, Playhead, RecordingStatus
 from pendu_tui.tui.playback.history import History, changes_of
 from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.source import Playhead, RecordingStatus, Source
 
 if TYPE_CHECKING:
     from pendu_tui.recordings.recording import Recording, Run, SamplePlace
@@ -26,13 +26,11 @@ DENSE = 60.0  # s of the past that are read completely
 MAX_PIECES = 300  # of a second each, evenly spread over the time before
 
 
-class Replay(Playback):
+class Replay(Source):
     """A recording on screen.  The playhead is on the recording clock."""
 
-    kind: Literal["REPLAY"] = "REPLAY"
-    ghost = None
-    run_state = None
-    next_step = None
+    kind = "REPLAY"
+    length = 0.0
     run: "Run"
     _reading: Iterator[None]  # reads more of the past at each step
 
@@ -42,7 +40,6 @@ class Replay(Playback):
         self.recording = recording
         self.length = recording.length  # s
         self.playhead = Playhead()
-        self.looping = False  # whether to play it again and again
         self._closed = False
         self._clock = clock
         first = recording.at(0.0)
@@ -95,6 +92,14 @@ class Replay(Playback):
         """The times [s] of all events but stops."""
         return sorted({clock for clock, event in self.recording.events if event.kind != "stop"})
 
+    @property
+    def counts(self) -> dict[str, tuple[int, int]]:
+        runs = self.recording.runs
+        return {
+            "run": (runs.index(self.run) + 1, len(runs)),
+            "step": (self.sample.step, self.run.steps),
+        }
+
     # The user's actions
 
     def tick(self, now: float) -> Sample:
@@ -143,14 +148,6 @@ class Replay(Playback):
                 return True
         return False
 
-    def seek_event(self, direction: int) -> None:
-        position = self.playhead.position
-        if direction > 0:
-            later = (tick for tick in self.ticks if tick > position + 1e-6)
-            self.seek(min(later, default=self.length))
-        else:
-            self.seek(max((tick for tick in self.ticks if tick < position - 0.3), default=0.0))
-
     def live(self) -> Live:
         """Return a lab that continues from here with the same bits.
 
@@ -159,7 +156,7 @@ class Replay(Playback):
         check_present(self.scene)
         history = copy(self.history)
         history.changes = self._past_changes
-        return Live(self.scene, history=history)
+        return Live(self.scene, abs(self.playhead.speed), history=history)
 
     def close(self) -> None:
         """Close the file; a frame that is still due shows the last sample."""

@@ -6,20 +6,16 @@ the run alone.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pendu_tui.tui.playback.row import Row
 from pendu_tui.tui.playback.shown import Quantity
 
 Floats = NDArray[np.float64]
 Records = NDArray[np.void]
-
-Row = tuple[int, float, float, Sequence[Sequence[float]], list[list[float]], list[list[float]]]
-"""Step, x and t [s], the states of the methods and the exact motion, and each quantity's extremes
-since the row before: low, high."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +109,7 @@ class Rows:
 
         The wide rows end where the recent ones begin, so every sample is in one row.
         """
-        until = self.number_after(current[0])
+        until = self.number_after(current.step)
         wide = min(-(-self._first // self._width), until // self._width)
         begin = max(wide * self._width, self._first)
         if begin > wide * self._width and until == self.count:
@@ -124,7 +120,7 @@ class Rows:
 
     def trails(self, current: Row, length: int) -> Floats:
         """Return the last states up to the current sample, (rows, methods + 1, 2)."""
-        until = self.number_after(current[0])
+        until = self.number_after(current.step)
         slots = self._slots(max(until - length, self._first), until)
         last = self._between(current, until)["states"]
         return np.concatenate([self._recent["states"][slots], last])[-length:]
@@ -132,7 +128,7 @@ class Rows:
     def _between(self, current: Row, until: int) -> Records:
         """Return the current sample as a row, unless row `until` - 1 is at its step."""
         rows = [current]
-        if self.last_step(until) == current[0]:
+        if self.last_step(until) == current.step:
             rows = []
         return np.array(rows, self._recent.dtype)
 

@@ -1,4 +1,4 @@
-"""PenduApp: themes, signals, errors, and the screens of lab and replay."""
+"""PenduApp: themes, signals, errors, and and the screen of the lab."""
 
 import os
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.time_limit import Watch
 from pendu_tui.tui.drawing.palette import PALETTES, Palette
-from pendu_tui.tui.screens.base import SourceScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, TerminalOptions
@@ -44,7 +44,7 @@ class PenduApp(App[Exit | BaseException]):
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
-    def __init__(self, screen: SourceScreen, terminal: TerminalOptions = USUAL) -> None:
+    def __init__(self, screen: LabScreen, terminal: TerminalOptions = USUAL) -> None:
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         # where there is no colour, Textual would use greys
@@ -53,15 +53,11 @@ class PenduApp(App[Exit | BaseException]):
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme
-        self.fps = terminal.fps
+        screen.fps = terminal.fps
         self.character_filter = CharacterSetFilter(terminal.character_set)
-        self.source_screens = [screen]
+        self.lab = screen
         self._last_notice = ""
         self._watchdog = Watchdog(self, self.finish)
-
-    @property
-    def source_screen(self) -> SourceScreen:
-        return self.source_screens[-1]
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
@@ -70,7 +66,7 @@ class PenduApp(App[Exit | BaseException]):
         return portable(super().export_screenshot(title=title, simplify=simplify))
 
     def get_default_screen(self) -> Screen[None]:
-        return self.source_screen
+        return self.lab
 
     def on_mount(self) -> None:
         """Handle signals from now on, and repaint after a stop."""
@@ -97,7 +93,7 @@ class PenduApp(App[Exit | BaseException]):
         if isinstance(error, ScreenStackError):
             return  # the screens are already gone
         if is_of_list(error):
-            if self.screen is not self.source_screen:
+            if self.screen is not self.lab:
                 self.call_later(self.screen.dismiss)
         elif self.is_headless:
             super()._handle_exception(error)
@@ -115,7 +111,8 @@ class PenduApp(App[Exit | BaseException]):
         super().notify(message, **{**options, "markup": False})
 
     def finish(self) -> None:
-        self.source_screen.source.close()
+        for source in self.lab.sources:
+            source.close()
 
     def action_interrupt(self) -> None:
         """Finish the recording and exit, even if the terminal is gone."""
@@ -131,7 +128,7 @@ class PenduApp(App[Exit | BaseException]):
     def action_command_palette(self) -> None:
         from pendu_tui.tui.screens.palette import Commands, LabCommands
 
-        if self.screen is self.source_screen:
+        if self.screen is self.lab:
             self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))
 
     def action_use_theme(self, name: str) -> None:

@@ -5,46 +5,47 @@ import gc
 import os
 import shlex
 import sys
-from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from pendu_tui.engine.methods import Cast
+from pendu_tui.recordings import library
+from pendu_tui.recordings.errors import NameTakenError
+from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.cli.report import progress, say, warn
+from pendu_tui.tui.playback.lesson import Lesson
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.terminal.check import background, check_terminal
+from pendu_tui.tui.terminal.options import fitting_theme, terminal_options_of
+from pendu_tui.tui.words.plain_text import tell
 
-# Textual, NumPy and mcap are imported only where they are needed
 if TYPE_CHECKING:
-    from pendu_tui.engine.scenes import Scene
     from pendu_tui.recordings.recording import Recording
-    from pendu_tui.tui.playback.live import Live
-    from pendu_tui.tui.playback.replay import Replay
-    from pendu_tui.tui.playback.source import Source
-    from pendu_tui.tui.screens.base import SourceScreen
-    from pendu_tui.tui.screens.live import LiveScreen
-    from pendu_tui.tui.screens.replay import ReplayScreen
 
 
 def check(options: argparse.Namespace) -> None:
     if not options.plain:
-        from pendu_tui.tui.terminal.check import check_terminal
-
         check_terminal()
         # until the screen is up; collections would delay the first paint by 3 %
         gc.disable()
 
 
-def recording_path(file: Path | None) -> Path:
+def recording_path(file: Path | None, folder: Path | None = None) -> Path:
     """Return where to record: the given file, or a new one in the library.
 
     Raises UserError or OSError.
     """
-    from pendu_tui.recordings import library
-
     if file is not None and file.exists():
         raise UserError(f"{file} exists already: choose another name or delete it.", Exit.DISK)
-    path = file or library.new_path()
+    path = file or library.new_path(folder)
     if file is None:
         path.parent.mkdir(parents=True, exist_ok=True)
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
@@ -56,31 +57,23 @@ def recording_path(file: Path | None) -> Path:
     return path
 
 
-def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
-    if path is None:
-        return
-    from pendu_tui.recordings.errors import NameTakenError
-    from pendu_tui.recordings.library import free_path
-    from pendu_tui.recordings.recorder import LiveRecorder  # imports mcap
+def start_recording(live: Live, file: Path | None = None, folder: Path | None = None) -> None:
+    """Record a lab in this file, or in a folder (the library) under a free name."""
+    from pendu_tui.recordings.recorder import LiveRecorder  # mcap's writer, after the first paint
 
+    path = recording_path(file, folder)
     while live.recorder is None:
         try:
             live.record(LiveRecorder(path))
         except NameTakenError:
-            if not or_next:
+            if file is not None:
                 raise
-            path = free_path(path)
-
-
-def live_screen(live: "Live", path: Path | None, or_next: bool = True) -> "LiveScreen":
-    from pendu_tui.tui.screens.live import LiveScreen
-
-    return LiveScreen(live, prepare=partial(start_recording, live, path, or_next))
+            path = library.free_path(path)
 
 
 def open_recording(path: Path) -> "Recording":
     """Open a recording to replay it.  Raises UserError if it is empty."""
-    from pendu_tui.recordings.recording import Recording
+    from pendu_tui.recordings.recording import Recording  # mcap, which a lab needs later
 
     with progress(f"reading {path.name}") as show_progress:
         recording = Recording.open(path, progress=show_progress)
@@ -90,26 +83,8 @@ def open_recording(path: Path) -> "Recording":
     return recording
 
 
-def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
-    """Return the replay's screen; a lab that continues it is recorded in the library, if at all."""
-    from pendu_tui.tui.screens.replay import ReplayScreen
-
-    def go_live(live: "Live") -> "LiveScreen":
-        return live_screen(live, None if no_record else recording_path(None))
-
-    notices = []
-    if reason := replay.recording.reason:
-        notices.append(f"This recording is incomplete ({reason}); showing what is intact.")
-    return ReplayScreen(replay, go_live, notices=notices)
-
-
-def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
+def show(screen: LabScreen, options: argparse.Namespace) -> int:
     """Run the app with this screen first, say goodbye, and return the exit code."""
-    from pendu_tui.recordings.system import environment
-    from pendu_tui.tui.screens.app import PenduApp
-    from pendu_tui.tui.terminal.check import background
-    from pendu_tui.tui.terminal.options import fitting_theme, terminal_options_of
-
     assert sys.__stderr__ is not None  # where Textual draws
     if options.theme == "auto" and not os.environ.get("COLORFGBG"):
         options.theme = fitting_theme(environment())
@@ -121,7 +96,7 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
         result = app.run(mouse=terminal.mouse)
     finally:
         app.finish()
-    codes = [say_goodbye(each.source) for each in app.source_screens]
+    codes = [say_goodbye(source) for source in screen.sources]
     if isinstance(result, BaseException):
         raise _sentence(result)
     if result is not None:
@@ -143,42 +118,43 @@ def _sentence(error: BaseException) -> UserError:
         )
 
 
-def open_lab(
-    live: "Live",
-    options: argparse.Namespace,
-    with_tour: bool = False,
-    lecture: "Mapping[str, Scene] | None" = None,
-) -> int:
-    path = None
+def open_lab(live: Live, options: argparse.Namespace, lesson: Lesson | None = None) -> int:
+    """Open a lab, with a lesson if it begins with the lab's scene."""
     if not options.no_record:
-        path = recording_path(options.record)
-    or_next = options.record is None
+        recording_path(options.record)  # a name that cannot be used is refused before the screen
     if options.plain:
-        from pendu_tui.tui.words.plain_text import print_run, print_tour
-
-        start_recording(live, path, or_next)
-        return print_sentences(live, print_tour if with_tour else print_run)
-    screen = live_screen(live, path, or_next)
-    screen.begins_with_tour = with_tour
-    screen.lecture = lecture or screen.lecture
+        if not options.no_record:
+            start_recording(live, options.record)
+        return print_sentences(live, lesson)
+    screen = LabScreen(live)
+    if not options.no_record:
+        screen.record = partial(start_recording, file=options.record)
+    screen.guide = lesson
     return show(screen, options)
 
 
-def print_sentences(source: Any, write: Callable[..., None]) -> int:
-    """Have `write` print what happens until Ctrl+C or another signal, which is no error here."""
-    from pendu_tui.tui.cli.files import stop_requests
+def replay_screen(replay: Replay, no_record: bool) -> LabScreen:
+    """Return the screen of a replay; what continues live is recorded in the library, if at all."""
+    notices = []
+    if reason := replay.recording.reason:
+        notices.append(f"This recording is incomplete ({reason}); showing what is intact.")
+    screen = LabScreen(replay, notices=notices)
+    if not no_record:
+        screen.record = start_recording
+    return screen
 
+
+def print_sentences(source: Source, lesson: Lesson | None = None, only: Cast | None = None) -> int:
+    """Print what happens until Ctrl+C or another signal, which is no error here."""
     try:
         with stop_requests() as stopped:
-            write(source, partial(print, flush=True), stopped)
+            tell(source, partial(print, flush=True), stopped, lesson=lesson, only=only)
     finally:
         source.close()
     return say_goodbye(source)
 
 
-def say_goodbye(source: "Source") -> int:
-    from pendu_tui.tui.playback.live import Live
-
+def say_goodbye(source: Source) -> int:
     if not isinstance(source, Live) or source.recorder is None:
         return Exit.FINE
     recorder = source.recorder

@@ -1,9 +1,10 @@
-"""The lines around a view: status, tour, insight, keys, and "Terminal too small"."""
+"""The lines around a view: status, seek bar, lesson, insight, keys, "Terminal too small"."""
 
 import textwrap
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rich.cells import cell_len
 from rich.style import Style
@@ -15,17 +16,17 @@ from textual.screen import Screen, ScreenResultType
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.palette import EXACT, QUIET, TEXT, WARN
+from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, WARN
 from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.playback.lesson import ASTRAY
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.insight import insight_text, painted
 from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
-from pendu_tui.tui.words.tour import Tour
 
 BADGE = -10
-"""The ink of LIVE, REPLAY and the tour's titles."""
+"""The ink of LIVE, REPLAY and a lesson's titles."""
 
 
 class SizedScreen(Screen[ScreenResultType]):
@@ -162,7 +163,10 @@ class InsightLine(Pane):
         watch = source.scene.watch
         text = insight_text(source, self.shown.hidden)
         ink = TEXT
-        if status is not None and status.failed:
+        if source.failure:
+            text = f"{source.failure} The run stands still; space tries again."
+            ink = WARN
+        elif status is not None and status.failed:
             text = f"Not recording: {status.failed}"
             ink = WARN
         lines = []
@@ -181,40 +185,108 @@ def fitted(text: str, width: int, height: int) -> list[str]:
 
 FORWARD = {
     "watching": "enter to the moment",
-    "asked": "1 2 answer  enter the truth",
+    "told": "enter go on",
+    "asked": "{answers} answer  enter the truth",
     "answered": "enter go on",
 }
 
 
-class TourPanel(Badged):
-    """The tour's text, in place of the insight line; a click goes forward."""
-
-    def __init__(self, tour: Tour) -> None:
-        super().__init__()
-        self.tour = tour
+class LessonPanel(Badged):
+    """The lesson's text, in place of the insight line; a click goes forward."""
 
     def draw(self) -> None:
         """Show title and keys, then the sentences; where room is short, the last ones."""
-        if not self.drawable:
+        screen: Any = self.screen
+        if not self.drawable or not screen.is_guided:
             return
         width, height = self.room
-        title = f" {self.tour.title} "
-        forward = FORWARD[self.tour.stage]
-        if self.tour.is_astray:
+        lesson = screen.lesson
+        title = f" {lesson.title} "
+        text = lesson.text
+        forward = FORWARD[lesson.stage]
+        if lesson.is_astray(screen.source):
+            text = (ASTRAY,)
             forward = "enter again"
+        numbers = range(1, len(lesson.shot.answers) + 1)
+        forward = forward.format(answers=" ".join(map(str, numbers)))
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):
             keys = keys.rpartition("  ")[0]
-        *others, last = [textwrap.wrap(each, max(width - 2, 2)) for each in self.tour.text]
+        *others, last = [textwrap.wrap(each, max(width - 2, 2)) for each in text]
         lines = [(line, EXACT) for sentence in others for line in sentence]
         lines += [(line, TEXT) for line in last]
         head = [(title, BADGE), ("  ", TEXT), (keys, EXACT)]
-        cast = self.tour.live.scene.cast
+        cast = screen.source.scene.cast
         below = [[(" ", ink), *painted(line, cast, ink)] for line, ink in lines[-(height - 1) :]]
         self.show(Picture([head, *below]))
 
     def on_click(self) -> None:
         self.app.simulate_key("enter")
+
+
+class SeekBar(Pane):
+    """Shows position and events; a click or a drag seeks."""
+
+    _columns = 1  # of the bar
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        text = facts(source, self.room.width - 27)  # leaves 24 columns for the bar
+        self._columns = max(self.room.width - len(text) - 3, 1)
+        row = bar(source.playhead.position, source.length, source.ticks, self._columns)
+        return Picture([[(" ", TEXT), *row, (f"  {text}", TEXT)]])
+
+    async def on_mouse_down(self, event: events.MouseDown) -> None:
+        self.capture_mouse()
+        await self._seek(event)
+
+    async def on_mouse_move(self, event: events.MouseMove) -> None:
+        if self.app.mouse_captured is self:
+            await self._seek(event)
+
+    def on_mouse_up(self) -> None:
+        self.release_mouse()
+
+    async def _seek(self, event: events.MouseEvent) -> None:
+        column = event.screen_x - self.content_region.x - 1  # a drag may leave the bar
+        share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
+        position = share * self.source.length
+        await self.run_action(f"screen.seek({position - self.source.playhead.position})")
+
+
+def bar(position: float, length: float, ticks: Sequence[float], width: int) -> Row:
+    """Return the bar: heavy up to the position, and a tick for each event."""
+
+    def column(clock: float) -> int:
+        return min(int(clock / (length or 1.0) * width), width - 1)
+
+    here = column(position)
+    played = ["━"] * here
+    ahead = ["─"] * (width - here - 1)
+    for at in map(column, ticks):
+        if at < here:
+            played[at] = "┿"
+        elif at > here:
+            ahead[at - here - 1] = "┼"
+    return [("".join(played), TEXT), ("█", WARN), ("".join(ahead), FRAME)]
+
+
+def facts(source: Source, room: int) -> str:
+    """Return position and length, and what fits of loop, run, step and event.
+
+    Numbers are as wide as the largest, so that the bar stays in place.
+    """
+    position = source.playhead.position
+    length = seconds(source.length)
+    text = f"{seconds(position):>{max(len(length), len('59.99 s'))}} of {length}"
+    ticks = source.ticks
+    numbers = {**source.counts, "event": (bisect_right(ticks, position + 1e-6), len(ticks))}
+    parts = [f"{name} {at:>{len(str(last))}}/{last}" for name, (at, last) in numbers.items()]
+    if source.looping:
+        parts.insert(0, "loop")
+    for part in parts:
+        if len(text) + len(part) + 2 <= room:
+            text += f"  {part}"
+    return text
 
 
 def key_text(binding: Binding) -> str:
@@ -224,7 +296,7 @@ def key_text(binding: Binding) -> str:
 class KeyLine(CellWidget):
     """The keys that can be used now; a click presses one."""
 
-    ORDER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
+    ORDER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Live", "Back", "Tour", "Undo")
     """The order of the hints; "" stands for those of the focused pane."""
 
     _keys: Sequence[str] = ()

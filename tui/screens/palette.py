@@ -9,10 +9,9 @@ from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.palette import PALETTES
-from pendu_tui.tui.screens.base import SourceScreen
 from pendu_tui.tui.screens.dialogs import KEY_WIDTH, Once, bindings_of, purpose
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import key_text
-from pendu_tui.tui.screens.live import LiveScreen
 
 
 class Entry(NamedTuple):
@@ -21,13 +20,13 @@ class Entry(NamedTuple):
     key: str = ""
 
 
-def entries(screen: SourceScreen) -> Iterator[Entry]:
+def entries(screen: LabScreen) -> Iterator[Entry]:
     """Yield all that can be done on this screen, each action once."""
     for name in PALETTES:
         yield Entry(f"theme {name}", f"app.use_theme({name!r})")
-    if isinstance(screen, LiveScreen):
-        for scene in {**SCENES, **screen.lecture}.values():
-            yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
+    pages = {page.name: page for page in screen.lesson.pages}
+    for scene in {**SCENES, **pages}.values():
+        yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
     done: set[str] = set()
     for node, binding, enabled, _ in screen.active_bindings.values():
         ours = {each.action for each in bindings_of(type(node))}
@@ -45,7 +44,7 @@ class Commands(CommandPalette, Once[None]):
 
 class LabCommands(Provider):
     def _lines(self) -> Iterator[tuple[str, Callable[[], object]]]:
-        screen = cast(SourceScreen, self.screen)
+        screen = cast(LabScreen, self.screen)
         room = min(screen.size.width - 8, 100) - KEY_WIDTH
         for text, action, key in entries(screen):
             if len(text) > room:

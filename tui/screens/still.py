@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.svg import normalised
 from pendu_tui.tui.terminal.options import FPS, USUAL, TerminalOptions
 
@@ -24,7 +24,7 @@ async def still(
     """Return the lab as an SVG picture, `seconds` after the start, with `keys` pressed then."""
     now = 0.0
     live = Live(scene, clock=lambda: 0.0)
-    screen = LiveScreen(live, clock=lambda: now)
+    screen = LabScreen(live, clock=lambda: now)
     app = PenduApp(screen, terminal=terminal)
     async with app.run_test(size=size) as pilot:
         for frame in range(round(seconds * FPS) + 1):
@@ -38,7 +38,7 @@ async def still(
 
 
 async def settled(app: PenduApp) -> None:
-    panes = app.source_screen.query("#views *").results
+    panes = app.lab.query("#views *").results
     async with asyncio.timeout(30):
         while not all(map(_is_settled, panes(Widget))):
             await asyncio.sleep(0.01)

@@ -87,6 +87,12 @@ class View(Box):
         self._panes: list[Pane] = []
         self._is_painted = False
 
+    def enter(self, source: Source) -> None:
+        """Show another source."""
+        self.source = source
+        for pane in self._panes:
+            pane.source = source
+
     def with_source(self, pane: "Pane") -> "Pane":
         self._panes.append(pane)
         pane.source = self.source
@@ -144,10 +150,6 @@ class Pane(CellWidget):
     @property
     def places(self) -> list[int]:
         return self.shown.places(self.cast)
-
-    @property
-    def is_live(self) -> bool:
-        return self.source.kind == "LIVE"
 
     def write_titles(self, above: str, below: str = "") -> None:
         """Write on the border, if it changed: Textual repaints the whole pane for it."""
@@ -233,10 +235,7 @@ def computing_failed(error: BaseException) -> str:
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
-    """A pane with a cursor to choose a start or a step from, and words about one method.
-
-    In a replay, arrows, enter and esc belong to the replay.
-    """
+    """A pane with a cursor to choose a start or a step from, and words about one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", "move(-1, 0)", "cursor, to choose", False, "arrows"),
@@ -263,8 +262,8 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("choose", "cancel"):
-            return self.is_live and self.cursor is not None
-        return self.is_live or action != "move"
+            return self.cursor is not None
+        return super().check_action(action, parameters)
 
     def place_under(self, event: events.MouseEvent) -> Place | None:
         raise NotImplementedError
@@ -297,7 +296,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         self.draw()
 
     async def on_click(self, event: events.Click) -> None:
-        if self.is_live and (under := self.place_under(event)) is not None:
+        if (under := self.place_under(event)) is not None:
             self.cursor = None
             self.choose(under)
 

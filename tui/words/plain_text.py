@@ -1,4 +1,4 @@
-"""The lab and its tour as sentences, for readers who cannot see the screen, and for logs."""
+"""The lab and its lessons as sentences, for readers who cannot see the screen, and for logs."""
 
 import time
 from collections.abc import Callable
@@ -6,15 +6,14 @@ from collections.abc import Callable
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.run.verdicts import BOUNDED
 from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words import insight
 from pendu_tui.tui.words.events import event_lines
 from pendu_tui.tui.words.numbers import about, seconds, start
-from pendu_tui.tui.words.tour import STEPS, Tour
 
-THINKING = 6.0  # s, to find an answer
-READING = 5.0  # s, to read it
+READING = 6.0  # s, to read a sentence, or to find an answer
 
 
 def description(source: Source, only: Cast | None = None) -> list[str]:
@@ -88,89 +87,42 @@ def _recording(source: Source) -> str:
     return f"The recording {status.name} is {seconds(status.seconds)} long."
 
 
-def print_run(
+def tell(
     source: Source,
     emit: Callable[[str], object],
     stopped: Callable[[], bool],
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
+    lesson: Lesson | None = None,
     only: Cast | None = None,
 ) -> None:
-    """Emit a sentence a second and one an event, until `stopped` or the end of a recording.
+    """Emit the description and each event, until `stopped` or the end of a recording.
 
-    `only` restricts them to these methods.
+    `only` restricts them to these methods.  A lesson goes on by itself, after time to read it.
     """
+    if lesson is not None and isinstance(source, Live):
+        lesson.begin(source, 0)
     for sentence in description(source, only):
         emit(sentence)
-    began = clock()
-    second = 0
-    explained = ""
-    has_news = False
-    source.tick(began)
-    emitted = set(event_lines(source))
+    source.tick(clock())
+    known = set(event_lines(source))
+    told: tuple[str, ...] = ()
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
-        sleep(1 / 30)
+        before = source.sample
         source.tick(clock())
         if source.failure:
             raise UserError(source.failure)
         for line in event_lines(source):
-            if line not in emitted and (only is None or line.method is None or line.method in only):
-                emitted.add(line)
-                has_news = True
+            if line not in known and (only is None or line.method is None or line.method in only):
+                known.add(line)
                 emit(f"{seconds(line.t)}: {line.text}.")
-        if clock() - began >= second + 1:
-            second = int(clock() - began)
-            emit(_numbers(source, only))
-            explanation = insight.insight_text(source)
-            is_due = only is None and (has_news or second % insight.TURN == 0)
-            if is_due and explanation != explained:
-                emit(explanation)
-                explained = explanation
-            has_news = False
-
-
-def _numbers(source: Source, only: Cast | None) -> str:
-    each = zip(source.scene.cast, source.sample.readings, strict=True)
-    errors = ", ".join(
-        f"{insight.short_name(method)} {reading.energy_error:+.2g}"
-        for method, reading in each
-        if only is None or method in only
-    )
-    return f"{seconds(source.sample.t)}: energy errors {errors}."
-
-
-def print_tour(
-    live: Live,
-    emit: Callable[[str], object],
-    stopped: Callable[[], bool],
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], object] = time.sleep,
-) -> None:
-    """Emit the steps, each with its question and, after a pause, the answer, until `stopped`."""
-    tour = Tour(live)
-    live.tick(clock())
-
-    def wait_until(come: Callable[[], bool]) -> bool:
-        """Return False if stopped first."""
-        while not stopped() and not come():
-            sleep(1 / 30)
-            live.tick(clock())
-        return not stopped()
-
-    def pause(time: float) -> bool:
-        end = clock() + time
-        return wait_until(lambda: clock() >= end)
-
-    for index, step in enumerate(STEPS):
-        tour.begin(index)
-        emit(f"{tour.title}. {step.watch}")
-        if not wait_until(tour.follow):
-            return
-        emit(f"{seconds(live.sample.t)}: {step.happened}")
-        emit(f"Question: {step.asked}")
-        if not pause(THINKING):
-            return
-        emit(f"Answer: {step.right + 1}. {step.truth}")
-        if not pause(READING):
-            return
-    emit("That was the tour.")
+        if lesson is not None and isinstance(source, Live):
+            lesson.follow(source, before)
+            if lesson.text != told:
+                told = lesson.text
+                next_at = clock() + READING
+                emit(" ".join([f"{lesson.title}.", *told]))
+            is_moving = lesson.stage == "watching" and lesson.shot.moment is not None
+            if not is_moving and clock() >= next_at and not lesson.forward(source):
+                return
+        sleep(1 / 30)

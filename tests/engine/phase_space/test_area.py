@@ -58,7 +58,7 @@ def test_neighbours_take_the_steps_of_the_run_whenever_they_follow():
     for steps, h in ((7, 0.02), (5, -0.02)):
         run.forward(steps)
         rings(early, run)
-        run.set_stepping(Stepping(h))  # counts for the next step
+        run.change(Stepping(h))  # counts for the next step
         rings(early, run)
     run.forward(3)
     there = expected((7, 0.05), (5, 0.02), (3, -0.02))
@@ -70,10 +70,10 @@ def test_they_go_back_with_the_run_and_begin_again_with_another():
     run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
     run.forward(20)
     rings(neighbours, run)
-    run.back_to(15)
+    run.go_to(15)
     assert np.array_equal(rings(neighbours, run), expected((15, 0.05)))
     run.branch(2)  # a run of its own, that shares the first 15 steps
-    run.set_stepping(Stepping(0.1))
+    run.change(Stepping(0.1))
     run.forward(2)
     assert np.array_equal(rings(neighbours, run), expected((15, 0.05), (2, 0.1)))
     gentle = RewindableRun(SCENES["gentle"], 3)

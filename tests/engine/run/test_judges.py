@@ -139,7 +139,7 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str) ->
 def test_after_a_way_back_verdicts_are_those_of_their_step(back: int, at: int) -> None:
     run = RewindableRun(DRIFT, loops=PlainLoops)
     run.forward(1500)
-    run.back_to(back)
+    run.go_to(back)
     run.forward(max(0, at - back))
     alone = Lockstep(DRIFT, judged=True)
     alone.advance(run.step)
@@ -151,9 +151,9 @@ def test_a_change_of_the_stepping_in_the_past_forgets_what_came_later() -> None:
     run = RewindableRun(DRIFT, loops=PlainLoops)
     run.forward(1200)
     everything = list(run.milestones)
-    run.back_to(300)
+    run.go_to(300)
     run.branch(2)
-    run.set_stepping(Stepping(0.02, cast=DRIFT.cast))
+    run.change(Stepping(0.02, cast=DRIFT.cast))
     assert list(run.milestones) == [each for each in everything if each.step <= 300]
     assert {judgement.verdict for judgement in run.judgements} == {"undecided"}
     run.forward(1500)

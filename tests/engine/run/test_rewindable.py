@@ -29,7 +29,7 @@ def phases(sample):
 
 def move(course, n):
     if n < 0:
-        course.back_to(max(0, course.step + n))
+        course.go_to(max(0, course.step + n))
     else:
         course.forward(n)
 
@@ -39,7 +39,7 @@ def move(course, n):
 def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(700)
-    course.set_stepping(Stepping(h))
+    course.change(Stepping(h))
     course.forward(1900)
     course.sample()
     for n in moves:
@@ -61,10 +61,10 @@ def test_a_run_is_in_its_past_until_it_reaches_its_furthest_step():
 def test_a_change_at_the_step_gone_back_to_is_still_ahead():
     course = RewindableRun(DEFAULT_SCENE)
     course.forward(10)
-    course.set_stepping(Stepping(0.1))
+    course.change(Stepping(0.1))
     course.forward(5)
     course.sample()
-    course.back_to(10)
+    course.go_to(10)
     assert course.stepping.h == DEFAULT_SCENE.h
     course.forward(1)
     assert course.stepping.h == 0.1
@@ -73,17 +73,17 @@ def test_a_change_at_the_step_gone_back_to_is_still_ahead():
 def test_a_branch_shares_the_past_and_forgets_the_future():
     course = RewindableRun(DEFAULT_SCENE)
     course.forward(100)
-    course.set_stepping(Stepping(0.1))
+    course.change(Stepping(0.1))
     course.forward(5000)
     course.sample()
-    course.back_to(2000)
+    course.go_to(2000)
     course.branch(2)
-    course.set_stepping(Stepping(0.02))
+    course.change(Stepping(0.02))
     course.forward(3000)
     sample = course.sample()
     assert sample.run == 2
     assert phases(sample) == phases(straight(5000, {100: 0.1, 2000: 0.02}))
-    course.back_to(1500)
+    course.go_to(1500)
     assert course.sample().run == 2
 
 
@@ -92,7 +92,7 @@ def test_extremes_after_going_back_count_from_the_furthest_step():
     for course in (ahead, returning):
         course.forward(500)
         course.sample()
-    returning.back_to(450)
+    returning.go_to(450)
     returning.sample()
     ahead.forward(40)
     returning.forward(90)
@@ -112,7 +112,7 @@ def test_copies_are_few_and_closer_the_more_recent_they_are():
 def test_time_run_through_goes_up_even_while_time_runs_backwards():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
-    course.set_stepping(Stepping(-0.05))
+    course.change(Stepping(-0.05))
     course.forward(40)
     assert (course.t, course.x) == (3.0, 7.0)
     assert [course.step_at(x) for x in (7.0, 6.99, 2.5)] == [140, 139, 50]

@@ -52,16 +52,28 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine, name):
         ("h = 0.1\nthetta = 1", "line 2: a scene has no field thetta: did you mean theta?"),
         ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
-        ("model = 'cubic'", "line 1: model: 'cubic' is not one of pendulum"),
+        ("model = 'cubic'", "line 1: there is no model 'cubic'; choose from pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
-        ("h = 0.1\nmethods = []", "line 2: methods: the list is empty"),
+        ("h = 0.1\nmethods = []", "line 2: methods: use for example"),
         ("# nothing", "describes no scene"),
-        ("[shot]\nseconds = 9\nlog = 1", "line 3: log: '1' is not true or false; use for"),
-        ("h = 0.1\nshot = 1", "line 2: shot: '1' is not a table; use for example shot = {view"),
+        (
+            "[shot]\nseconds = 9\nlog = 1",
+            "line 3: log: Expected `bool`, got `int`; use for example log = ",
+        ),
+        (
+            "h = 0.1\nshot = 1",
+            "line 2: shot: Expected `object`, got `int`; use for example shot = {",
+        ),
         ("[shot]\nvew = 'phase'", "line 2: a shot has no field vew: did you mean view?"),
         ("[shot]\nview = 'phse'", "line 2: a shot has no 'phse'; choose from lab, phase"),
         ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
+        ("from = 'drfit'", "line 1: from: there is no 'drfit': did you mean drift?"),
+        ("[shot]\nreturns = true", "line 2: it needs a moment; use for example moment ="),
+        (
+            "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
+            "line 3: a question has two to 4 answers, and the number of the right one",
+        ),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
         (f"theta = {'9' * 5000}", "is not TOML"),
         ("theta = = 1", "is not TOML: Invalid value (at line 1"),
@@ -104,7 +116,15 @@ front = ["rk4"]
 """
 
 
-def test_a_shot_names_what_differs_and_several_scenes_are_a_lecture(mine):
+def test_a_listed_scene_gives_what_a_page_does_not_name(mine):
+    scene = read_scene(mine, "from = 'crossover'\n[shot]\nlog = false")
+    assert scene == SCENES["crossover"]
+    assert (scene.speed, scene.shot) == (SCENES["crossover"].speed, Shot(log=False))
+    other = read_scene(mine.with_name("b.toml"), "from = 'crossover'\ntheta = 2")
+    assert (other.name, other.h, other.watch) == ("b", SCENES["crossover"].h, "")
+
+
+def test_a_shot_names_what_differs_and_several_scenes_are_a_lesson(mine):
     mine.write_text(LECTURE, encoding="utf-8")
     first, second = read_scenes(mine).values()
     assert (first.name, second.name) == ("kept", "mine-2")
@@ -113,4 +133,4 @@ def test_a_shot_names_what_differs_and_several_scenes_are_a_lecture(mine):
     assert (second.shot.view, second.shot.front) == ("phase", ("rk4",))
     assert (second.shot.theta, second.shot.seconds) == (math.radians(40), 30.0)
     other = pendu("run", "--scene", mine, "--time", "1")
-    assert other.refused(2, "is a lecture of 2 scenes; only the lab pages.")
+    assert other.refused(2, "is a lesson of 2 scenes; only the lab pages.")

@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.engine.run import compiled
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.tui.playback import compiler
+from pendu_tui.tui.playback import live
 
 
 @pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
@@ -28,13 +28,13 @@ def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
         return compiled.CompiledLoops(plain.propagate, advance)
 
     monkeypatch.setattr(compiled, "COMPILED_FROM", 10)
-    monkeypatch.setattr(compiler, "compiled", slowly)
-    monkeypatch.setattr(compiler, "_compiling", functools.cache(compiler._compiling.__wrapped__))
-    loops = compiler.compiled_in_background(method, model)
+    monkeypatch.setattr(live, "compiled", slowly)
+    monkeypatch.setattr(live, "_compiling", functools.cache(live._compiling.__wrapped__))
+    loops = live.compiled_in_background(method, model)
     expected = plain.advance(*start)
     assert loops.advance(*start) == expected  # at once: `slowly` has not been let go
     assert not used
     release.set()
-    compiler._compiling(method, model).result(10)
+    live._compiling(method, model).result(10)
     assert loops.advance(*start) == expected
     assert used[-1] == start

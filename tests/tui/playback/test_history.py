@@ -26,7 +26,7 @@ def run(
     history = History(scene, course.changes)
     history.add(course.sample())
     for steps, h in stretches:
-        course.set_stepping(Stepping(h, equal_cost, scene.cast))
+        course.change(Stepping(h, equal_cost, scene.cast))
         for _ in range(0, steps, every):
             course.forward(every)
             history.add(course.sample())

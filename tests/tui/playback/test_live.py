@@ -15,8 +15,8 @@ from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from pendu_tui.recordings.events import Event
-from pendu_tui.tui.playback.common import Playhead, doubled
 from pendu_tui.tui.playback.live import FRAME_BUDGET
+from pendu_tui.tui.playback.source import Playhead, doubled
 from tests.tui.harness import FPS, Lab
 
 FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
@@ -101,7 +101,7 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     bench.live.pause(False)
     bench.live.set_speed(4)
     bench.run(1)
-    bench.live.set_stepping(Stepping(0.013))
+    bench.live.change(Stepping(0.013))
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
     # the recording clock stands while paused and does not care for speed
     assert bench.keeper.seconds == pytest.approx(4.0, abs=1 / 30)  # from sample to sample
@@ -111,7 +111,7 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
 def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     bench = Bench(DEFAULT_SCENE.altered(h=0.011), speed=speed)
     turn = bench.run(3).t
-    bench.live.set_stepping(Stepping(-0.011))
+    bench.live.change(Stepping(-0.011))
     end = bench.run(4)
     assert bench.live.history.returned.t == pytest.approx(0.0, abs=1e-10)  # t_base + n·h, rounded
     # nothing is dropped: less than a step behind
@@ -146,10 +146,10 @@ def test_after_steps_it_is_paused_and_goes_on_with_the_same_bits_and_records_not
 def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench = Bench()
     bench.run(1)
-    bench.live.set_stepping(Stepping(0.1))
+    bench.live.change(Stepping(0.1))
     bench.run(2)
     at = bench.live.step(-5).step
-    bench.live.set_stepping(Stepping(0.02))
+    bench.live.change(Stepping(0.02))
     bench.live.pause(False)
     bench.run(1)
     second = [each for each in bench.keeper.events if each.run == 2]
@@ -165,7 +165,7 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
 def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench = Bench()
     bench.run(1)
-    bench.live.set_stepping(Stepping(-0.05))
+    bench.live.change(Stepping(-0.05))
     bench.live.mark("turned")
     bench.live.mark("turned")  # a moment has one mark
     bench.live.pause(True)
@@ -185,7 +185,7 @@ def test_an_absurd_step_size_is_refused_and_changes_nothing(h):
     bench.live.step(-3)
     events = len(bench.keeper.events)
     with pytest.raises(SceneError):
-        bench.live.set_stepping(Stepping(h))
+        bench.live.change(Stepping(h))
     assert (bench.live.stepping.h, bench.live.sample.run) == (0.05, 1)
     assert len(bench.keeper.events) == events
 

@@ -126,7 +126,7 @@ def test_it_shows_the_past_that_the_lab_showed(tmp_path):
     live = []
 
     def change(lab):
-        lab.set_stepping(Stepping(0.1, not lab.stepping.equal_cost))
+        lab.change(Stepping(0.1, not lab.stepping.equal_cost))
 
     table = Table(recorded(tmp_path / "lab.mcap", live.append, 2.0, change, 2.0, change, 1.0))
     table.replay.seek(table.replay.length)
@@ -195,7 +195,7 @@ def lab(tmp_path):
     live = lab.live
     first = list(live.milestones)
     live.step(200 - live.sample.step)
-    live.set_stepping(live.stepping._replace(h=0.02))
+    live.change(live.stepping._replace(h=0.02))
     live.pause(False)
     lab.run(8.0)
     live.close()

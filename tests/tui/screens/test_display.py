@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.palette import PALETTES, TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views import VIEWS
 from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
@@ -76,4 +76,4 @@ async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):
 
 def test_an_empty_no_color_means_nothing(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "")
-    assert not PenduApp(LiveScreen(Live(DEFAULT_SCENE))).no_color
+    assert not PenduApp(LabScreen(Live(DEFAULT_SCENE))).no_color

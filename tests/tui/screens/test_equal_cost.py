@@ -1,6 +1,5 @@
 """Equal cost in the lab: RK4 takes a step four times as long, and that is recorded like any change."""
 
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -9,24 +8,11 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.live import LiveScreen
-from tests.tui.harness import recorded
-
-
-class Driver(LiveScreen):
-    """The lab's actions without a screen."""
-
-    def show_now(self) -> None:
-        pass
-
-
-EQUAL = LiveScreen.action_equal_cost
-RESTART = LiveScreen.action_restart
-SMALLER = partial(LiveScreen.action_next_h, direction=-1)
+from tests.tui.harness import lab, recorded
 
 
 def toggle(live: Live) -> None:
-    Driver(live).action_equal_cost()
+    live.change(live.stepping.toggled())
 
 
 def test_the_key_toggles_equal_cost_which_a_restart_keeps():
@@ -51,16 +37,14 @@ def test_a_sitting_at_equal_cost_verifies_to_the_bit(tmp_path: Path):
         assert changes[0].equal_cost
 
 
-@pytest.mark.parametrize(
-    ("h", "acts"), [(0.05, [EQUAL]), (1e-9, [EQUAL, SMALLER, RESTART]), (60.0, [EQUAL, RESTART])]
-)
-def test_a_step_that_is_absurd_for_a_method_is_refused_before_anything_changes(h, acts):
-    lab = Driver(Live(Scene(h=h)))
-    refusals: list[str] = []
-    lab.notify = lambda message, **_: refusals.append(message)
-    for act in acts:
-        act(lab)
-    runs = lab.live.sample.run
-    lab.start(Scene(h=100.0))
-    assert lab.live.sample.run == runs + (not lab.live.stepping.equal_cost)
-    assert bool(refusals) == lab.live.stepping.equal_cost
+@pytest.mark.parametrize(("h", "keys"), [(0.05, "n"), (1e-9, "n-r"), (60.0, "nr")])
+async def test_a_step_that_is_absurd_for_a_method_is_refused_before_anything_changes(h, keys):
+    async with lab(Scene(h=h)) as theatre:
+        await theatre.press(*keys)
+        runs = theatre.source.sample.run
+        await theatre.stage.start(Scene(h=100.0))
+        await theatre.pilot.pause()
+        equal_cost = theatre.source.stepping.equal_cost
+        assert theatre.source.sample.run == runs + (not equal_cost)
+        refused = [each for each in theatre.app._notifications if "not a usable" in each.message]
+        assert bool(refused) == equal_cost

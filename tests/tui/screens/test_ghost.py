@@ -54,7 +54,7 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
 def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_one_drops_it():
     live = after(DEFAULT_SCENE, 4.0)
     old = live.history.window()
-    live.set_stepping(live.stepping.next(up=True))
+    live.change(live.stepping.next(up=True))
     live.restart()
     left = live.run_state
     assert live.scene.h == 0.1

@@ -9,9 +9,8 @@ from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import WINDOWS, quantities
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
-from pendu_tui.tui.screens.live import LiveScreen
-from pendu_tui.tui.screens.replay import ReplayScreen
 from pendu_tui.tui.views.lab.error_table import ErrorTable
 from pendu_tui.tui.views.lab.event_list import EventList
 from pendu_tui.tui.views.lab.stage import Stage
@@ -104,7 +103,7 @@ async def test_a_run_that_was_replaced_is_brought_back_where_it_was_and_verifies
     def make(clock):
         live = Live(SCENES["drift"], clock=lambda: 0.0)
         live.record(LiveRecorder(path))
-        return LiveScreen(live, clock)
+        return LabScreen(live, clock)
 
     async with on_stage(make, (120, 40)) as theatre:
         await theatre.run(2)
@@ -205,18 +204,25 @@ async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
 
 
-async def test_a_dialog_pauses_the_lab_which_is_afterwards_as_it_was_before():
+async def test_the_lab_stands_still_while_a_dialog_is_open_and_is_afterwards_as_it_was_before():
     async with lab() as theatre:
+        theatre.stage.frame()
         for opening, paused in (("question_mark", False), ("ctrl+p", False), ("i", True)):
             theatre.source.pause(paused)
+            step = theatre.source.sample.step
             await theatre.press(opening)
             await theatre.pilot.pause()
             assert theatre.app.screen is not theatre.stage
-            assert theatre.source.playhead.paused
+            theatre.now += 0.5
+            theatre.stage.frame()
+            assert theatre.source.sample.step == step
             await theatre.press("escape")
             await theatre.pilot.pause()
             assert theatre.app.screen is theatre.stage
             assert theatre.source.playhead.paused == paused
+            theatre.now += 0.5
+            theatre.stage.frame()
+            assert (theatre.source.sample.step > step) == (not paused)
 
 
 async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):
@@ -232,11 +238,11 @@ async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):
             await theatre.press("escape")
 
 
-@pytest.mark.parametrize("owner", [LiveScreen, ReplayScreen, SectionPane])
+@pytest.mark.parametrize("owner", [LabScreen, SectionPane])
 def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner):
     listed = bindings_of(owner)
     assert all(len(line) < COLUMN_WIDTH for line in key_lines(listed))
-    assert len(list(key_lines(listed))) <= 35
+    assert len(list(key_lines(listed))) <= 38
     keys = [key for binding in listed for key in binding.key.split(",")]
     assert len(keys) == len(set(keys))
 

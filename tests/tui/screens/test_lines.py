@@ -5,11 +5,10 @@ import pytest
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.tui.playback.common import Playhead, RecordingStatus
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
-from pendu_tui.tui.screens.lines import speed_text, status_row
-from pendu_tui.tui.screens.replay import bar, facts
+from pendu_tui.tui.playback.source import Playhead, RecordingStatus
+from pendu_tui.tui.screens.lines import bar, facts, speed_text, status_row
 from tests.tui.harness import after, eventful
 
 
@@ -46,7 +45,7 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
 def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
     live = taped()
     assert "  z 0.157  scene drift  REC 72 s" in text(status_row(live, 80))
-    live.set_stepping(Stepping(-0.2, equal_cost=True))
+    live.change(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead.position = 0.0
     live.history.sample = live.sample._replace(t=725.0)

@@ -5,13 +5,13 @@ from textual.widgets._toast import Toast
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import InsightLine
-from pendu_tui.tui.screens.live import LiveScreen
 from tests.tui.harness import lab, until
 
 
 async def test_a_moment_is_marked_once_and_the_notice_lies_on_the_insight_line():
-    app = PenduApp(LiveScreen(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    app = PenduApp(LabScreen(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
     async with app.run_test(size=(80, 24), notifications=True) as pilot:
         await pilot.press("m")
         await until(pilot, lambda: any(toast.region for toast in app.screen.query(Toast)))
@@ -21,7 +21,7 @@ async def test_a_moment_is_marked_once_and_the_notice_lies_on_the_insight_line()
         await pilot.press("m")
         notices = [notice.message for notice in app._notifications]
         assert notices == ["Mark at 0.00 s", "Already marked"]
-        assert [event.kind for event in app.source_screen.source.events].count("mark") == 1
+        assert [event.kind for event in app.lab.source.events].count("mark") == 1
 
 
 async def test_equal_notices_replace_each_other():

@@ -1,4 +1,4 @@
-"""Every key of the replay does what the help says, and so does the mouse on its bar."""
+"""In a replay keys and the bar go to any moment, and a key that changes the run continues it live."""
 
 import asyncio
 import itertools
@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.lines import StatusLine
-from pendu_tui.tui.screens.live import LiveScreen
-from pendu_tui.tui.screens.replay import ReplayScreen, SeekBar
+from pendu_tui.tui.screens.launch import start_recording
+from pendu_tui.tui.screens.lines import SeekBar, StatusLine
 from pendu_tui.tui.views.lab.event_list import EventList
-from tests.tui.harness import eventful, player, recorded
+from tests.tui.harness import eventful, lab, player, recorded
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
         assert replay.playhead.position == pytest.approx(2)
         await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
         assert replay.playhead.position == pytest.approx(4)
-        await theatre.press("b", "greater_than_sign")
+        await theatre.press("space", "b", "greater_than_sign")
         assert replay.playhead.speed == -2
         assert "-2×" in theatre.text(StatusLine)
         await theatre.run(1)
@@ -49,6 +49,23 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
         await theatre.press("space")
         await theatre.run(1)
         assert replay.playhead.position == pytest.approx(1)
+
+
+async def test_the_lab_has_the_same_bar_and_the_same_keys_on_it():
+    async with lab() as theatre:
+        await theatre.run(4)
+        end = theatre.source.sample
+        bar = theatre.stage.query_one(SeekBar)
+        await theatre.press("left")
+        assert theatre.source.sample.t == pytest.approx(3.0, abs=0.06)
+        await theatre.press("home")
+        assert theatre.source.sample.step == 0
+        await theatre.pilot.click(SeekBar, offset=(1 + bar._columns // 2, 0))
+        assert theatre.source.sample.t == pytest.approx(2.0, abs=4 / bar._columns + 0.06)
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(3.0, abs=0.2)
+        await theatre.press("end")
+        assert theatre.source.sample == end
 
 
 async def test_a_click_on_an_event_goes_there(path):
@@ -86,13 +103,13 @@ async def test_a_click_and_a_drag_on_the_bar_go_there(path):
 
 
 async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
-    async with player(recorded(tmp_path / "drift.mcap", 20.0)) as theatre:
+    async with player(recorded(tmp_path / "drift.mcap", 20.0), (120, 45)) as theatre:
         # a frame has time for some samples only
         theatre.source._clock = itertools.count(0.0, 0.003).__next__
         theatre.stage.action_part(1)
         await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
         async with asyncio.timeout(20):
-            while not isinstance(theatre.stage, LiveScreen):
+            while theatre.source.kind == "REPLAY":
                 await theatre.pilot.pause(0.01)
         verdicts = [judgement.verdict for judgement in theatre.source.judgements]
         assert verdicts == ["grows", "bounded", "bounded", "loses"]
@@ -100,32 +117,56 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
 
 
 async def test_f_goes_on_live_from_the_replayed_moment_unless_the_lab_could_not_record(path):
-    def go_live(live: Live) -> LiveScreen:
+    def refuse(live):
         raise UserError("/nowhere is not writable: choose another folder.")
 
     async with player(path) as theatre:
-        theatre.stage._go_live = go_live
+        theatre.stage.record = refuse
         await theatre.press("right", "f")
         await theatre.pilot.pause(0.1)
-        assert isinstance(theatre.stage, ReplayScreen)
+        assert theatre.source.kind == "REPLAY"
         assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
         here = theatre.source.sample
-        theatre.stage._go_live = lambda live: LiveScreen(live, lambda: theatre.now)
+        theatre.stage.record = lambda live: None
         await theatre.press("f")
         await theatre.pilot.pause(0.1)
-        assert isinstance(theatre.stage, LiveScreen)
         assert theatre.source.sample.step == here.step
         assert theatre.source.sample.readings[3].theta == here.readings[3].theta
         assert " LIVE " in theatre.text(StatusLine)
 
 
-async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_it_is(path):
+@pytest.mark.parametrize(
+    ("keys", "changed"),
+    [
+        ("plus", lambda live: live.stepping.h == 0.1),
+        ("n", lambda live: live.stepping.equal_cost),
+        ("r", lambda live: live.sample.step == 0),
+        ("p", lambda live: live.scene == SCENES["gentle"]),
+        ("i enter", lambda live: (live.sample.step, live.scene.h) == (0, 0.05)),
+        ("T", lambda live: live.scene.name == "who gains"),
+        ("f3 right enter", lambda live: live.scene.theta != 1.0),
+    ],
+)
+async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_back(
+    path, keys, changed
+):
+    before = path.read_bytes()
     async with player(path) as theatre:
-        await theatre.press("i", "m", "M", "plus", "minus", "p", "P", "r", "n")
-        (told,) = theatre.app._notifications
-        assert "cannot be changed" in told.message
-        await theatre.press("right", "b", "comma")  # the replay has its own
-        notices = [each.message for each in theatre.app._notifications]
-        assert notices.count(told.message) == 1
+        theatre.stage.record = lambda live: start_recording(live, path.with_name("new.mcap"))
+        await theatre.press("right")
+        replay, here = theatre.source, theatre.source.sample
+        for key in keys.split():
+            await theatre.press(key)
+            await theatre.pilot.pause()
+        assert theatre.source.kind == "LIVE"
+        assert changed(theatre.source)
+        assert any("new.mcap" in notice.message for notice in theatre.app._notifications)
+        await theatre.press("u")
+        assert theatre.source is replay
+        assert theatre.source.sample == here
+        await theatre.press("right", "full_stop")
+        assert theatre.source.sample.step > here.step
+    assert path.read_bytes() == before
+    assert verify(path.with_name("new.mcap")).identical

@@ -3,12 +3,14 @@
 import pytest
 
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.playback.lesson import tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.screens.lines import InsightLine, TourPanel
-from pendu_tui.tui.screens.live import LiveScreen
-from pendu_tui.tui.words.tour import STEPS
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.screens.lines import InsightLine, LessonPanel
 from tests.tui.harness import FPS, Theatre, lab, on_stage
+
+STEPS = tour().pages
 
 
 @pytest.fixture(autouse=True)
@@ -22,7 +24,7 @@ def words(text: str) -> str:
 
 
 def panel(theatre: Theatre) -> str:
-    return words(theatre.text(TourPanel))
+    return words(theatre.text(LessonPanel))
 
 
 async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full():
@@ -30,22 +32,22 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
         await theatre.press("T")
         for number, shot in enumerate(STEPS):
             await theatre.pilot.pause()
-            assert (theatre.stage.view, theatre.source.scene) == (shot.shot.view, shot.scene)
-            assert theatre.stage.shown == Shown().through(shot.scene, shot.shot)
+            assert (theatre.stage.view, theatre.source.scene) == (shot.shot.view, shot)
+            assert theatre.stage.shown == Shown().through(shot)
             assert words(shot.watch) in panel(theatre)
             assert f"Tour {number + 1} of {len(STEPS)}: " in panel(theatre)
-            region = theatre.stage.query_one(TourPanel).region
+            region = theatre.stage.query_one(LessonPanel).region
             assert (region.width, region.bottom) == (60, 15)  # the key line is below
             assert not theatre.stage.query_one(InsightLine).is_on_screen
             await theatre.press("enter")
-            assert words(shot.question) in panel(theatre)
-            assert words(f"1: {shot.answers[0]} 2: {shot.answers[1]}") in panel(theatre)
+            assert words(shot.shot.question) in panel(theatre)
+            assert words(f"1: {shot.shot.answers[0]} 2: {shot.shot.answers[1]}") in panel(theatre)
             await theatre.press(str(1 + number % 2))
-            assert ("Right." in panel(theatre)) == (shot.right == number % 2)
-            assert words(shot.truth) in panel(theatre)
+            assert ("Right." in panel(theatre)) == (shot.shot.right == 1 + number % 2)
+            assert words(shot.shot.truth) in panel(theatre)
             await theatre.press("enter")
         await theatre.pilot.pause()
-        assert not theatre.stage.query_one(TourPanel).is_on_screen
+        assert not theatre.stage.query_one(LessonPanel).is_on_screen
         assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
         await theatre.press("u")
         assert theatre.source.scene == SCENES["spin"]
@@ -80,23 +82,24 @@ async def test_while_a_shot_runs_the_other_keys_keep_their_meaning():
         await theatre.pilot.pause()
         assert not theatre.source.playhead.paused
         assert theatre.stage.view == "phase"
-        assert theatre.stage.query_one(TourPanel).is_on_screen
+        assert theatre.stage.query_one(LessonPanel).is_on_screen
 
 
 async def test_a_click_on_the_panel_goes_on_and_outside_a_tour_its_keys_do_nothing():
     async with lab() as theatre:
         await theatre.press("enter", "backspace", "escape")
-        assert not theatre.stage.query_one(TourPanel).is_on_screen
+        assert not theatre.stage.query_one(LessonPanel).is_on_screen
         await theatre.press("T")
-        await theatre.pilot.click(TourPanel)
+        await theatre.pilot.click(LessonPanel)
         await theatre.pilot.pause()
-        assert words(STEPS[0].question) in panel(theatre)
+        assert words(STEPS[0].shot.question) in panel(theatre)
 
 
 async def test_the_command_begins_with_it():
     def make(clock):
-        screen = LiveScreen(Live(SCENES["drift"], clock=lambda: 0.0), clock)
-        screen.begins_with_tour = True
+        lesson = tour()
+        screen = LabScreen(Live(lesson.page, clock=lambda: 0.0), clock)
+        screen.guide = lesson
         return screen
 
     async with on_stage(make, (120, 40)) as theatre:
@@ -107,4 +110,4 @@ async def test_the_command_begins_with_it():
             theatre.stage.frame()
             assert theatre.now < 30
         theatre.stage.show_now()
-        assert words(STEPS[0].question) in panel(theatre)
+        assert words(STEPS[0].shot.question) in panel(theatre)

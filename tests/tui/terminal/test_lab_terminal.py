@@ -61,10 +61,8 @@ def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_v
 
 def program(code: str) -> list[str]:
     """The lab in which the key m runs some code."""
-    mark = (
-        f"import time\nfrom pendu_tui.tui.screens.live import LiveScreen\ndef mark(self): {code}\n"
-    )
-    return [*PENDU[:2], f"{mark}LiveScreen.action_mark = mark\n{PENDU[2]}"]
+    mark = f"import time\nfrom pendu_tui.tui.screens.lab import LabScreen\ndef mark(self): {code}\n"
+    return [*PENDU[:2], f"{mark}LabScreen.action_mark = mark\n{PENDU[2]}"]
 
 
 def finish(session: PtyLab, how: signal.Signals | str) -> None:

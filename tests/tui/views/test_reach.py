@@ -40,7 +40,7 @@ def test_no_method_ever_swings_beyond_it(name):
 
 def test_the_frame_leaves_out_a_method_beyond_its_limit():
     lab = Lab(SCENES["gentle"])
-    lab.live.set_stepping(Stepping(0.7))  # z = 2.2
+    lab.live.change(Stepping(0.7))  # z = 2.2
     lab.run(20)
     found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
     assert found.frame < 0.12 < found.widest

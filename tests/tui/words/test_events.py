@@ -6,7 +6,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.lab.event_list import EventList
 from pendu_tui.tui.words.events import event_lines, numbered
 from tests.tui.harness import after
@@ -40,11 +40,11 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
     live.pause(True)
     live.pause(False)
     live.set_speed(2)
-    live.set_stepping(Stepping(0.1))
+    live.change(Stepping(0.1))
     live.step(1)
     live.mark("question 2")
-    live.set_stepping(Stepping(-0.1))
-    live.set_stepping(Stepping(0.4, equal_cost=True))
+    live.change(Stepping(-0.1))
+    live.change(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert numbered(event_lines(live)) == [
         " 1  0.00 s start drift, h 0.05 s",
@@ -64,7 +64,7 @@ def test_a_step_back_removes_what_comes_later():
     assert texts(live)[-1] == "Explicit Euler over the top, 5.1 E0"
     live.step(-20)
     assert texts(live) == ["start drift, h 0.05 s"]
-    live.set_stepping(Stepping(0.1))
+    live.change(Stepping(0.1))
     assert len(texts(live)) == 3  # of two runs
     live.step(-1)
     assert len(texts(live)) == 2
@@ -72,11 +72,11 @@ def test_a_step_back_removes_what_comes_later():
 
 async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
     live = after(DRIFT, 20)
-    app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
+    app = PenduApp(LabScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()
-        pane = app.source_screen.query_one(EventList)
-        app.source_screen.show_now()
+        pane = app.lab.query_one(EventList)
+        app.lab.show_now()
         shown = pane.text.splitlines()
         assert shown == [str(line) for line in event_lines(live)][-pane.size.height :]
         assert pane.size.height >= 4

@@ -129,7 +129,7 @@ def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
 def test_there_is_no_forecast_where_it_would_be_a_guess(scene, seconds, index):
     assert forecast(after(SCENES[scene], seconds), index) is None
     live = after(DRIFT, 20)
-    live.set_stepping(Stepping(0.1))
+    live.change(Stepping(0.1))
     live.step(400)
     assert live.judgements[RK4].verdict == "loses"
     assert forecast(live, RK4) is None  # the band of this h is not known
@@ -205,7 +205,7 @@ def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
 def test_what_to_watch_comes_first_and_only_with_its_own_step():
     live = after(SCENES["crossover"], 1)
     assert insight(live).kind == "watch"
-    live.set_stepping(Stepping(0.1))
+    live.change(Stepping(0.1))
     assert (insight(live).kind, insight(live).values) == ("new step", {"h": 0.1})
     live.step(70)
     assert insight(live).kind not in ("watch", "new step")
@@ -222,7 +222,7 @@ def test_of_hidden_methods_it_says_nothing():
 def there_and_back(name: str, steps: int) -> Live:
     live = Live(SCENES[name])
     live.step(steps)
-    live.set_stepping(live.stepping.reversed())
+    live.change(live.stepping.reversed())
     live.step(steps)
     return live
 

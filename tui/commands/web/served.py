@@ -3,15 +3,16 @@
 import os
 import pickle
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from textual.drivers.web_driver import WebDriver
 
-from pendu_tui.recordings import library
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.launch import live_screen
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.screens.launch import start_recording
 from pendu_tui.tui.terminal.options import LARGEST
 
 
@@ -34,7 +35,10 @@ def main() -> None:
     size = bounded({"width": os.environ["COLUMNS"], "height": os.environ["ROWS"]})
     os.environ.update(COLUMNS=str(size["width"]), ROWS=str(size["height"]))
     live = Live(scene)
-    app = PenduApp(live_screen(live, folder and library.new_path(folder)), terminal=terminal)
+    screen = LabScreen(live)
+    if folder is not None:
+        screen.record = partial(start_recording, folder=folder)
+    app = PenduApp(screen, terminal=terminal)
     app.driver_class = BoundedDriver
     try:
         app.run()

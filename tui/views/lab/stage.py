@@ -119,13 +119,11 @@ class Stage(Pane):
         if lens.times > 1:
             note = f", small angles ×{lens.times}"
             titles = [*(f"{title}{note}" for title in titles), note.removeprefix(", ")]
-        below = "dotted: exact"
+        below = "drag: throw it"
         if held:
             below = "let go: start here"
-        elif self.is_live:
-            below = "drag: throw it"
-            if room >= 32:
-                below += " · dotted: exact"
+        elif room >= 32:
+            below = "drag: throw it · dotted: exact"
         self.write_titles(next((each for each in titles if len(each) <= room), titles[-1]), below)
 
     # The mouse
@@ -141,10 +139,6 @@ class Stage(Pane):
             return
         across, down = event.screen_offset - self._down
         if not self._drag and max(abs(across), 2 * abs(down)) < 3:
-            return
-        if not self.is_live:
-            self._let_go()
-            await self.run_action("screen.change")
             return
         x, y = event.get_content_offset_capture(self)
         right = 2 * x + 1 - self.room.width  # from a pivot in the middle

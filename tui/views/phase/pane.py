@@ -82,10 +82,8 @@ class PhasePane(Chooser[State]):
             phase_picture,
         )
 
-        below = "wheel: zoom, g: ring"
-        if self.is_live:
-            below = f"click: start, {below}"
-        self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
+        title = "Phase space (F3): theta [rad], omega [rad/s]"
+        self.write_titles(title, "click: start, wheel: zoom, g: ring")
         self._carry_ring(source, sample)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)

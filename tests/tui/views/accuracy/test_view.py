@@ -10,7 +10,7 @@ from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.accuracy.chart import MARKS
 from pendu_tui.tui.views.accuracy.pane import AccuracyPane
 from pendu_tui.tui.words.accuracy import COSTS, front_words
@@ -43,7 +43,7 @@ async def accuracy_view(scene=SCENES["drift"], size=(80, 30)):
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
+    async with view_of(LabScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
         yield pilot, pane, live
 
 
@@ -74,7 +74,7 @@ async def test_the_current_h_is_marked_and_described_if_it_is_on_the_chart():
         await complete(pilot, pane)
         assert words(pane).startswith("RK4 at h 0.05 s (z 0.157, ")
         for h in (20.0, 1e-7):
-            live.set_stepping(Stepping(h))
+            live.change(Stepping(h))
             await until(pilot, lambda: pane.settled and "@" not in pane.text)
             assert "the current h is not on this chart" in words(pane)
 

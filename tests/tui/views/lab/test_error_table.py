@@ -96,7 +96,7 @@ def test_while_the_pendulum_is_held_there_is_no_run_and_no_error():
 
 def test_after_a_change_of_h_the_largest_error_and_the_theta_error_count_from_it():
     live = lab()
-    live.set_stepping(Stepping(0.01))
+    live.change(Stepping(0.01))
     at_change = live.sample
     live.step(400)
     head, _, _, verlet, rk4 = rows(live, 120)

@@ -242,10 +242,10 @@ async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_al
             assert not theatre.stage.shown.hidden
 
 
-async def test_a_bob_of_a_recording_cannot_be_grabbed_and_a_sentence_says_so(tmp_path):
+async def test_a_bob_of_a_recording_is_thrown_into_a_live_run(tmp_path):
     async with player(recorded(tmp_path / "a.mcap", 2.0)) as theatre:
-        assert "drag" not in str(theatre.stage.query_one(Stage).border_subtitle)
         await grabbed(theatre, (20, 4))
-        (notice,) = theatre.app._notifications
-        assert "cannot be changed" in notice.message
-        assert not theatre.stage.shown.hidden
+        await theatre.pilot.pause()
+        assert theatre.source.kind == "LIVE"
+        assert theatre.source.scene.theta != 1.0
+        assert theatre.source.sample.step == 0

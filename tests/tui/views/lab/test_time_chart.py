@@ -130,7 +130,7 @@ def charted(fps, scene, path=None, *, changes=False, returns=False):
     for frame in range(30 * fps + 1):
         live.tick(frame / fps)
         if changes and frame == 10 * fps:
-            live.set_stepping(Stepping(2 * scene.h))
+            live.change(Stepping(2 * scene.h))
     live.pause(True)
     live.close()
     end = live.sample.step

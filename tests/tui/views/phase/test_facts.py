@@ -65,7 +65,7 @@ def test_the_table_has_areas_of_the_ring_and_its_delay():
 def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_change_of_h():
     live = Live(SCENES["damped"])
     live.step(100)
-    live.set_stepping(Stepping(0.05, cast=live.scene.cast))
+    live.change(Stepping(0.05, cast=live.scene.cast))
     live.step(100)
     text = lines(live, followed(live))
     left = f"{math.exp(-0.05 * 7.5):.9f}"

@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.stability.outcomes import UNKNOWN
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.live import LiveScreen
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.stability.pane import StabilityPane
 from tests.tui.harness import until, view_of
 
@@ -26,7 +26,7 @@ async def stability_view(scene: Scene = SCENES["drift"], size: tuple[int, int] =
     """The view with a map of 60 steps, once that is complete."""
     live = Live(scene)
     live.pause(True)
-    screen = LiveScreen(live)
+    screen = LabScreen(live)
     async with view_of(screen, "f5", StabilityPane, lambda pane: pane.settled, size) as view:
         yield *view, live
 

@@ -1,4 +1,4 @@
-"""The tour: each truth is measured at its moment, and the shots are walked without a screen."""
+"""The tour: each truth is measured at its moment, and the pages are walked without a screen."""
 
 import math
 from dataclasses import replace
@@ -15,28 +15,29 @@ from pendu_tui.engine.run.lockstep import Lockstep, Reading
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.tangent import jacobian
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views import VIEWS
 from pendu_tui.tui.views.phase.viewport import Viewport
-from pendu_tui.tui.words.plain_text import READING, THINKING, print_tour
-from pendu_tui.tui.words.tour import ASTRAY, STEPS, Tour, TourStep
 from tests.tui.harness import FPS, Clocked
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
 DRIFT = SCENES["drift"]
-GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = STEPS
+PAGES = tour().pages
+GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = PAGES
 
 
 class Walked(Clocked):
-    """A lab that follows one shot to its question."""
+    """A lab that follows a page to its question."""
 
-    def __init__(self, shot: TourStep) -> None:
+    def __init__(self, page: Scene) -> None:
         live = Live(SCENES["spin"], clock=lambda: 0.0)
         super().__init__(live)
-        self.tour = Tour(live)
-        self.tour.begin(STEPS.index(shot))
-        while not self.tour.follow():
+        lesson = Lesson("Tour", [page])
+        lesson.begin(live, 0)
+        before = live.sample
+        while not lesson.follow(live, before):
+            before = live.sample
             self.run(1 / FPS)
             assert self.now < 60
         self.readings = live.sample.readings
@@ -48,14 +49,14 @@ def after(scene: Scene, seconds: float) -> tuple[Reading, ...]:
     return tuple(lockstep.sample().readings)
 
 
-@pytest.mark.parametrize("shot", STEPS, ids=lambda shot: shot.title)
-def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(shot):
-    walked = Walked(shot)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(page):
+    walked = Walked(page)
+    moment = 0.0 if page.shot.returns else page.shot.moment
     assert 6 < walked.now < 13
     assert walked.source.playhead.paused
-    assert walked.source.sample.t == pytest.approx(0.0 if shot.returns else shot.moment, abs=1e-9)
-    assert shot.shot.view in VIEWS
-    assert shot.answers[0] != shot.answers[1]
+    assert walked.source.sample.t == pytest.approx(moment, abs=1e-9)
+    assert page.shot.answers[0] != page.shot.answers[1]
 
 
 def test_explicit_euler_gains_and_the_others_keep_their_energy_nearly():
@@ -72,12 +73,12 @@ def test_explicit_euler_gains_and_the_others_keep_their_energy_nearly():
 
 
 def test_the_tilted_ellipse_is_seen_to_be_tilted_and_nothing_covers_it():
-    shown = Shown().through(WHY.scene, WHY.shot)
-    assert (WHY.shot.view, shown.places(WHY.scene.cast)) == ("phase", [EXPLICIT, SYMPLECTIC])
+    shown = Shown().through(WHY, WHY.shot)
+    assert (WHY.shot.view, shown.places(WHY.cast)) == ("phase", [EXPLICIT, SYMPLECTIC])
     assert not shown.ring
-    states = [after(WHY.scene, step * WHY.scene.h)[SYMPLECTIC] for step in range(1, 100)]
+    states = [after(WHY, step * WHY.h)[SYMPLECTIC] for step in range(1, 100)]
     for columns, rows in ((118, 24), (78, 11)):
-        viewport = Viewport.portrait(columns, rows, WHY.scene, WHY.shot.theta)
+        viewport = Viewport.portrait(columns, rows, WHY, WHY.shot.theta)
         x = [viewport.x(each.theta) for each in states]
         y = [viewport.y(each.omega) for each in states]
         assert np.ptp(x) > 0.8 * columns  # 40 % of the dots across
@@ -86,7 +87,7 @@ def test_the_tilted_ellipse_is_seen_to_be_tilted_and_nothing_covers_it():
 
 
 def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
-    scene = WHY.scene
+    scene = WHY
     energies = [1 + after(scene, steps * scene.h)[EXPLICIT].energy_error for steps in range(1, 12)]
     assert scene.z**2 == pytest.approx(0.25)
     ratios = [late / early - 1 for early, late in pairwise(energies)]
@@ -105,7 +106,7 @@ def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
 def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s():
     walked, whole = Walked(SMALLER), after(DRIFT, 17.6)
     readings = walked.readings
-    assert replace(SMALLER.scene, h=2 * SMALLER.scene.h) == DRIFT
+    assert SMALLER.numbers == {**DRIFT.numbers, "h": DRIFT.h / 2}
     errors = [each[VERLET].max_energy_error for each in (whole, readings)]
     assert errors == pytest.approx([0.0057, 0.0014], abs=5e-5)
     assert errors[0] / errors[1] == pytest.approx(4, abs=0.1)
@@ -117,19 +118,19 @@ def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s
 
 def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
     def ratio(h: float, seconds: float) -> float:
-        readings = after(replace(CROSSING.scene, h=h), seconds)
+        readings = after(replace(CROSSING, h=h), seconds)
         return readings[RK].max_energy_error / readings[VERLET].max_energy_error
 
     assert Walked(CROSSING).source.sample.t == pytest.approx(33, abs=1)
-    assert ratio(CROSSING.scene.h, 5) < 1 / 5
-    assert all(ratio(CROSSING.scene.h, seconds) > 1.4 for seconds in (50, 100, 200))
+    assert ratio(CROSSING.h, 5) < 1 / 5
+    assert all(ratio(CROSSING.h, seconds) > 1.4 for seconds in (50, 100, 200))
     assert ratio(0.05, 31 * 60) < 1 < ratio(0.05, 34 * 60)
 
 
 def test_time_reversed_brings_verlet_home_and_no_other():
     walked = Walked(REVERSED)
     assert walked.source.sample.t == pytest.approx(0, abs=1e-9)
-    start = REVERSED.scene
+    start = REVERSED
     misses = [
         math.hypot(each.theta - start.theta, (each.omega - start.omega) / start.w0)  # rad
         for each in walked.readings
@@ -141,7 +142,7 @@ def test_time_reversed_brings_verlet_home_and_no_other():
 
 
 def test_two_methods_keep_area():
-    scene, t = AREA.scene, Walked(AREA).source.sample.t
+    scene, t = AREA, Walked(AREA).source.sample.t
     assert t == pytest.approx(2 * scene.exact().period, abs=scene.h)
     ring = Neighbourhood(scene, 0.1)
     ring.advance(round(t / scene.h), Stepping(scene.h))
@@ -155,7 +156,7 @@ def test_two_methods_keep_area():
 
 
 def test_above_its_limit_verlet_is_held_by_the_pendulum_and_not_by_the_spring():
-    walked, scene = Walked(BREAKS), BREAKS.scene
+    walked, scene = Walked(BREAKS), BREAKS
     assert scene.theta == 0.1
     assert walked.source.sample.step == 10
     assert abs(walked.readings[VERLET].theta) == pytest.approx(0.47, abs=0.01)
@@ -175,95 +176,12 @@ def test_which_method_is_cheaper_depends_on_the_accuracy():
     verlet, rk4 = (walked.source.stepping.own[place] for place in (VERLET, RK))
     assert rk4 == 4 * verlet
     assert walked.source.sample.t == pytest.approx(2, abs=0.25)
-    time, _ = usual(COSTS.scene)
+    time, _ = usual(COSTS)
     cost = {}
     for method in (VELOCITY_VERLET, RK4):
         for target in (1e-2, 1e-6):
-            study = Study(COSTS.scene.with_cast((method,)), time)
+            study = Study(COSTS.with_cast((method,)), time)
             (attempt,) = reach(study, "energy", target)
             cost[method, target] = attempt.point.force_evaluations
     assert cost[VELOCITY_VERLET, 1e-2] / cost[RK4, 1e-2] == pytest.approx(1 / 2, abs=0.05)
     assert cost[RK4, 1e-6] / cost[VELOCITY_VERLET, 1e-6] == pytest.approx(1 / 8, abs=0.01)
-
-
-@pytest.fixture
-def tour() -> Tour:
-    tour = Tour(Live(DRIFT, clock=lambda: 0.0))
-    tour.live.set_stepping(tour.live.stepping.toggled())
-    tour.begin(0)
-    return tour
-
-
-def test_forward_goes_to_the_moment_then_to_the_truth_then_to_the_next_step(tour):
-    assert tour.live.stepping == GAINS.stepping  # equal cost of one's own does not stay
-    for index, step in enumerate(STEPS):
-        assert (tour.index, tour.stage) == (index, "watching")
-        assert tour.forward()
-        assert tour.stage == "asked"
-        assert tour.live.playhead.paused
-        assert tour.live.sample.t == pytest.approx(0.0 if step.returns else step.moment, abs=1e-9)
-        assert tour.forward()
-        assert tour.stage == "answered"
-        assert tour.forward() == (step is not STEPS[-1])
-    assert tour.index == 0
-
-
-@pytest.mark.parametrize("choice", [0, 1])
-def test_an_answer_is_right_or_wrong_and_the_truth_is_the_same(tour, choice):
-    tour.forward()
-    tour.answer(choice)
-    result, truth = tour.text
-    assert result.startswith("Right.") == (choice == GAINS.right)
-    assert truth == GAINS.truth
-
-
-def test_back_goes_from_the_truth_to_the_question_and_from_there_to_the_step_before(tour):
-    for _ in range(5):
-        tour.forward()
-    assert (tour.index, tour.stage) == (1, "answered")
-    tour.back()
-    assert (tour.index, tour.stage) == (1, "asked")
-    for _ in range(2):
-        tour.back()
-        assert (tour.index, tour.stage, tour.live.scene) == (0, "watching", GAINS.scene)
-    assert not tour.live.playhead.paused
-
-
-def test_after_a_change_of_the_run_enter_begins_the_step_again(tour):
-    tour.live.start(SCENES["spin"])
-    tour.live.set_stepping(Stepping(0.1))
-    assert not tour.follow()
-    assert tour.text == (ASTRAY,)
-    tour.forward()
-    assert tour.stage == "watching"
-    assert (tour.live.scene, tour.live.stepping) == (GAINS.scene, GAINS.stepping)
-
-
-def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
-    now = 0.0
-    lines = []
-
-    def sleep(seconds: float) -> None:
-        nonlocal now
-        now += seconds
-
-    def show(line: str) -> None:
-        lines.append((now, line))
-
-    live = Live(DRIFT, clock=lambda: 0.0)
-    print_tour(live, show, lambda: now > stop_at, lambda: now, sleep)
-    return lines
-
-
-def test_without_a_screen_it_asks_waits_and_answers():
-    lines = printed()
-    assert len(lines) == 4 * len(STEPS) + 1
-    asked, answered, following = (at for at, _ in lines[2:5])
-    assert answered - asked == pytest.approx(THINKING, abs=0.1)
-    assert following - answered == pytest.approx(READING, abs=0.1)
-    assert all(step.truth in line for step, (_, line) in zip(STEPS, lines[3::4], strict=True))
-
-
-@pytest.mark.parametrize("stop_at", [1.0, 15.0])
-def test_it_stops_when_it_is_asked_to(stop_at):
-    assert printed(stop_at)[-1][0] <= stop_at + 0.1

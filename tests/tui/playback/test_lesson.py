@@ -1,0 +1,160 @@
+"""A lesson leads a lab from page to page: to the moment, the question, and the answer."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Shot
+from pendu_tui.tui.playback.lesson import Lesson, tour
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.words.plain_text import READING, tell
+from tests.tui.harness import FPS, Clocked
+
+QUESTION = Shot(
+    moment=1.0,
+    sentence="A second has passed.",
+    question="Which one is exact?",
+    answers=("Neither.", "RK4.", "All."),
+    truth="Each has an error.",
+)
+ASKS = replace(SCENES["drift"], name="asks", shot=QUESTION, speed=2.0)
+TELLS = replace(SCENES["crossover"], name="tells", shot=Shot(moment=0.4, sentence="Here."))
+SHOWS = replace(SCENES["spin"], name="shows", watch="It spins.", shot=Shot(equal_cost=True))
+
+
+@pytest.fixture
+def live() -> Live:
+    return Live(SCENES["drift"], clock=lambda: 0.0)
+
+
+@pytest.fixture
+def lesson(live) -> Lesson:
+    lesson = Lesson("Page", [ASKS, TELLS, SHOWS])
+    lesson.begin(live, 0)
+    return lesson
+
+
+def test_a_page_begins_with_its_scene_speed_and_cost_whatever_the_lab_did_before(lesson, live):
+    live.change(live.stepping.toggled())
+    lesson.begin(live, 1)
+    assert (live.scene, live.playhead.speed, live.stepping) == (TELLS, 4.0, Stepping(0.2))
+    lesson.begin(live, 2)
+    assert live.stepping.equal_cost
+    assert live.stepping.smallest == SHOWS.h
+
+
+def test_forward_goes_to_the_moment_the_truth_and_the_next_page_and_ends_after_the_last(
+    lesson, live
+):
+    stages = []
+    while lesson.forward(live):
+        stages.append((lesson.index, lesson.stage, round(live.sample.t, 6)))
+    assert stages == [
+        (0, "asked", 1.0),
+        (0, "answered", 1.0),
+        (1, "watching", 0.0),
+        (1, "told", 0.4),
+        (2, "watching", 0.0),
+    ]
+    assert lesson.index == 0
+
+
+def test_the_lab_pauses_at_the_moment_and_again_after_the_user_went_back(lesson, live):
+    lesson.begin(live, 1)
+    clocked = Clocked(live)
+    times = []
+    for _ in range(30):
+        before = live.sample
+        clocked.run(1 / FPS)
+        if lesson.follow(live, before):
+            times.append(live.sample.t)
+            live.step(-2)
+            live.pause(False)
+    assert times == pytest.approx([0.4] * len(times))
+    assert len(times) > 1
+
+
+def test_where_time_returns_the_pause_comes_at_the_start(live):
+    lesson = Lesson("Page", [replace(ASKS, shot=replace(QUESTION, returns=True))])
+    lesson.begin(live, 0)
+    clocked = Clocked(live)
+    latest = 0.0
+    before = live.sample
+    while not lesson.follow(live, before):
+        before = live.sample
+        latest = max(latest, clocked.run(1 / FPS).t)
+    assert latest == pytest.approx(1.0, abs=0.1)
+    assert (live.sample.t, live.sample.step) == (pytest.approx(0.0, abs=1e-12), 40)
+
+
+@pytest.mark.parametrize("choice", [1, 2, 3, None])
+def test_an_answer_is_right_or_wrong_and_the_truth_is_the_same(lesson, live, choice):
+    lesson.forward(live)
+    lesson.answer(choice)
+    result, truth = lesson.text
+    assert result.startswith("Right.") == (choice == 1)
+    assert ("Not" in result) == (choice in (2, 3))
+    assert truth == QUESTION.truth
+
+
+def test_back_goes_from_the_truth_to_the_question_and_from_there_to_the_page_before(lesson, live):
+    lesson.begin(live, 1)
+    lesson.back(live)
+    lesson.forward(live)
+    lesson.forward(live)
+    lesson.back(live)
+    assert (lesson.index, lesson.stage) == (0, "asked")
+    lesson.back(live)
+    assert (lesson.index, lesson.stage, live.sample.step) == (0, "watching", 0)
+    assert not live.playhead.paused
+
+
+def test_after_a_change_of_the_run_it_waits_until_the_user_begins_the_page_again(lesson, live):
+    live.start(SCENES["spin"])
+    assert lesson.is_astray(live)
+    before = live.sample
+    Clocked(live).run(2.0)
+    assert not lesson.follow(live, before)
+    lesson.forward(live)
+    assert (lesson.stage, live.scene) == ("watching", ASKS)
+    live.change(live.stepping.reversed())
+    assert lesson.is_astray(live)
+
+
+def told(stop_at: float = math.inf, lesson: Lesson | None = None) -> list[tuple[float, str]]:
+    now = 0.0
+    lines = []
+
+    def sleep(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    lesson = lesson or tour()
+    live = Live(lesson.page, clock=lambda: 0.0)
+    emit = lambda line: lines.append((now, line))  # noqa: E731
+    tell(live, emit, lambda: now > stop_at, lambda: now, sleep, lesson)
+    return lines
+
+
+def test_without_a_screen_it_asks_waits_and_answers():
+    lines = [(at, line) for at, line in told(lesson=Lesson("Page", [ASKS])) if "Page 1 of" in line]
+    assert [line.partition(". ")[2][:8] for _, line in lines] == [
+        "Explicit",
+        "A second",
+        "1: Neith",
+    ]
+    asked, answered = (at for at, _ in lines[1:])
+    assert asked == pytest.approx(ASKS.shot.moment / ASKS.speed, abs=0.1)
+    assert answered - asked == pytest.approx(READING, abs=0.1)
+
+
+def test_the_tour_tells_every_truth():
+    text = " ".join(line for _, line in told())
+    assert all(page.shot.truth in text for page in tour().pages)
+
+
+@pytest.mark.parametrize("stop_at", [1.0, 15.0])
+def test_it_stops_when_it_is_asked_to(stop_at):
+    assert told(stop_at)[-1][0] <= stop_at + 0.1

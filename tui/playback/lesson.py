@@ -1,0 +1,142 @@
+"""Lesson: leads a lab through the scenes of a file, to moments, questions and answers."""
+
+from collections.abc import Iterable
+from typing import Literal
+
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import Scene, Shot
+from pendu_tui.tui.cli.scene_file import TOUR, read_scenes
+from pendu_tui.tui.playback.live import Live
+
+ASTRAY = "This is your own run now. Enter begins the page again."
+
+Stage = Literal["watching", "told", "asked", "answered"]
+
+
+class Lesson:
+    """The pages of a lesson, and where it stands: before the moment, there, or at the answer."""
+
+    def __init__(self, name: str, pages: Iterable[Scene], index: int = 0) -> None:
+        self.name = name
+        self.pages = tuple(pages)
+        self.index = index
+        self.stage: Stage = "watching"
+        self.choice: int | None = None  # the number of the chosen answer
+
+    @property
+    def page(self) -> Scene:
+        return self.pages[self.index]
+
+    @property
+    def shot(self) -> Shot:
+        return self.page.shot
+
+    @property
+    def title(self) -> str:
+        return f"{self.name} {self.index + 1} of {len(self.pages)}: {self.page.name}"
+
+    @property
+    def asked(self) -> str:
+        """The question with its answers."""
+        answers = (f"{number}: {text}" for number, text in enumerate(self.shot.answers, 1))
+        return "  ".join([self.shot.question, *answers])
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """The sentences of this stage."""
+        shot = self.shot
+        if self.stage == "watching":
+            return (self.page.watch,)
+        if self.stage == "told":
+            return (shot.sentence,)
+        if self.stage == "asked":
+            return shot.sentence, self.asked
+        result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
+        return f"{result}{shot.right}: {shot.answers[shot.right - 1]}", shot.truth
+
+    @property
+    def _stepping(self) -> Stepping:
+        scene = self.page
+        return Stepping(scene.h, self.shot.equal_cost, scene.cast).with_smallest(scene.h)
+
+    def is_astray(self, live: Live) -> bool:
+        """Return whether the user has changed the run before its moment."""
+        expected = self._stepping
+        if self.shot.returns and live.changes[-1].step == self._turn:
+            expected = expected.reversed()
+        is_same = (live.scene, live.stepping) == (self.page, expected)
+        return self.stage == "watching" and not is_same
+
+    def begin(self, live: Live, index: int) -> None:
+        """Start the run of a page.  Raises SceneError or OwnMethodError."""
+        page = self.pages[index]
+        if (live.scene, live.sample.step) != (page, 0):
+            live.start(page)
+        self.index = index
+        self.stage = "watching"
+        if live.stepping != self._stepping:
+            live.change(self._stepping)
+        live.set_speed(page.speed)
+        live.pause(False)
+
+    def follow(self, live: Live, before: Sample) -> bool:
+        """Pause if the moment has come since a sample; return whether it has."""
+        if self.stage == "told" and live.sample.step < self._turn:
+            self.stage = "watching"  # the user went back
+        shot = self.shot
+        if self.stage != "watching" or shot.moment is None or self.is_astray(live):
+            return False
+        is_turned = live.stepping.h < 0
+        end = (1 + is_turned) * self._turn
+        if before.run == live.sample.run and before.step < end <= live.sample.step:
+            self._reach(live, end)
+            return self.stage != "watching"
+        return False
+
+    @property
+    def _turn(self) -> int:
+        """The step at the moment."""
+        return round((self.shot.moment or 0.0) / self._stepping.h)
+
+    def _reach(self, live: Live, end: int) -> None:
+        """Go to a step, and turn there or tell what there is to tell."""
+        live.go_to(live.sample.run, end)
+        if self.shot.returns and live.stepping.h > 0:
+            live.change(live.stepping.reversed())
+            live.pause(False)
+        else:
+            self.stage = "asked" if self.shot.question else "told"
+
+    def answer(self, choice: int | None) -> None:
+        """Answer the question, or show the truth."""
+        self.choice = choice
+        self.stage = "answered"
+
+    def forward(self, live: Live) -> bool:
+        """Go to the moment, the truth, or the next page; return False after the last."""
+        if self.is_astray(live):
+            self.begin(live, self.index)
+        elif self.stage == "watching" and self.shot.moment is not None:
+            while self.stage == "watching":
+                self._reach(live, (1 + (live.stepping.h < 0)) * self._turn)
+        elif self.stage == "asked":
+            self.answer(None)
+        elif self.index + 1 < len(self.pages):
+            self.begin(live, self.index + 1)
+        else:
+            self.index = 0
+            return False
+        return True
+
+    def back(self, live: Live) -> None:
+        """Go back from the truth to the question, or to the previous page."""
+        if self.stage == "answered":
+            self.stage = "asked"
+        else:
+            self.begin(live, max(self.index - 1, 0))
+
+
+def tour() -> Lesson:
+    """Return the lesson that comes with the program."""
+    return Lesson("Tour", read_scenes(TOUR).values())

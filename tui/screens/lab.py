@@ -1,0 +1,712 @@
+"""LabScreen: the views, keys and lines around a source, which is a lab or a replay."""
+
+import asyncio
+import gc
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, ClassVar, NamedTuple, cast
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.content import Content
+from textual.reactive import var
+from textual.screen import ModalScreen
+from textual.widget import Widget
+
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Scene, SceneError
+from pendu_tui.recordings import library
+from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.tui.cli.errors import UserError, explained
+from pendu_tui.tui.cli.scene_file import scene_text
+from pendu_tui.tui.playback.lesson import Lesson, tour
+from pendu_tui.tui.playback.live import Live, has_own
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.source import RunState, Source, doubled
+from pendu_tui.tui.screens.lines import (
+    InsightLine,
+    KeyLine,
+    LessonPanel,
+    SeekBar,
+    SizedScreen,
+    StatusLine,
+    TooSmall,
+)
+from pendu_tui.tui.terminal.check import is_writing
+from pendu_tui.tui.terminal.options import FPS
+from pendu_tui.tui.views import VIEWS, create, following
+from pendu_tui.tui.views.view import (
+    Box,
+    Held,
+    Pane,
+    SceneChosen,
+    StepSizeChosen,
+    View,
+    Zoomed,
+)
+from pendu_tui.tui.words.events import event_lines, numbered
+from pendu_tui.tui.words.insight import return_text
+from pendu_tui.tui.words.numbers import seconds
+from pendu_tui.tui.words.plain_text import description
+
+STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
+
+_H = Binding.Group("larger, smaller step h")
+_SECONDS = Binding.Group("back, forward 1 s")
+_TENTHS = Binding.Group("back, forward 10 %")
+_ENDS = Binding.Group("to the start, to the end")
+_SPEED = Binding.Group("half, double speed")
+_STEPS = Binding.Group("one step back, forward")
+_EVENTS = Binding.Group("previous, next event")
+_METHODS = Binding.Group("show or hide a method")
+_VIEWS = Binding.Group("view: lab, phase, …")
+
+
+class State(NamedTuple):
+    """Everything that undo restores."""
+
+    source: Source
+    stepping: Stepping
+    speed: float
+    shown: Shown
+    run: RunState | None  # None in a replay
+
+
+class LabScreen(SizedScreen[None]):
+    """Shows a source.  In a replay a key that changes the run continues it live from there."""
+
+    BLANK = True  # covered by its children
+    AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
+    BINDING_GROUP_TITLE = "Lab"
+    HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(
+            "plus,equals_sign", "next_h(1)", "Step", True, "+", False, "larger step h", group=_H
+        ),
+        Binding("minus", "next_h(-1)", "Step", True, "-", False, "smaller step h", group=_H),
+        Binding("p", "next_scene", "Scene", tooltip="next scene"),
+        Binding("P,shift+p", "scenes", "choose a scene", show=False),
+        Binding("i", "start_values", "Edit", tooltip="edit start values"),
+        Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
+        Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
+        Binding("b", "reverse", "Back", tooltip="run back in time"),
+        Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
+        Binding("f", "live", "Live", tooltip="continue a replay live"),
+        Binding("m", "mark", "mark this moment", show=False),
+        Binding("T,shift+t", "lesson", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
+        Binding("enter", "lesson_forward"),  # the lesson's panel shows these two
+        Binding("backspace", "lesson_back"),
+        Binding("space", "pause", "Pause", tooltip="pause, go on"),
+        Binding("less_than_sign", "speed(-1)", "half speed", False, "<", group=_SPEED),
+        Binding("greater_than_sign", "speed(1)", "double speed", False, ">", group=_SPEED),
+        Binding("comma", "step(-1)", "one step back", False, ",", group=_STEPS),
+        Binding("full_stop", "step(1)", "one step forward", False, ".", group=_STEPS),
+        Binding("left_square_bracket", "event(-1)", "previous event", False, "[", group=_EVENTS),
+        Binding("right_square_bracket", "event(1)", "next event", False, "]", group=_EVENTS),
+        Binding("left", "seek(-1)", "-1 s", True, "left", tooltip="back 1 s", group=_SECONDS),
+        Binding("right", "seek(1)", "+1 s", True, "right", tooltip="forward 1 s", group=_SECONDS),
+        Binding("home", "part(-1)", "go to the start", False, group=_ENDS),
+        Binding("end", "part(1)", "go to the end", False, group=_ENDS),
+        Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
+        Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
+        *(
+            Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
+            for n in range(1, MAX_METHODS + 1)
+        ),
+        Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
+        Binding("e", "quantity", "chart: next quantity", show=False),
+        Binding("y", "axes", "chart: log, log time, …", show=False),
+        Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
+        Binding("o", "switch('overview')", "overview: all angles", show=False),
+        Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
+        Binding("escape", "back", "chart: back from the zoom", False, "esc"),
+        Binding("v", "view", "View", tooltip="next view"),
+        *(
+            Binding(f"f{n}", f"view({name!r})", f"view: {view.title}", False, f"F{n}", group=_VIEWS)
+            for n, (name, view) in enumerate(VIEWS.items(), 2)
+        ),
+        Binding("E,shift+e", "events", "list all events", show=False),
+        Binding("d", "describe", "describe it in words", show=False),
+        Binding("s", "screenshot", "save a screenshot", show=False),
+        Binding("u", "undo", "Undo", tooltip="undo the last change"),
+        Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
+        Binding(
+            "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
+        ),
+        Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
+        Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
+    ]
+
+    shown: var[Shown] = var(Shown())
+    fps = FPS
+    record: Callable[[Live], object] = staticmethod(lambda live: None)
+    """Begins a lab's recording, after the first paint; may raise OSError or UserError."""
+    lesson: Lesson
+    """The pages that key p leads through: those of the guide, or all scenes."""
+    guide: Lesson | None = None
+    """The lesson that key T begins; None: the tour, which is read then."""
+    is_guided = False
+
+    def __init__(
+        self,
+        source: Source,
+        clock: Callable[[], float] = time.monotonic,
+        notices: Sequence[str] = (),
+    ) -> None:
+        super().__init__()
+        self._notices = notices
+        self.source = source
+        self.sources = [source]
+        shown = Shown().through(source.scene)
+        self.set_reactive(LabScreen.shown, shown)
+        self.clock = clock
+        self.view = source.scene.shot.view
+        self._view_in_front = create(self.view, source, shown)
+        names = list(SCENES)
+        place = names.index(source.scene.name) if source.scene.name in names else -1
+        self.lesson = Lesson("Scene", SCENES.values(), place)
+        self._before_lesson: tuple[State, str, Lesson] | None = None
+        self._lines: list[Pane] = []
+        self._frames = 0
+        self._is_late = False  # whether the next frame must show everything
+        self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
+        self._changing = asyncio.Lock()
+
+    # What is on the screen
+
+    def compose(self) -> ComposeResult:
+        yield self._line(StatusLine())
+        with Box(id="views"):
+            yield self._view_in_front
+        yield TooSmall()
+        yield self._line(SeekBar())
+        yield LessonPanel()
+        yield self._line(InsightLine())
+        yield KeyLine()
+
+    def _line(self, line: Pane) -> Pane:
+        """Register a line; it is refreshed five times a second."""
+        self._lines.append(line)
+        line.source = self.source
+        line.sample = self.source.sample
+        return line
+
+    def _enter(self, source: Source) -> None:
+        """Show another source."""
+        self.source = source
+        self.set_class(isinstance(source, Replay), "-replay")
+        for view in self.query(View):
+            view.enter(source)
+        for line in self._lines:
+            line.source = source
+        self.refresh_bindings()
+
+    def watch_shown(self) -> None:
+        if self.is_mounted:  # commands set it earlier
+            self.show_now()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Keep visitors in a browser from this computer's files."""
+        match action:
+            case "screenshot" | "save_scene":
+                return not self.app.is_web
+            case "lesson_forward" | "lesson_back":
+                return self.is_guided
+            case "live":
+                return isinstance(self.source, Replay)
+            case "mark":
+                return isinstance(self.source, Live)
+        return super().check_action(action, parameters)
+
+    # Frames, from the clock to the panes
+
+    def on_mount(self) -> None:
+        self.set_class(isinstance(self.source, Replay), "-replay")
+        self.frame_timer = self.set_interval(1 / self.fps, self.frame, pause=True)
+        self.call_after_refresh(self.begin)
+
+    async def begin(self) -> None:
+        try:
+            if isinstance(self.source, Live):
+                self.record(self.source)
+        except (OSError, UserError) as error:
+            self.app.exit(cast(Any, error))
+            return
+        gc.collect()
+        gc.freeze()  # never collect what exists now, which would cost frames
+        gc.enable()
+        self.frame_timer.resume()
+        for notice in self._notices:
+            self.notify(notice, timeout=15)
+        if self.guide and self.source.scene == self.guide.page:
+            await self.action_lesson()
+
+    def frame(self) -> None:
+        """Follow the clock, and draw unless the terminal is behind."""
+        now = self.clock()
+        playhead = self.source.playhead
+        stands_still = self.shown.held is not None or self.app.screen is not self
+        if playhead.seen is not None and (stands_still or now - playhead.seen > STALL):
+            playhead.seen = now
+        before = self.source.sample
+        sample = self.source.tick(now)
+        if isinstance(self.source, Live):
+            self._pause_where_due(self.source, before)
+        if is_writing(self.app):
+            return
+        self._frames += 1
+        # text, which people read, changes five times a second
+        turn = self._frames % max(self.fps // 5, 1) == 0
+        self._follow(sample, read=turn or self._is_late)
+        self._is_late = False
+
+    def _pause_where_due(self, live: Live, before: Sample) -> None:
+        """Pause at the moment of a page, and where reversed time is back at 0."""
+        if self.lesson.follow(live, before):
+            self._show_lesson()
+        returned = live.history.returned
+        is_new = returned is not None and before.step < returned.step == live.sample.step
+        if returned and is_new and not live.playhead.paused and not live.is_marked:
+            live.pause(True)
+            live.mark(return_text(live.scene, returned))
+            self.show_now()
+
+    def show_now(self) -> None:
+        """Show everything, with the next frame if the terminal is behind."""
+        self._is_late = is_writing(self.app)
+        if not self._is_late:
+            self._follow(self.source.sample)
+
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        if self.shown.held is not None:
+            sample = self._held_sample(sample, self.shown.held)
+        self._view_in_front.follow(sample, self.shown, read)
+        if read:
+            for line in self._lines:
+                line.follow(sample, self.shown)
+            if self.is_guided:
+                self.query_one(LessonPanel).draw()
+
+    def _held_sample(self, sample: Sample, theta: float) -> Sample:
+        """Return the angle at which the user holds the pendulums; meanwhile there is no run."""
+        held = [
+            each._replace(theta=theta, omega=0.0, energy_error=math.nan, max_energy_error=math.nan)
+            for each in sample.readings
+        ]
+        return sample._replace(readings=tuple(held))
+
+    def warn(self, text: str) -> None:
+        self.notify(text, severity="warning", timeout=15)
+
+    # Time
+
+    def action_pause(self) -> None:
+        self.frame()  # catch up first, or pausing would drop part of a frame
+        self.source.pause(not self.source.playhead.paused)
+        self.show_now()
+
+    def action_step(self, n: int) -> None:
+        self.source.step(n)
+        self.show_now()
+
+    def action_event(self, direction: int) -> None:
+        self.source.seek_event(direction)
+        self.show_now()
+
+    def action_seek(self, seconds: float) -> None:
+        self.source.seek(self.source.playhead.position + seconds)
+        self.show_now()
+
+    def action_part(self, share: float) -> None:
+        self.action_seek(share * self.source.length)
+
+    def action_go_to(self, run: int, step: int) -> None:
+        if self.source.go_to(run, step):
+            self.show_now()
+        else:
+            self.notify(f"That event belongs to run {run}; replay the recording to see it.")
+
+    def action_speed(self, doublings: int) -> None:
+        self.keep(self.state)
+        self.source.set_speed(doubled(self.source.playhead.speed, doublings))
+        self.show_now()
+
+    def action_mark(self) -> None:
+        assert isinstance(self.source, Live)
+        text = f"Mark at {self.source.sample.t:.2f} s"
+        if self.source.is_marked:
+            text = "Already marked"
+        self.source.mark()
+        self.notify(text, timeout=4)
+        self.show_now()
+
+    # Changes of the run
+
+    async def change(self, change: Callable[[Live], object]) -> bool:
+        """Change the run and keep its state for undo, or notify why it cannot be changed.
+
+        A replay continues live, and is recorded elsewhere; undo leads back to it.
+        """
+        async with self._changing:
+            before = self.state
+            try:
+                live = await self._continued()
+                change(live)
+                if live is not self.source:
+                    self.record(live)
+            except (SceneError, OwnMethodError, RecordingError, UserError, OSError) as error:
+                self.warn(str(explained(error)))
+                return False
+            self.keep(before)
+            if live is not self.source:
+                self._go_live(live, before.source.sample.t)
+        self.show_now()
+        return True
+
+    async def _continued(self) -> Live:
+        """Return the lab, or one that has simulated a replay's run up to here."""
+        source = self.source
+        if isinstance(source, Live):
+            return source
+        assert isinstance(source, Replay)
+        source.pause(True)
+        if not source.fill():
+            self.notify("Loading earlier samples ...", timeout=2)
+        while not source.fill():
+            await asyncio.sleep(0)
+        if source.sample.step > 100_000:  # takes more than 0.25 s
+            self.notify(f"Simulating {source.sample.step} steps ...", timeout=2)
+        if has_own(source.scene):
+            return source.live()  # not in a thread, where it could not be interrupted
+        return await asyncio.to_thread(source.live)
+
+    def _go_live(self, live: Live, t: float) -> None:
+        self.sources.append(live)
+        self._enter(live)
+        where = "not recorded"
+        if live.recorder is not None:
+            where = f"recorded as {live.recorder.path}"
+        self.notify(f"Live from {seconds(t)} on, {where}; u leads back to the replay.", timeout=8)
+
+    async def start(self, scene: Scene, speed: float | None = None) -> None:
+        speed = speed or self.source.playhead.speed
+        if await self.change(lambda live: live.start(scene)):
+            self.source.set_speed(abs(speed))
+            self.shown = self.shown._replace(theta=scene.shot.theta, line=scene.shot.line)
+
+    async def set_h(self, stepping: Stepping) -> None:
+        if await self.change(lambda live: live.change(stepping)):
+            self.shown = self.shown._replace(line=None)  # it belongs to the scene's own h
+
+    def on_held(self, message: Held) -> None:
+        self.shown = self.shown._replace(held=message.theta)
+
+    async def on_scene_chosen(self, choice: SceneChosen) -> None:
+        await self.start(choice.scene)
+
+    async def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
+        await self.set_h(choice.stepping)
+
+    async def action_live(self) -> None:
+        await self.change(lambda live: None)
+
+    async def action_restart(self) -> None:
+        await self.change(Live.restart)
+
+    async def action_next_h(self, direction: int) -> None:
+        await self.set_h(self.source.stepping.next(up=direction > 0))
+
+    async def action_reverse(self) -> None:
+        """Reverse time in a lab; play a replay backwards."""
+        if isinstance(self.source, Live):
+            await self.set_h(self.source.stepping.reversed())
+        else:
+            self.source.set_speed(-self.source.playhead.speed)
+            self.show_now()
+
+    async def action_equal_cost(self) -> None:
+        await self.set_h(self.source.stepping.toggled())
+
+    async def action_next_scene(self) -> None:
+        await self._turn_to((self.lesson.index + 1) % len(self.lesson.pages))
+
+    async def action_start_scene(self, name: str) -> None:
+        pages = self.lesson.pages
+        names = [page.name for page in pages]
+        if name in names:
+            await self._turn_to(names.index(name))
+            return
+        scene = SCENES[name]
+        await self.start(scene, scene.speed)
+        self._show_shot(scene)
+
+    # Forms, imported when they are needed
+
+    def _ask(self, form: ModalScreen[Any], use: Callable[[Any], object]) -> None:
+        """Open a form over the lab, and use its answer unless it is cancelled.
+
+        The answer comes by callback: a worker waiting for it would hang when the app ends.
+        """
+
+        def answered(answer: Any) -> None:
+            if answer is not None:
+                self.call_next(use, answer)
+
+        self.app.push_screen(form, answered)
+
+    def action_scenes(self) -> None:
+        from pendu_tui.tui.screens.dialogs import SceneList
+
+        self._ask(SceneList(self.source.scene.name), self.action_start_scene)
+
+    def action_start_values(self) -> None:
+        from pendu_tui.tui.screens.dialogs import StartForm
+
+        self._ask(StartForm(self._scene_now()), self.start)
+
+    def action_methods(self) -> None:
+        from pendu_tui.tui.screens.dialogs import CastForm
+
+        self._ask(CastForm(self._scene_now()), self.start)
+
+    def _scene_now(self) -> Scene:
+        return self.source.scene.altered(h=self.source.stepping.smallest)
+
+    # Lessons
+
+    async def action_lesson(self) -> None:
+        """Begin or resume the lesson, or leave it."""
+        if self.is_guided:
+            self._leave_lesson("T goes on with the lesson; u brings back the run before it.")
+            return
+        before = (self.state, self.view, self.lesson)
+        self.guide = self.guide or tour()
+        self.lesson = self.guide
+        if await self._turn_to(self.lesson.index):
+            self._before_lesson = before
+            self.is_guided = True
+            self.add_class("-lesson")
+            self._show_lesson()
+        else:
+            self.lesson = before[2]
+
+    async def _turn_to(self, index: int) -> bool:
+        """Begin a page; return whether that was possible."""
+        if await self.change(lambda live: self.lesson.begin(live, index)):
+            self._show_shot(self.lesson.page)
+            return True
+        return False
+
+    async def action_lesson_forward(self) -> None:
+        """Go to the moment, the answer, or the next page."""
+        await self._follow_lesson(self.lesson.forward)
+
+    async def action_lesson_back(self) -> None:
+        await self._follow_lesson(self.lesson.back)
+
+    async def _follow_lesson(self, move: Callable[[Live], bool | None]) -> None:
+        before = (self.lesson.index, self.source.sample.run)
+        goes_on: list[bool | None] = []
+        if not await self.change(lambda live: goes_on.append(move(live))):
+            return
+        if goes_on == [False]:
+            self._leave_lesson("That was the last page. If steps differ, n makes all equal again.")
+        elif (self.lesson.index, self.source.sample.run) != before:
+            self._show_shot(self.lesson.page)
+        self._show_lesson()
+
+    def action_show(self, number: int) -> None:
+        """Answer the lesson's question, or show or hide a method.
+
+        In a lesson the keys of the answers hide no method.
+        """
+        answers = len(self.lesson.shot.answers)
+        if not self.is_guided or number >= answers:
+            cast = self.source.scene.cast
+            self.change_shown(self.shown.toggled(number, cast))
+        elif self.lesson.stage == "asked":
+            self.lesson.answer(number + 1)
+            self._show_lesson()
+
+    def action_back(self) -> None:
+        """Leave the lesson, else the zoom of the chart."""
+        if self.is_guided:
+            self._leave_lesson("T goes on with the lesson; u brings back the run before it.")
+        elif self.shown.stretch:
+            self.change_shown(self.shown.zoomed(None))
+
+    def _leave_lesson(self, notice: str) -> None:
+        assert self._before_lesson is not None
+        before, view, self.lesson = self._before_lesson
+        self.is_guided = False
+        self.remove_class("-lesson")
+        self.keep(before)
+        self.shown = before.shown
+        self.source.set_speed(abs(before.speed))
+        self.source.pause(False)
+        self.call_next(self.action_view, view)
+        self.notify(notice, timeout=6)
+        self._show_lesson()
+
+    def _show_shot(self, scene: Scene) -> None:
+        self.shown = self.shown.through(scene, scene.shot)
+        self.call_next(self.action_view, scene.shot.view)
+
+    def _show_lesson(self) -> None:
+        self.show_now()
+        self.refresh_bindings()
+
+    # Settings
+
+    def change_shown(self, shown: Shown) -> None:
+        if shown != self.shown:
+            self.keep(self.state)
+            self.shown = shown
+
+    def action_switch(self, name: str) -> None:
+        changes: dict[str, Any] = {name: not getattr(self.shown, name)}
+        self.change_shown(self.shown._replace(**changes))
+
+    def action_axes(self) -> None:
+        self.change_shown(self.shown.next_axes())
+
+    def action_show_alone(self, place: int) -> None:
+        """Show one method of the cast alone, or all again if it already is alone."""
+        cast = self.source.scene.cast
+        self.change_shown(self.shown.alone(place, cast))
+        if self.shown.places(cast) == [place]:
+            label = cast[place].label
+            self.notify(f"{label} alone. Click it again, or u, to see all.", timeout=4)
+
+    def action_quantity(self) -> None:
+        quantity = self.shown.quantity_ahead(1, self.source.scene)
+        self.change_shown(self.shown._replace(quantity=quantity))
+
+    def action_window(self) -> None:
+        self.change_shown(self.shown.of(self.source.sample.run).next_window())
+
+    def action_zoom(self, factor: float) -> None:
+        self._view_in_front.zoom(factor)
+
+    def on_zoomed(self, message: Zoomed) -> None:
+        # not undone by u, or u would undo each turn of the wheel; w leads back
+        self.shown = self.shown.zoomed(message.stretch)
+
+    # Undo
+
+    @property
+    def state(self) -> State:
+        source = self.source
+        speed = source.playhead.speed
+        return State(source, source.stepping, speed, self.shown, source.run_state)
+
+    def keep(self, state: State) -> None:
+        self._undo.append(state)
+
+    def action_undo(self) -> None:
+        if not self._undo:
+            return
+        state = self._undo.pop()
+        notice = "Undone"
+        if state.source is not self.source:
+            self.source.close()
+            ours = (each for each in self._undo if each.source is state.source)
+            self._undo = deque(ours, maxlen=self._undo.maxlen)
+            self._enter(state.source)
+            notice = "Back in the replay"
+        elif isinstance(self.source, Live) and state.run is not None:
+            if state.run.run is not self.source.run_state.run:
+                self.source.return_to(state.run)
+            if state.stepping != self.source.stepping:
+                self.source.change(state.stepping)
+        self.source.set_speed(state.speed)
+        self.shown = state.shown
+        self.show_now()
+        now = f"{self.source.scene.name}, h {self.source.stepping.h:.4g} s"
+        self.notify(f"{notice}: {now}, {self.source.playhead.speed:.4g}×", timeout=3)
+
+    # Views, texts and files
+
+    async def action_view(self, name: str = "") -> None:
+        name = name or following(self.view)
+        views = self.query_one("#views")
+        if not views.query(f"#{name}"):
+            await views.mount(create(name, self.source, self.shown))
+        for each in views.children:
+            each.display = each.id == name
+        self.view = name
+        self._view_in_front = self.query_one(f"#{name}", View)
+        self._view_in_front.retry()
+        self.refresh_bindings()
+        self.show_now()
+
+    def show_text(self, title: str, *paragraphs: str) -> None:
+        from pendu_tui.tui.screens.dialogs import TextScreen
+
+        self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
+
+    def action_help(self) -> None:
+        from pendu_tui.tui.screens.dialogs import help_text
+
+        panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
+        owners: list[type[Widget]] = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
+        if self.view == "lab":
+            owners.insert(0, type(self))
+        else:
+            owners.append(type(self))
+        self.show_text("Help", help_text(owners, self.source, self.app.size.width))
+
+    def action_events(self) -> None:
+        self.show_text("Events", *numbered(event_lines(self.source)))
+
+    def action_describe(self) -> None:
+        titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
+        panes = [Content.from_markup(title).plain for title in titles]
+        on_screen = "; ".join(filter(None, [VIEWS[self.view].title, *panes]))
+        self.show_text("In words", *description(self.source), f"On screen: {on_screen}.")
+
+    def action_screenshot(self) -> None:
+        self._save("Screenshot", lambda folder: self.app.save_screenshot(path=str(folder)))
+
+    def action_save_scene(self) -> None:
+        """Save what is on the screen as a scene file, which a lesson may begin with."""
+
+        def save(folder: Any) -> Any:
+            path = library.free_path(folder / "scene.toml")
+            path.write_text(scene_text(self._seen()), encoding="utf-8")
+            return path
+
+        self._save("Scene", save)
+
+    def _save(self, what: str, save: Callable[[Any], object]) -> None:
+        """Save a file in the folder of recordings, and say where it is or why it is not."""
+        try:
+            folder = library.folder()
+            folder.mkdir(parents=True, exist_ok=True)
+            self.notify(f"Saved {save(folder)}", timeout=15)
+        except OSError as error:
+            self.warn(f"{what} not saved: {explained(error)}")
+
+    def _seen(self) -> Scene:
+        """Return the scene with the current step, and a shot of what is shown."""
+        scene = self.source.scene
+        front = [scene.cast[place].key for place in self.shown.places(scene.cast)]
+        shot = replace(
+            scene.shot,
+            view=self.view,
+            theta=self.shown.theta,
+            quantity=self.shown.quantity,
+            log=self.shown.log,
+            seconds=self.shown.seconds,
+            line=self.shown.line,
+            front=tuple(front) if self.shown.hidden else (),
+            ring=self.shown.ring,
+            equal_cost=self.source.stepping.equal_cost,
+        )
+        return replace(scene, h=self.source.stepping.smallest, shot=shot)
