@@ -322,7 +322,8 @@ class _Text:
             return False
         if not has_number:
             self._heads = [*self._heads[-20:], _ways(bare)]
-        return has_number and (is_comment or number(fields[0]) is None)
+        is_like = len(fields) == self._width
+        return has_number and not is_like and (is_comment or number(fields[0]) is None)
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to its table, which may begin here.  Return whether it is a row."""
