@@ -7,6 +7,8 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
 
 import argparse
 import math
+import shutil
+import sys
 from collections.abc import Mapping, Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
@@ -17,10 +19,12 @@ from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import Check, add_gate_option, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import add_file, count, did_you_mean, number, positive
-from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, publish
+from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, form_of, publish
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from pendu_tui.tui.cli.tables import Series
 
 EXAMPLES = """\
@@ -43,7 +47,9 @@ FIELDS = (
 )
 MAX_ERROR = 1e300  # JSON has no infinity
 MAX_LISTED = 30
-CHOOSE = "choose with --time COLUMN and --energy COLUMN"
+MIN_CHART = 10  # rows
+MAX_CHART = 20
+CHOOSE = "choose with --time, --energy"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -127,7 +133,14 @@ def run(options: argparse.Namespace) -> int:
         for name, order in orders.items():
             text = "no clear power of h" if order is None else f"goes as h^{order:.2f}"
             lines.append(_line(name.removesuffix("_order"), text))
-    publish(Report(name="judge", version=2, notes=lines, fields=fields), options)
+    charts = []
+    if form_of(options) == "table" and sys.stdout.isatty():
+        columns = shutil.get_terminal_size().columns
+        rows = sum(1 + len(line) // columns for line in lines)
+        charts = [line for result in results for line in _chart(result, rows)]
+    for result in results:
+        del result["series"]
+    publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
     failures: list[str] = []
     if gate:
         for result in results:
@@ -157,6 +170,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     except OSError as error:
         why = f"{shown}: {error.strerror or error}."
         raise UserError(why, Exit.INPUT_UNREADABLE) from None
+    fields["series"] = series
     is_guess = options.time is None or options.energy is None
     return fields | {"is_guess": is_guess, "seen": [_seen(each) for each in seen]}
 
@@ -418,6 +432,28 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _chart(fields: Mapping[str, Any], rows_below: int) -> "list[Text]":
+    """Return the lines of a chart of the energy, which leave room for what is printed below."""
+    from pendu_tui.tui.commands.studies.figures import lines_of as drawn
+    from pendu_tui.tui.drawing.palette import PALETTES
+    from pendu_tui.tui.drawing.record_chart import record_chart
+
+    series = fields["series"]
+    size = fields["scale"]
+    width, height = shutil.get_terminal_size()
+    chart = record_chart(
+        series.times,
+        (series.energies - series.energies[0]) / size,
+        (width, min(max(height - rows_below - 1, MIN_CHART), MAX_CHART)),
+        slope=fields["trend"],
+        deviation=fields["fluctuation"] and fields["fluctuation"] / size,
+        title=f"energy error relative to {size:.6g}{_spaced(fields['energy_unit'])}; "
+        "dotted: trend, ± 2 sd",
+        unit=fields["time_unit"],
+    )
+    return drawn(chart, PALETTES["dark"])
+
+
 def _listed(fields: Mapping[str, Any]) -> list[str]:
     """Return the lines on what is in the file, none where the user named the columns."""
     if not fields.get("is_guess", True):
@@ -425,8 +461,9 @@ def _listed(fields: Mapping[str, Any]) -> list[str]:
     lines = []
     seen = fields["seen"]
     for each in seen[-MAX_LISTED:]:
-        span = " to ".join(f"{time:g}" for time in each["span"])
-        lines.append(_line(f"table {each['table']}", f"{counted(each['rows'], 'row')}, {span}"))
+        if len(seen) > 1 or "verdict" not in fields:
+            span = " to ".join(f"{time:g}" for time in each["span"])
+            lines.append(_line(f"table {each['table']}", f"{counted(each['rows'], 'row')}, {span}"))
         columns = [_column(place, column) for place, column in enumerate(each["columns"], 1)]
         lines.append(_line("columns", ", ".join(columns[:MAX_LISTED])))
     if "verdict" in fields:

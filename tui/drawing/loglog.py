@@ -86,9 +86,8 @@ def loglog_chart(
     canvas.label(0, height - 1, x_label.rjust(width), TEXT)
     curves = [(one, *axes.curve(one)) for one in series]
     for ink in dict.fromkeys(one.ink for one, *_ in curves):
-        lines = _plotted(
-            [curve for curve in curves if curve[0].ink == ink], axes.columns + ROOM, axes.rows
-        )
+        some = [(x, y, one.dotted) for one, x, y in curves if one.ink == ink]
+        lines = plotted(some, axes.columns + ROOM, axes.rows)
         canvas.braille(axes.left, axes.margin, lines, ink)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         last = width - len(one.mark)
@@ -108,12 +107,13 @@ def loglog_chart(
     return canvas.picture()
 
 
-Curve = tuple[Series, list[float], list[float]]
-"""A series, and its x and y in characters from the lower left corner."""
+def plotted(
+    curves: Sequence[tuple[list[float], list[float], bool]], columns: int, rows: int
+) -> list[str]:
+    """Have plotext draw curves of one ink, and return rows of braille.
 
-
-def _plotted(curves: Sequence[Curve], columns: int, rows: int) -> list[str]:
-    """Have plotext draw the curves of one ink, and return rows of braille."""
+    A curve has x and y in characters from the lower left corner, and may be dotted.
+    """
     import plotext  # takes 0.1 s
 
     plotext.terminal.limit(False, False)
@@ -127,8 +127,8 @@ def _plotted(curves: Sequence[Curve], columns: int, rows: int) -> list[str]:
         ruler.alignment(lim="edge")
         ruler.lim(0, size)
         ruler.ticks([], [])
-    for series, x, y in curves:
+    for x, y, is_dotted in curves:
         signal = figure.signal(x, y, marker=plotext.marker("braille"))
-        figure.draw(signal.lines(not series.dotted))
+        figure.draw(signal.lines(not is_dotted))
     text: str = figure.build().string(colorless=True)
     return text.split("\n")[:rows]
