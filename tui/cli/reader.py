@@ -330,7 +330,7 @@ class _Text:
         numbers = [number(each) for each in fields]
         is_like = len(fields) == self._width and opening == self._opening
         is_new = self._heads or self._begins or not is_like
-        if is_new and self._begin(fields, numbers, opening):
+        if is_new and self._begin(fields, numbers, opening, delimiter):
             self._delimiter = delimiter
             self._width = len(fields)
             self._opening = opening
@@ -349,13 +349,20 @@ class _Text:
         sheet.put_row(self._line, numbers)
         return True
 
-    def _begin(self, fields: list[str], numbers: list[float | None], opening: str) -> bool:
+    def _begin(
+        self,
+        fields: list[str],
+        numbers: list[float | None],
+        opening: str,
+        delimiter: str | None,
+    ) -> bool:
         """Look for the head of this row.  Return whether a table begins, or goes on below it."""
         before = self._sheet
         names = self._head(fields, numbers)
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
-            is_row = None not in (numbers[1:] if opening else numbers)
+            rest = numbers[1:] if opening else numbers
+            is_row = None not in rest or (delimiter and len(rest) > rest.count(None) + 1)
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
                 self._heads = self._heads if not is_like else []
