@@ -167,11 +167,11 @@ class Judged:
         return f"{text}, errors up to {self.max_error:.2e}, relative to {self.scale:g}"
 
 
-def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std") -> Judged:
+def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first") -> Judged:
     """Judge the energies of any program at increasing times.
 
-    Errors and trend are relative to `scale`: "std", the standard deviation of the energies,
-    "first", the first energy, or a number.  If an energy is nan or inf, the verdict is `failed`.
+    Errors and trend are relative to `scale`: "first", the first energy, "std", the standard
+    deviation of the energies, or a number.  If an energy is nan or inf, the verdict is `failed`.
     """
     import numpy as np
 

@@ -34,7 +34,7 @@ class EnergyDrift:
         energies: "ArrayLike",
         verdict: str = "bounded",
         max_drift: float | None = None,
-        scale: float | str = "std",
+        scale: float | str = "first",
     ) -> "Judged":
         """Fail unless `pendu_tui.engine.judge` returns this verdict and a trend up to `max_drift`.
 
