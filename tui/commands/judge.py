@@ -159,20 +159,19 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     try:
         seen = read(name, options)
         series = choose(seen, options)
+        fields: dict[str, Any] = {"file": name, "seen": [_seen(each) for each in seen]}
         if series is None:
-            fields = {"file": name, "seen": [_seen(each) for each in seen]}
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
             doubt = seen[-1].choice.doubt or "the total energy"
             raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
-        fields = {"file": name, **_judged(series, options)}
+        fields |= {**_judged(series, options), "series": series}
     except UserError as error:
         raise UserError(f"{shown}: {error}", error.code) from None
     except OSError as error:
         why = f"{shown}: {error.strerror or error}."
         raise UserError(why, Exit.INPUT_UNREADABLE) from None
-    fields["series"] = series
-    is_guess = options.time is None or options.energy is None
-    return fields | {"is_guess": is_guess, "seen": [_seen(each) for each in seen]}
+    fields["is_guess"] = options.time is None or options.energy is None
+    return fields
 
 
 def read(name: str, options: argparse.Namespace) -> "list[Series]":

@@ -34,8 +34,8 @@ def record_chart(
         return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
     trend = errors.mean() + (slope or 0.0) * (times[[0, -1]] - times.mean())
     edges = [trend + sigmas * (deviation or 0.0) for sigmas in (-2, 2)]
-    span = [errors.min(), errors.max(), *np.ravel(edges)]
-    y_axis = linear_axis(float(min(span)), float(max(span)), height - 4)
+    span = np.concatenate([errors, *edges])
+    y_axis = linear_axis(float(span.min()), float(span.max()), height - 4)
     first = float(times[0])
     last = float(times[-1])
     columns = columns_beside(y_axis.label_width, width)
@@ -44,15 +44,14 @@ def record_chart(
     frame = Frame(Canvas(width, height), Axis(first, last, labels), y_axis, margin=1)
     frame.draw_axes()
     frame.canvas.label(0, 0, title[:width], TEXT)
-    shown = _spans(times, errors, DOTS * columns)
-    lines = [(ENERGY, *shown, False), (QUIET, times[[0, -1]], edges[0], True)]
-    lines += [(QUIET, times[[0, -1]], edges[1], True)]
+    across = np.linspace(first, last, columns)
+    dotted = [(QUIET, np.linspace(edge[0], edge[1], columns)) for edge in edges]
     if slope is not None:
-        lines.append((TREND, times[[0, -1]], trend, True))
-    for ink, x, y, is_dotted in lines:
-        if is_dotted:
-            x = np.linspace(*x, columns)
-            y = np.linspace(*y, columns)
+        dotted.append((TREND, np.linspace(trend[0], trend[1], columns)))
+    for ink, x, y, is_dotted in (
+        (ENERGY, *_spans(times, errors, DOTS * columns), False),
+        *((ink, across, values, True) for ink, values in dotted),
+    ):
         curve = (frame.right(x).tolist(), frame.up(y).tolist(), is_dotted)
         rows = plotted([curve], frame.columns + ROOM, frame.rows)
         frame.canvas.braille(frame.left, frame.margin, rows, ink)
