@@ -1,7 +1,6 @@
 """Measure the cost of recording a frame, and of opening, seeking in and replaying a day."""
 
 import random
-import resource
 import time
 from pathlib import Path
 from statistics import median
@@ -53,6 +52,8 @@ def replay_frame(recording: Recording, begin: float) -> float:
 
 
 def measure(share: float) -> dict[str, Any]:
+    import resource  # which Windows lacks
+
     hours = 24.0 * share
     chance = random.Random(1)
     seeks = []

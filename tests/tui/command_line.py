@@ -2,12 +2,20 @@
 
 import io
 import json
+import sys
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pendu_tui.tui.cli.dispatch import main
+
+PENDU = [
+    sys.executable,
+    "-c",
+    "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
+]
+ROOT = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True)

@@ -1,27 +1,26 @@
 """The real program on a pseudo-terminal: type to it, read its output, wait for text."""
 
-import fcntl
 import os
-import pty
 import re
 import select
 import signal
 import struct
-import sys
-import termios
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
-PENDU = [
-    sys.executable,
-    "-c",
-    "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
-]
+import pytest
+
+from tests.tui.command_line import PENDU, ROOT
+
+WHY = "needs a pseudo-terminal"
+fcntl = pytest.importorskip("fcntl", reason=WHY)
+pty = pytest.importorskip("pty", reason=WHY)
+termios = pytest.importorskip("termios", reason=WHY)
+
 SIZES = ("COLUMNS", "LINES")
 PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
-ROOT = Path(__file__).parents[2]
 
 
 class PtyLab:

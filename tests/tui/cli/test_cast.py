@@ -21,8 +21,7 @@ from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli import cast as cast_options
 from pendu_tui.tui.cli.options import Parser
 from pendu_tui.tui.cli.scene import add_scene_options, scene_of
-from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU, ROOT
+from tests.tui.command_line import PENDU, ROOT, pendu
 
 STEP = """
 def {name}(force, phase, h):

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.recordings.library import GOLDEN
-from tests.tui.pty_lab import ROOT, PtyLab
+from tests.tui.command_line import ROOT
+from tests.tui.pty_lab import PtyLab
 
 pytestmark = pytest.mark.slow
 

@@ -14,8 +14,7 @@ from pendu_tui.recordings.library import GOLDEN
 from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, completion_parser, split
 from pendu_tui.tui.cli.dropped import DROPPED
 from pendu_tui.tui.cli.errors import Exit
-from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU
+from tests.tui.command_line import PENDU, pendu
 
 ONE_SECOND = ("--time", "1", "--json")
 

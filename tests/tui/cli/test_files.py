@@ -1,17 +1,17 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
 import ctypes
-import os
 import signal
 import sys
 import time
 from functools import partial
 from pathlib import Path
-from signal import SIGHUP, SIGINT, SIGTERM
+from signal import SIGINT, SIGTERM
 
 import pytest
 
 from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.files import repeat_swallowed_interrupts, whole_file
 from tests.tui.command_line import pendu
 
@@ -41,7 +41,7 @@ def fail() -> None:
 
 
 def ask_to_end(number: int) -> None:
-    os.kill(os.getpid(), number)
+    signal.raise_signal(number)
     time.sleep(1)
 
 
@@ -49,7 +49,7 @@ def ask_to_end(number: int) -> None:
     ("after", "error"),
     [
         (fail, OSError),
-        *((partial(ask_to_end, each), KeyboardInterrupt) for each in (SIGINT, SIGTERM, SIGHUP)),
+        *((partial(ask_to_end, each), KeyboardInterrupt) for each in ENDING),
     ],
 )
 def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after, error):

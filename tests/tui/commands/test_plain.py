@@ -9,8 +9,7 @@ import pytest
 
 from pendu_tui.recordings.library import listing
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU
+from tests.tui.command_line import PENDU, pendu
 
 pytestmark = pytest.mark.slow
 

@@ -20,8 +20,7 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.words.numbers import about, file_size
-from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU
+from tests.tui.command_line import PENDU, pendu
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:

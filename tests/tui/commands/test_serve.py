@@ -13,8 +13,7 @@ import pyte
 import pytest
 
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import own_method, pendu
-from tests.tui.pty_lab import PENDU
+from tests.tui.command_line import PENDU, own_method, pendu
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,8 @@ import pytest
 from pendu_tui.recordings.library import GOLDEN
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU, ROOT, PtyLab
+from tests.tui.command_line import PENDU, ROOT, pendu
+from tests.tui.pty_lab import PtyLab
 
 pytestmark = pytest.mark.slow
 
