@@ -2,11 +2,14 @@
 
 import io
 import json
+import signal
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from pendu_tui.tui.cli.dispatch import main
 
@@ -16,6 +19,7 @@ PENDU = [
     "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
 ]
 ROOT = Path(__file__).parents[2]
+needs_signals = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="needs POSIX signals")
 
 
 @dataclass(frozen=True)

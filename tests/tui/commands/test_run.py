@@ -20,7 +20,7 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.words.numbers import about, file_size
-from tests.tui.command_line import PENDU, pendu
+from tests.tui.command_line import PENDU, needs_signals, pendu
 
 
 def rows_of(*arguments: object) -> dict[str, dict]:
@@ -119,8 +119,10 @@ def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, a
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
-def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
+@needs_signals
+@pytest.mark.parametrize("name", ["SIGINT", "SIGHUP"])
+def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, name):
+    number = getattr(signal, name)
     path = tmp_path / "run.mcap"
     endless = ("--time", "1e7", "--no-compiled", "--record", str(path))
     code, out, err = stopped(*endless, number=number, part=Path(f"{path}.part"), bytes=100_000)
