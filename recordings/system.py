@@ -1,6 +1,7 @@
 """What one operating system has and another lacks; only this module asks for it."""
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -58,6 +59,13 @@ def environment() -> dict[str, str]:
     if sys.platform == "win32":
         return {"TERM": "xterm-256color", "COLORTERM": "truecolor", **os.environ}
     return dict(os.environ)
+
+
+def shell_command(arguments: list[str]) -> str:
+    """Return a command for the system's shell, which it replaces where it can."""
+    if sys.platform == "win32":
+        return subprocess.list2cmdline(arguments)
+    return f"exec {shlex.join(arguments)}"
 
 
 def terminal_state() -> Any:

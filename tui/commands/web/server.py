@@ -4,7 +4,7 @@ import asyncio
 import ipaddress
 import logging
 import pickle
-import shlex
+import signal
 import sys
 import tempfile
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from aiohttp import web
 from textual_serve.server import Server
 from yarl import URL
 
-from pendu_tui.recordings.system import ENDING
+from pendu_tui.recordings.system import ENDING, shell_command
 
 CONNECTIONS_PER_LAB = 10  # browsers open six
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
@@ -28,7 +28,7 @@ class LabServer(Server):  # type: ignore[misc]
 
     def __init__(self, settings_file: str, max_labs: int, host: str) -> None:
         served = [sys.executable, "-P", "-m", "pendu_tui.tui.commands.web.served", settings_file]
-        super().__init__(f"exec {shlex.join(served)}", host, title="pendu-tui")
+        super().__init__(shell_command(served), host, title="pendu-tui")
         self._max_labs = max_labs
         self._labs = 0
 
@@ -38,7 +38,7 @@ class LabServer(Server):  # type: ignore[misc]
         loop = asyncio.get_running_loop()
         stop = asyncio.Event()
         for number in ENDING:
-            loop.add_signal_handler(number, stop.set)
+            signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop.set))
         app = await self._make_app()
         app.middlewares.append(self.check)
         app.on_response_prepare.append(add_policy)
@@ -97,9 +97,10 @@ class LabServer(Server):  # type: ignore[misc]
 def serve(
     settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]
 ) -> None:
-    with tempfile.NamedTemporaryFile(prefix="pendu-") as file:  # mode 600
-        Path(file.name).write_bytes(pickle.dumps(settings))
-        asyncio.run(LabServer(file.name, max_labs, host).run(port, listening))
+    with tempfile.TemporaryDirectory(prefix="pendu-") as folder:  # mode 700
+        file = Path(folder, "settings")
+        file.write_bytes(pickle.dumps(settings))
+        asyncio.run(LabServer(str(file), max_labs, host).run(port, listening))
 
 
 def is_ours(authority: str, host: str) -> bool:
