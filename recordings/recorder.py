@@ -19,15 +19,17 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
 from pendu_tui.recordings.events import MAX_EVENTS, Event
-from pendu_tui.recordings.fields import EVENT_SCHEMA, sample_schema, without_extremes
 from pendu_tui.recordings.files import check_target, is_stream, publish
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
+    EVENT_SCHEMA,
     EVENTS,
     FORMAT_VERSION,
     encode_event,
     encode_readings,
+    sample_schema,
     topics_of,
+    without_extremes,
 )
 from pendu_tui.recordings.library import PROFILE, free_path, hold, part_of
 

@@ -18,7 +18,7 @@ from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.recordings.errors import RecordingError, named
 from pendu_tui.recordings.events import Event, check_present
-from pendu_tui.recordings.fields import differences
+from pendu_tui.recordings.format import differences
 from pendu_tui.recordings.reader import ShowProgress
 from pendu_tui.recordings.recording import Recording, Run
 

@@ -12,7 +12,7 @@ import pytest
 
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Event
-from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.reader import read_contents
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.recovery import recover

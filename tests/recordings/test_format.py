@@ -17,14 +17,17 @@ from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import LIMITS, Scene
 from pendu_tui.recordings.errors import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.events import Event, fingerprint, noticed
-from pendu_tui.recordings.fields import (
+from pendu_tui.recordings.format import (
     EVENT_SCHEMA,
     EXTRA,
+    decode_event,
+    decode_readings,
     differences,
+    encode_event,
+    encode_readings,
     sample_schema,
     without_extremes,
 )
-from pendu_tui.recordings.format import decode_event, decode_readings, encode_event, encode_readings
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")

@@ -5,7 +5,7 @@ import csv
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.recordings.fields import values_of
+from pendu_tui.recordings.format import values_of
 from pendu_tui.recordings.library import GOLDEN, golden_names
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.commands.export import columns_of

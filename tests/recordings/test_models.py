@@ -8,8 +8,7 @@ import pytest
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Entry
-from pendu_tui.recordings.fields import EXTRA
-from pendu_tui.recordings.format import decode_event, encode_event
+from pendu_tui.recordings.format import EXTRA, decode_event, encode_event
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording

@@ -4,7 +4,7 @@ import pytest
 
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Entry, Event
-from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.reader import read_contents
 from pendu_tui.recordings.recorder import Recorder

@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
 
 def columns_of(models: Iterable[str]) -> tuple[str, ...]:
     """Return the columns, names with units; energies are per unit m·L²."""
-    from pendu_tui.recordings.fields import EXTRA, MOMENT, READING
+    from pendu_tui.recordings.format import EXTRA, MOMENT, READING
 
     moment = [field.column for field in MOMENT]
     extra = dict.fromkeys(field.column for model in models for field in EXTRA[model])
@@ -58,7 +58,7 @@ def columns_of(models: Iterable[str]) -> tuple[str, ...]:
 
 
 def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
-    from pendu_tui.recordings.fields import EXTRA, READING
+    from pendu_tui.recordings.format import EXTRA, READING
 
     extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])
     scalars_of = attrgetter(*(field.name for field in READING))

@@ -16,7 +16,7 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import LIMITS, SCENES, Scene, SceneError
-from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.format import without_extremes
 
 scenes = st.builds(
     Scene,

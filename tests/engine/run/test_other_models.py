@@ -13,7 +13,7 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene, SceneError
-from pendu_tui.recordings.fields import without_extremes
+from pendu_tui.recordings.format import without_extremes
 
 NAMES = [n for n, s in SCENES.items() if s.why_not_mapped]
 each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)
