@@ -56,7 +56,7 @@ class Zoomed(Message):
 class Memo(Generic[Result]):
     """A function that is called again only with other arguments than the last ones."""
 
-    result: Result
+    result: Result  # of the last call
 
     def __init__(self, function: Callable[..., Result]) -> None:
         self._function = function

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from pendu_tui.engine.accuracy.front import Cost, cost_of
 from pendu_tui.engine.accuracy.study import ErrorKind, Flaw, Point
 from pendu_tui.engine.methods import Cast
@@ -76,8 +78,7 @@ def accuracy_series(
     for method in dict.fromkeys(point.method for point in points):
         ours = [point for point in points if point.method == method]
         ink = ink_of(method, cast)
-        if method.order not in slopes:
-            slopes |= _slope(ours, kind, cost)
+        slopes = _slope(ours, kind, cost) | slopes
         lines.append(series(ink, method.letter, *ours))
         flaws += flawed(ink, ours)
     marked = [series(ink_of(point.method, cast), mark, point) for mark, point in marks]
@@ -85,13 +86,17 @@ def accuracy_series(
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Series]:
-    """Return the slope of a method's order below its valid points, if any."""
+    """Return a line below a method's valid points with the slope of their error, if any.
+
+    It is measured: the energy of a method of order p may be right to a higher one (RK4: 5).
+    """
     valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
-    if not valid:
+    if len(valid) < 2:
         return {}
-    order = ours[0].method.order
-    anchor = valid[len(valid) // 2]
-    costs = [cost_of(point, cost) for point in valid]
-    ends = [min(costs), max(costs)]
-    errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
-    return {order: Series(FRAME, f"slope {order}", ends, errors, dotted=True)}
+    costs = np.array([cost_of(point, cost) for point in valid])
+    errors = np.array([point.error(kind) for point in valid])
+    order = -round(float(np.polyfit(np.log(costs), np.log(errors), 1)[0]))
+    middle = len(valid) // 2
+    ends = np.array([costs.min(), costs.max()])
+    beside = BESIDE * errors[middle] * (ends / costs[middle]) ** -order
+    return {order: Series(FRAME, f"slope {order}", ends, beside, dotted=True)}

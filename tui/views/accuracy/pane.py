@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
+from textual.geometry import Size
 
 from pendu_tui.engine.accuracy.front import front
 from pendu_tui.engine.accuracy.study import ErrorKind, Point, measured, usual, with_all_methods
@@ -19,7 +20,7 @@ from pendu_tui.tui.views.accuracy.chart import (
     nearest,
     placed,
 )
-from pendu_tui.tui.views.view import Chooser, StepSizeChosen, StudyView
+from pendu_tui.tui.views.view import Chooser, Memo, StepSizeChosen, StudyView
 from pendu_tui.tui.words.accuracy import front_words, point_words
 
 
@@ -41,9 +42,7 @@ class AccuracyPane(Chooser[Point]):
         self.points: dict[tuple[str, int], Point] = {}  # by method's key and steps
         self.all = False  # whether to include methods outside the cast
         self._chosen: ErrorKind | None = None
-        self.placed: Placed = []
-        self._chart = Picture()
-        self._charted: object = None  # the state that the chart shows
+        self._chart = Memo(self._charted)
         self._start: object = None
 
     def _compute_missing(self, source: Source) -> None:
@@ -103,17 +102,21 @@ class AccuracyPane(Chooser[Point]):
     def settled(self) -> bool:
         if self.source.scene.why_not_mapped:
             return True
-        return bool(self.steps) and not self.is_computing and self._charted == self._state
+        return bool(self.steps) and not self.is_computing and self._chart.arguments == self._state
+
+    @property
+    def placed(self) -> Placed:
+        return self._chart.result[1] if self._chart.arguments else []
 
     @property
     def aim(self) -> Point | None:
         return self.pointer or self.cursor or self.present(self.index)
 
     @property
-    def _state(self) -> object:
+    def _state(self) -> tuple[object, ...]:
         computed = self._start, self.here, len(self.points)
         chosen = self.index, self.cursor, self.chart
-        return computed, chosen, self.shown, self.room
+        return self.room, computed, chosen, self.shown
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
@@ -123,26 +126,25 @@ class AccuracyPane(Chooser[Point]):
         if self.cursor is not None:  # it may be on another method's line
             key = self.cast[self.index].key, self.cursor.steps
             self.cursor = self.points.get(key, self.cursor)
-        if self._charted != self._state:
-            self._charted = self._state
-            words = 2
-            if self.room.height >= 18:
-                words = 6 if self.all else 4  # `all` adds the letters of all methods
-            self._draw_chart(self.room.width, max(self.room.height - words, 1))
+        chart, _ = self._chart(*self._state)
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
         self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
-        return Picture([*self._chart.rows, *self.words(*self._sentences())][: self.room.height])
+        return Picture([*chart.rows, *self.words(*self._sentences())][: self.room.height])
 
-    def _draw_chart(self, width: int, height: int) -> None:
+    def _charted(self, room: Size, *_: object) -> tuple[Picture, Placed]:
+        words = 2
+        if room.height >= 18:
+            words = 6 if self.all else 4  # `all` adds the letters of all methods
+        size = room.width, max(room.height - words, 1)
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
         marks = [("@", point) for place in self.places if (point := self.present(place))]
         if self.cursor is not None:
             marks.append(("O", self.cursor))
         series = accuracy_series(points, self.chart, "evaluations", self.cast, marks=marks)
-        self._chart = accuracy_chart(series, self.chart, "evaluations", width, height)
+        chart = accuracy_chart(series, self.chart, "evaluations", *size)
         points += [point for _, point in marks]
-        self.placed = placed(series, points, self.chart, width, height)
+        return chart, placed(series, points, self.chart, *size)
 
     def _sentences(self) -> list[str]:
         words = ["the current h is not on this chart; the arrows choose another"]

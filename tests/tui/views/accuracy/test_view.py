@@ -11,7 +11,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.accuracy.chart import MARKS
+from pendu_tui.tui.views.accuracy.chart import MARKS, accuracy_series
 from pendu_tui.tui.views.accuracy.pane import AccuracyPane
 from pendu_tui.tui.words.accuracy import COSTS, front_words
 from tests.tui.harness import until, view_of
@@ -36,6 +36,13 @@ def is_complete(pane: AccuracyPane) -> bool:
 
 async def complete(pilot, pane: AccuracyPane) -> None:
     await until(pilot, lambda: is_complete(pane))
+
+
+@pytest.mark.parametrize(("kind", "orders"), [("energy", {1, 2, 5}), ("theta", {1, 2, 4})])
+def test_the_guides_have_the_measured_orders_of_the_error_on_the_chart(kind, orders):
+    points = [*Study(SCENES["drift"], 5.0).points(RUNGS)]
+    series = accuracy_series(points, kind, "evaluations", USUAL_CAST)
+    assert {one.mark for one in series if one.dotted} == {f"slope {order}" for order in orders}
 
 
 @asynccontextmanager
