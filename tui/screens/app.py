@@ -20,7 +20,7 @@ from pendu_tui.tui.drawing.palette import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone
-from pendu_tui.tui.terminal.options import SMALLEST, USUAL, TerminalOptions
+from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
 from pendu_tui.tui.terminal.paste import limit_pastes
 from pendu_tui.tui.terminal.watchdog import Watchdog
 
@@ -133,6 +133,10 @@ class PenduApp(App[Exit | BaseException]):
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name
+
+    def action_use_pixels(self, name: CharacterSet) -> None:
+        self.character_filter = CharacterSetFilter(name)
+        self.refresh_css(animate=False)  # which redraws everything
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         filters = [*super().get_line_filters(), self.character_filter]

@@ -129,8 +129,9 @@ async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
                 with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
                     await session.ws_connect(f"{server.address}/ws")
             async with asyncio.timeout(PATIENCE):
-                while (await session.get(server.address)).status != 200:
+                while (page := await session.get(server.address)).status != 200:
                     await asyncio.sleep(0.05)
+            assert "//fonts" not in await page.text()
 
 
 async def test_each_tab_records_into_the_folder_that_was_asked_for(tmp_path):

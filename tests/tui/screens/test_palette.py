@@ -1,6 +1,7 @@
 """The palette finds everything, and what it finds works."""
 
 import asyncio
+import re
 
 import pytest
 from textual.command import CommandList
@@ -10,6 +11,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.drawing.palette import PALETTES
 from pendu_tui.tui.screens.palette import LabCommands, entries
+from pendu_tui.tui.terminal.options import CHARACTER_SETS
 from tests.tui.harness import Theatre, lab
 
 
@@ -25,14 +27,16 @@ async def found(theatre: Theatre, words: str) -> None:
     await theatre.pilot.pause(0.1)
 
 
-async def test_it_has_themes_and_scenes_first_then_keys_with_their_letters_and_all_else():
+async def test_it_has_themes_pixels_and_scenes_first_then_keys_and_all_else():
     async with lab() as theatre:
         listed = list(entries(theatre.stage))
         texts = [entry.text for entry in listed]
-        first = len(PALETTES) + len(SCENES)
-        assert texts[: len(PALETTES)] == [f"theme {name}" for name in PALETTES]
-        assert all(text.startswith("scene ") for text in texts[len(PALETTES) : first])
-        keys = {entry.text: entry.key for entry in listed[first:]}
+        first = [f"theme {name}" for name in PALETTES]
+        first += [f"pixels {name}" for name in CHARACTER_SETS]
+        first += [f"scene {name}" for name in SCENES]
+        assert texts[: len(first)] == first
+        assert {entry.about for entry in listed} >= {scene.watch for scene in SCENES.values()}
+        keys = {entry.text: entry.key for entry in listed[len(first) :]}
         assert (keys["larger step h"], keys["smaller step h"]) == ("+", "-")
         assert {"view: Phase space", "save what I see as a scene file"} <= keys.keys()
         assert len(texts) == len(set(texts))
@@ -66,6 +70,27 @@ async def test_an_entry_is_one_line_with_its_key_in_the_last_column(width):
         texts = [hit.text async for hit in LabCommands(theatre.stage).discover()]
         assert {len(text) for text in texts} == {width}
         assert any(text.endswith("   ctrl+p") for text in texts)
+
+
+async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
+    async with lab() as theatre:
+
+        async def hits(query):
+            return [hit.text.split()[1] async for hit in LabCommands(theatre.stage).search(query)]
+
+        assert await hits("scene prob") == ["mean-field"]  # "of the probability is gone"
+        assert "crossover" not in await hits("hold")  # as letters, it has them
+        assert await hits("HALF block") == []
+        assert (await hits("pixels half")) == ["half"]
+
+
+async def test_pixels_are_switched_on_the_running_screen():
+    async with lab(size=(100, 30)) as theatre:
+        await theatre.run(1)
+        assert "⣿" in theatre.app.export_screenshot()
+        await found(theatre, "pixels half")
+        await theatre.pilot.pause()
+        assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
 
 
 async def test_a_scene_a_theme_a_key_and_what_has_no_key_can_be_chosen(tmp_path, monkeypatch):

@@ -4,6 +4,7 @@ import asyncio
 import ipaddress
 import logging
 import pickle
+import re
 import signal
 import sys
 import tempfile
@@ -20,6 +21,7 @@ from yarl import URL
 from pendu_tui.recordings.system import ENDING, shell_command
 
 CONNECTIONS_PER_LAB = 10  # browsers open six
+FONT_SERVER = re.compile(r"<link[^>]*fonts\.googleapis[^>]*>")
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
@@ -74,7 +76,10 @@ class LabServer(Server):  # type: ignore[misc]
         if self._labs >= self._max_labs and request.path in ("/", "/ws"):
             raise web.HTTPServiceUnavailable(text="All labs are in use; reload later.\n")
         self.public_url = f"{request.scheme}://{request.host}"
-        return await handler(request)
+        response = await handler(request)
+        if isinstance(response, web.Response) and response.content_type == "text/html":
+            response.text = FONT_SERVER.sub("", response.text or "")
+        return response
 
     async def _process_messages(self, websocket: web.WebSocketResponse, app_service: Any) -> None:
         """End the lab when its tab closes, even while it is writing."""
