@@ -81,7 +81,7 @@ class OrbitKind:
     island: bool  # every q steps, q being the fraction's denominator, it is in the same island
     lyapunov: float  # mean growth of ln |a small displacement| a step; 0 where it is regular
     chaotic: bool  # by a symplectic method, and neighbours separate faster than on regular orbits
-    energy_error: float  # (E - E0)/E0 at the end, as in a run
+    drift: float  # (E - E0)/E0 at the end, as in a run
 
 
 def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
@@ -119,7 +119,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
         island=island,
         lyapunov=neighbours.log / max(neighbours.steps, 1),
         chaotic=chaotic,
-        energy_error=error,
+        drift=error,
     )
 
 

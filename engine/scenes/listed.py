@@ -3,6 +3,7 @@
 import math
 
 from pendu_tui.engine.methods import Cast, method_of
+from pendu_tui.engine.quantities import ENERGY_ERROR
 from pendu_tui.engine.scenes.scene import Line, Scene, Shot
 
 _UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h
@@ -80,7 +81,7 @@ _STABILITY = (
         h=0.1,
         speed=60.0,
         watch="Explicit Euler's gain ends: half a turn a step holds it near 110 E0.",
-        shot=Shot(theta=math.pi, line=Line("energy_error", 110.0, "110 E0")),
+        shot=Shot(theta=math.pi, line=Line(ENERGY_ERROR.name, 110.0, "110 E0")),
     ),
     Scene(
         "verlet-limit",
@@ -109,7 +110,9 @@ _STABILITY = (
             log=False,
             seconds=60.0,
             front=("velocity_verlet",),
-            line=Line("energy_error", (1 - math.cos(0.48)) / (1 - math.cos(0.1)) - 1, "0.48 rad"),
+            line=Line(
+                ENERGY_ERROR.name, (1 - math.cos(0.48)) / (1 - math.cos(0.1)) - 1, "0.48 rad"
+            ),
         ),
     ),
     Scene(
@@ -123,7 +126,7 @@ _STABILITY = (
             log=False,
             seconds=60.0,
             front=("rk4",),
-            line=Line("energy_error", -0.5, "half"),
+            line=Line(ENERGY_ERROR.name, -0.5, "half"),
             moment=22.4,
             sentence="After 4 steps half of RK4's energy was gone, after 8 almost three quarters.",
         ),

@@ -1,6 +1,6 @@
 """The expression of --fail-if, and its exit code.
 
-An expression, `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`, joins comparisons
+An expression, `velocity_verlet.FIELD > 1e-2 or rk4.verdict == grows`, joins comparisons
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
 (None, missing, not finite, or another verdict than undecided asked of what cannot be judged).
@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.quantities import QUANTITIES
+from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, Progress
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -109,7 +109,7 @@ class _Grammar:
 
     def no_comparison(self, text: str) -> UserError:
         form = "METHOD.FIELD"
-        example = "velocity_verlet.max_energy_error > 1e-2"
+        example = f"velocity_verlet.{LARGEST.name} > 1e-2"
         if self.fields:
             form = "FIELD"
             example = f"{self.fields[0]} > 1e-2"

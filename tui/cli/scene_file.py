@@ -76,7 +76,7 @@ _EXAMPLES = {
     "quantity": '"theta_error"',
     "log": "false",
     "seconds": "20",
-    "line": '{quantity = "energy_error", value = 0.01, name = "1 %"}',
+    "line": '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
     "front": '["rk4"]',
     "ring": "true",
     "moment": "12.5",

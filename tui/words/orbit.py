@@ -18,8 +18,8 @@ def name(method: Method, kind: OrbitKind) -> str:
         return "chaotic"
     if kind.island:
         return f"islands {fraction(kind)}"
-    if not method.symplectic and abs(kind.energy_error) > MAX_DRIFT:
-        return "spirals outwards" if kind.energy_error > 0 else "spirals inwards"
+    if not method.symplectic and abs(kind.drift) > MAX_DRIFT:
+        return "spirals outwards" if kind.drift > 0 else "spirals inwards"
     if kind.rotation is None:
         return "undecided"
     if not method.symplectic:

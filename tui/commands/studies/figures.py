@@ -107,9 +107,8 @@ def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> N
     import numpy as np
 
     t = np.array([sample.t for sample in samples])
-    errors = np.array(
-        [[reading.energy_error for reading in sample.readings] for sample in samples]
-    ).T
+    error = scene.equations.error.name
+    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
     swing = scene.exact().period or math.tau / scene.w0
     parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
     first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
