@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from pendu_tui.engine import methods as listed
 from pendu_tui.engine import scenes
 from pendu_tui.engine.methods import Cast, Method, matching, named
+from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.scenes import Scene
 
 if TYPE_CHECKING:
@@ -335,9 +336,9 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
     if not isinstance(scene, Scene):
         raise ValueError(f"scene = {scene!r} is neither a name nor a Scene.")
     for name in numbers:
-        if name not in scenes.UNITS:
-            hint = f"use {', '.join(scenes.UNITS)}."
-            if near := get_close_matches(name, scenes.UNITS):
+        if name not in NUMBERS:
+            hint = f"use {', '.join(NUMBERS)}."
+            if near := get_close_matches(name, NUMBERS):
                 hint = f"did you mean {near[0]!r}?"
             raise ValueError(f"unknown parameter {name!r}; {hint}")
     changes = {name: _number(name, value) for name, value in numbers.items()}

@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple, get_args
 
 import msgspec
 
-from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.quantities import EXTREMES, RECORDED
 from pendu_tui.engine.run.judgement import Milestone, MilestoneKind
 from pendu_tui.engine.run.lockstep import Reading, Sample
@@ -104,12 +104,7 @@ EXTRA = {
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
     *_optional("string", "scene", "model", "watch"),
-    Field("theta", "rad", required=False),
-    Field("omega", "rad/s", required=False),
-    Field("length", "m", required=False),
-    Field("gravity", "m/s^2", required=False),
-    Field("h", "s", required=False),
-    *(Field(own.name, _ascii(own.unit), required=False) for own in PARAMETERS.values()),
+    *(Field(each.name, _ascii(each.unit), required=False) for each in NUMBERS.values()),
     *_optional("array", "methods", "sources"),  # source code of a user's own methods
     *_optional("integer", "numerics"),
     *_optional("string", "sin", "sqrt"),  # fingerprints
@@ -280,11 +275,13 @@ def _scene(fields: dict[str, Any]) -> Scene:
     cast = tuple(method_named(printable(name)) for name in fields["methods"])
     if not 0 < len({method.key for method in cast}) == len(cast) <= MAX_METHODS:
         raise RecordingError(f"a start names no methods, one twice, or more than {MAX_METHODS}")
-    names = ("theta", "omega", "length", "gravity", "h", "model")
+    names = [each.name for each in COMMON]
+    others = fields.keys() & NUMBERS.keys() - {*names}
     return Scene(
         fields["scene"],
+        model=fields["model"],
         cast=cast,
-        parameters={name: fields[name] for name in PARAMETERS if name in fields},
+        parameters={name: fields[name] for name in others},
         watch=fields.get("watch", ""),
         **{name: fields[name] for name in names},
     )

@@ -6,9 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, Method
+from pendu_tui.engine.models.numbers import COMMON
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.scenes import Scene
+
+LIMITS = {each.name: (each.min, each.max) for each in COMMON if each.name != "h"}
+"""Of the numbers that every scene has, but for h, whose limits depend on w0."""
 
 FILE = Path(__file__).parent / "engine/run/truths.txt"
 

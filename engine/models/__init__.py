@@ -4,7 +4,8 @@ from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.linear import LinearOscillator as LinearOscillator
 from pendu_tui.engine.models.mean_field import MeanField
 from pendu_tui.engine.models.model import Model as Model
-from pendu_tui.engine.models.model import Parameter as Parameter
+from pendu_tui.engine.models.numbers import COMMON as COMMON
+from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.pendulum import Pendulum as Pendulum
 from pendu_tui.engine.models.spring import Spring
 
@@ -17,7 +18,8 @@ FIRST_ORDER = tuple(key for key, model in MODELS.items() if not model.second_ord
 
 DEFAULT_MODEL = Pendulum.key
 
-PARAMETERS: dict[str, Parameter] = {
-    each.name: each for model in MODELS.values() for each in model.parameters
+NUMBERS: dict[str, Number] = {
+    each.name: each
+    for each in (*COMMON, *(own for model in MODELS.values() for own in model.parameters))
 }
-"""The parameters besides length and gravity, by name."""
+"""The numbers of all scenes, by name: those that every scene has, then the models' own."""

@@ -12,13 +12,13 @@ from pendu_tui.engine.models.model import (
     EnergyReference,
     ExactMotion,
     Force,
-    Parameter,
     Phase,
     Rates,
     Regime,
     Sine,
     State,
 )
+from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 from pendu_tui.engine.quantities import ENERGY_ERROR, Chart, Head
@@ -43,7 +43,7 @@ class DampedPendulum(Pendulum):
     equation = "theta'' = -w0² sin theta - gamma omega"
     parameters = (
         # beyond, the pendulum creeps, and its reference takes too many steps
-        Parameter("friction", "s⁻¹", "friction", 0.0, 100.0, max_over_w0=100),
+        Number("friction", "s⁻¹", "friction in s⁻¹", 0.0, 100.0, max_over_w0=100),
     )
     second_order = False
     has_separatrix = False

@@ -20,12 +20,12 @@ from pendu_tui.engine.models.model import (
     ExtraColumn,
     Model,
     Observation,
-    Parameter,
     Phase,
     Rates,
     Sine,
     State,
 )
+from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
 from pendu_tui.engine.quantities import Chart, Quantity
 
@@ -43,11 +43,18 @@ class MeanField(Model):
     key = "mean_field"
     equation = "theta'' = -w0² sin theta - kappa b'·s, s' = nu b × s"
     parameters = (
-        Parameter("coupling", "s⁻²", "of the bob to its two levels", -1e6, 1e6, default=2.0),
-        Parameter(
+        Number(
+            "coupling",
+            "s⁻²",
+            "coupling of the bob to its two levels in s⁻²",
+            min=-1e6,
+            max=1e6,
+            default=2.0,
+        ),
+        Number(
             "level_frequency",
             "s⁻¹",
-            "of the two levels",
+            "frequency of the two levels in s⁻¹",
             min=1e-3,
             max=1e4,
             default=20.0,

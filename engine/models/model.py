@@ -5,20 +5,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
+from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.quantities import CHARTED, ENERGY_ERROR, Quantity
 
-Number = Any  # float, complex, NumPy array or mpmath number
-
-Phase = tuple[Number, ...]
+Phase = tuple[Any, ...]
 """(theta, omega) as methods take and yield it: a plain tuple, because it is fast.
 
-Some models have other numbers, or more; `Model.observe` reads any phase.
+The numbers are floats, complex, NumPy arrays or mpmath numbers.  Some models have others, or more; `Model.observe` reads any phase.
 """
 
-Force = Callable[[Number], Number]
+Force = Callable[[Any], Any]
 """theta in rad -> theta'' in rad/s²."""
 
-Energy = Callable[[Phase], Number]
+Energy = Callable[[Phase], Any]
 """(theta, omega) -> energy [s⁻²], per unit m·L²."""
 
 Rates = Callable[[Phase], Phase]
@@ -32,18 +31,6 @@ class State(NamedTuple):
 
     theta: float  # rad from the downward vertical, unwrapped
     omega: float  # rad/s
-
-
-class Parameter(NamedTuple):
-    """A number in a model's equations, besides length and gravity."""
-
-    name: str  # of the field, in scenes, recordings and on the command line
-    unit: str
-    about: str
-    min: float  # inclusive
-    max: float  # inclusive; a larger value is a typo
-    default: float = 0.0
-    max_over_w0: float = math.inf
 
 
 class ExtraColumn(NamedTuple):
@@ -106,7 +93,7 @@ class Model(ABC):
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
-    parameters: ClassVar[tuple[Parameter, ...]] = ()  # the fields after w0_squared, in order
+    parameters: ClassVar[tuple[Number, ...]] = ()  # the fields after w0_squared, in order
     turns: ClassVar[bool]  # theta + 2 pi is the same place, and it can go over the top
     second_order: ClassVar[bool] = True  # theta'' = force(theta)
     counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, as force evaluations

@@ -19,11 +19,11 @@ from pendu_tui.engine.models.model import (
     Force,
     Model,
     Observation,
-    Parameter,
     Phase,
     Sine,
     State,
 )
+from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 from pendu_tui.engine.quantities import Chart, Quantity
 
@@ -52,7 +52,7 @@ class Spring(Model):
     key = "spring"
     equation = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
     turns = False  # the angle follows from the position, so it is within ±pi
-    parameters = (Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),)
+    parameters = (Number("stiffness", "s⁻²", "spring constant over mass in s⁻²", 1.0, 1e18),)
     variables = (
         Quantity("x", about="over the length at rest"),
         Quantity("y", about="likewise, upwards from the pivot"),

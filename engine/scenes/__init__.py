@@ -2,9 +2,7 @@
 
 from pendu_tui.engine.scenes.listed import DEFAULT_SCENE, GROUPS, SCENES
 from pendu_tui.engine.scenes.scene import (
-    LIMITS,
     MAX_METHODS,
-    UNITS,
     Z_LIMITS,
     Line,
     Scene,
@@ -16,10 +14,8 @@ from pendu_tui.engine.scenes.scene import (
 __all__ = [
     "DEFAULT_SCENE",
     "GROUPS",
-    "LIMITS",
     "MAX_METHODS",
     "SCENES",
-    "UNITS",
     "Z_LIMITS",
     "Line",
     "Scene",

@@ -7,23 +7,9 @@ from functools import cache
 from typing import Any
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast
-from pendu_tui.engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.models.model import ExactMotion, Model
 
-LIMITS = {  # inclusive; a value beyond is a typo
-    "theta": (-1e9, 1e9),
-    "omega": (-1e9, 1e9),
-    "length": (1e-6, 1e6),
-    "gravity": (1e-6, 1e6),
-}
-UNITS = {
-    "theta": "rad",
-    "omega": "rad/s",
-    "length": "m",
-    "gravity": "m/s²",
-    "h": "s",
-    **{name: parameter.unit for name, parameter in PARAMETERS.items()},
-}
 MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
@@ -42,9 +28,12 @@ def check_h(h: float, w0: float, forwards: bool = False) -> None:
         )
 
 
-def _check_range(name: str, value: float, low: float, high: float) -> None:
+def _check_range(name: str, value: float, w0: float = math.inf) -> None:
+    """Raise SceneError unless a number lies within its limits for this w0 [rad/s]."""
+    low = NUMBERS[name].min
+    high = min(NUMBERS[name].max, NUMBERS[name].max_over_w0 * w0)
     if not low <= value <= high:  # also refuses nan
-        unit = UNITS[name]
+        unit = NUMBERS[name].unit
         raise SceneError(
             f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}."
         )
@@ -86,11 +75,11 @@ class Scene:
     """Everything that determines a run, with a name and what to watch."""
 
     name: str = "custom"
-    theta: float = 1.0  # rad from the downward vertical
-    omega: float = 0.0  # rad/s
-    length: float = 1.0  # m
-    gravity: float = 9.81  # m/s²
-    h: float = 0.05  # s, the step size; positive at a start
+    theta: float = NUMBERS["theta"].default  # rad from the downward vertical
+    omega: float = NUMBERS["omega"].default  # rad/s
+    length: float = NUMBERS["length"].default  # m
+    gravity: float = NUMBERS["gravity"].default  # m/s²
+    h: float = NUMBERS["h"].default  # s, the step size; positive at a start
     watch: str = ""
     model: str = DEFAULT_MODEL  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
@@ -103,13 +92,13 @@ class Scene:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", self._complete(self.parameters))
-        for name, (low, high) in LIMITS.items():
-            _check_range(name, getattr(self, name), low, high)
+        for each in COMMON:
+            if each.name != "h":  # its limits depend on w0
+                _check_range(each.name, getattr(self, each.name))
         known = self.model in MODELS
         if known:
             for each in MODELS[self.model].parameters:
-                largest = min(each.max, each.max_over_w0 * self.w0)
-                _check_range(each.name, self.parameters[each.name], each.min, largest)
+                _check_range(each.name, self.parameters[each.name], self.w0)
         check_h(self.h, self.w0, forwards=True)
         if not 0 < self.speed < math.inf:
             raise SceneError(
@@ -138,14 +127,7 @@ class Scene:
     @property
     def numbers(self) -> dict[str, float]:
         """The numbers that determine the run."""
-        common = {
-            "theta": self.theta,
-            "omega": self.omega,
-            "length": self.length,
-            "gravity": self.gravity,
-            "h": self.h,
-        }
-        return common | dict(self.parameters)
+        return {each.name: getattr(self, each.name) for each in COMMON} | dict(self.parameters)
 
     def exact(self) -> ExactMotion:
         """The exact motion from this scene's start."""

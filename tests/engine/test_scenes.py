@@ -9,7 +9,8 @@ import pytest
 
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, SceneError
+from tests.truths import LIMITS
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 

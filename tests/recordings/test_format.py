@@ -14,7 +14,7 @@ from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS
-from pendu_tui.engine.scenes import LIMITS, Scene
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.events import Event, fingerprint, noticed
 from pendu_tui.recordings.format import (
@@ -29,6 +29,7 @@ from pendu_tui.recordings.format import (
     without_extremes,
 )
 from tests.recordings.examples import SCENE, start
+from tests.truths import LIMITS
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")
 SPRING = tuple(field.name for field in EXTRA["spring"])

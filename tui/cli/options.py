@@ -9,6 +9,9 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
+from pendu_tui.engine.models.numbers import angle as angle
+from pendu_tui.engine.models.numbers import number as number
+from pendu_tui.engine.models.numbers import seconds as seconds
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
@@ -20,6 +23,13 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
         self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def _get_value(self, action: argparse.Action, text: str) -> Any:
+        """Return the value of an option; a ValueError's text is the reason to refuse it."""
+        try:
+            return action.type(text) if callable(action.type) else text
+        except ValueError as error:
+            raise argparse.ArgumentError(action, str(error)) from None
 
     def error(self, message: str) -> NoReturn:
         sentence = message.removeprefix("argument ")
@@ -100,52 +110,6 @@ def resolve(name: str) -> Path:
     raise RecordingError(f"there is no recording {name!r}{advice}")
 
 
-def _float(bare: str, text: str, what: str, example: str) -> float:
-    """Return the number in an option's value, without its unit."""
-    try:
-        return float(bare)
-    except ValueError:
-        why = f"{text!r} is not {what}; use for example {example}"
-        raise argparse.ArgumentTypeError(why) from None
-
-
-def angle(text: str) -> float:
-    """Return an angle [rad] from `2`, `2rad`, `115deg`, `115°`, `pi/2` or `-2pi/3`.
-
-    An angular velocity may end in `/s`.
-    """
-    bare = re.sub(r"\s*(deg|°|rad)(/s)?$", "", text)
-    multiple = re.fullmatch(r"([-+]?)([\d.]*)\*?(?:pi|π)(?:/([1-9]\d{,9}))?", bare)
-    if multiple:
-        bare = f"{multiple[1]}{multiple[2] or 1}"
-    value = _float(bare, text, "an angle", "2 (radians), pi/2 or 115deg")
-    if multiple:
-        return value * math.pi / int(multiple[3] or 1)
-    return math.radians(value) if re.search("deg|°", text) else value
-
-
-def start_angle(text: str) -> float:
-    """Return an angle [rad]; above a turn it needs a unit, because degrees may be meant."""
-    value = angle(text)
-    if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
-        turns = abs(value) / math.tau
-        raise argparse.ArgumentTypeError(f"{text} is {turns:.3g} turns: {text}deg or {text}rad?")
-    return value
-
-
-def seconds(text: str) -> float:
-    """Return a time [s] from `2`, `2s`, `50ms`, `1min` or `1h`."""
-    bare = re.sub(r"\s*(ms|s|min|h)$", "", text)
-    unit = text[len(bare) :].strip()
-    value = _float(bare, text, "a time", "0.05 (seconds), 50ms or 1min")
-    return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
-
-
-def number(text: str) -> float:
-    """Return a number, `0.05` or `5%`; the caller checks its range."""
-    return _float(re.sub("%$", "e-2", text), text, "a number", "0.05 or 1e-3")
-
-
 def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
     """Return a reader of ascending values, `0.5,1,2` or `0.1:3:30`, each read by `element`."""
 
@@ -159,9 +123,7 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
                 if low < high:
                     steps = range(size - 1)
                     return [*(low + (high - low) * i / (size - 1) for i in steps), high]
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})"
-        )
+        raise ValueError(f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})")
 
     return read
 
@@ -170,7 +132,7 @@ def positive(text: str, read: Callable[[str], float] = number) -> float:
     """Return a number above zero, and finite."""
     value = read(text)
     if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use a number above zero")
+        raise ValueError(f"{text!r} is out of range; use a number above zero")
     return value
 
 
@@ -182,7 +144,7 @@ def duration(text: str) -> float:
 def count(text: str) -> int:
     """Return a whole number, 1 or more."""
     if not re.fullmatch(r"\d{1,18}", text) or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a count; use a whole number, 1 or more")
+        raise ValueError(f"{text!r} is not a count; use a whole number, 1 or more")
     return int(text)
 
 

@@ -17,8 +17,8 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.models import DEFAULT_MODEL
-from pendu_tui.engine.scenes import LIMITS, Scene
+from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli.files import text_file
@@ -58,7 +58,8 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
 
 def scene_line(scene: Scene, *more: str) -> str:
     """Return the scene's name and numbers, and `more` of its attributes."""
-    numbers = fields_of(scene, *LIMITS, *more)
+    names = [each.name for each in COMMON if each.name != "h"]
+    numbers = fields_of(scene, *names, *more)
     model = "" if scene.model == DEFAULT_MODEL else f" ({scene.equations.equation})"
     listed = ", ".join(f"{name} {value:g}" for name, value in numbers.items())
     return f"{scene.name}{model}: {listed} (SI units)"
@@ -238,7 +239,7 @@ def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
         path = Path(text)
         if path.suffix.lower() not in suffixes and not is_stream(path):
             named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
-            raise argparse.ArgumentTypeError(f"{text!r} has another suffix; use {named}")
+            raise ValueError(f"{text!r} has another suffix; use {named}")
         return path
 
     return read

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
+from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.cast import add_cast_options, cast_of
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import LIST, Suggestions, did_you_mean, values
-from pendu_tui.tui.cli.scene_file import NUMBERS, read_scenes
+from pendu_tui.tui.cli.scene_file import read_scenes
 
 
 def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
@@ -30,10 +31,10 @@ def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> N
         help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes "
         "--json",
     )
-    for name, (read, metavar, about) in NUMBERS.items():
-        option = f"--{name.replace('_', '-')}"
-        form = values(read) if lists else read
-        group.add_argument(option, metavar=metavar, type=form, help=about)
+    for each in NUMBERS.values():
+        option = f"--{each.name.replace('_', '-')}"
+        read = values(each.read) if lists else each.read
+        group.add_argument(option, metavar=each.metavar, type=read, help=each.about)
     add_cast_options(group)
 
 

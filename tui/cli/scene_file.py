@@ -4,11 +4,10 @@ The fields are those that `scenes --json` prints, and what differs in the shot. 
 [[scene]] are the pages of a lesson; the tour is one.
 """
 
-import argparse
 import json
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from functools import cache
 from pathlib import Path
@@ -16,35 +15,18 @@ from typing import Any, get_type_hints
 
 from pendu_tui.engine import scenes
 from pendu_tui.engine.methods import METHODS, Cast, Method
-from pendu_tui.engine.models import MODELS, PARAMETERS
+from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Line, Scene, SceneError, Shot
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.cast import find, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import angle, did_you_mean, number, seconds, start_angle
-
-NUMBERS: dict[str, tuple[Callable[[str], float], str, str]] = {
-    "theta": (
-        start_angle,
-        "RAD|DEGdeg",
-        "start angle from straight down: 2 (in rad), pi/2 or 115deg",
-    ),
-    "omega": (angle, "RAD_S", "start angular velocity: 2 (in rad/s) or 30deg (a second)"),
-    "length": (number, "M", "length in m"),
-    "gravity": (number, "M_S2", "gravity in m/s²"),
-    **{
-        name: (number, "NUMBER", f"{each.about} in {each.unit}")
-        for name, each in PARAMETERS.items()
-    },
-    "h": (seconds, "S", "step size: 0.05 (in s) or 50ms"),
-}
-"""The numbers of a scene: the reader, metavar and help of each option."""
+from pendu_tui.tui.cli.options import did_you_mean, number, seconds
 
 TOUR = Path(scenes.__file__).with_name("tour.toml")
 MAX_ANSWERS = 4
 MAX_TEXT = 400  # characters of a sentence
 
-_READERS = {name: read for name, (read, _, _) in NUMBERS.items()}
+_READERS = {name: each.read for name, each in NUMBERS.items()}
 _READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
 _SCENE = {
     "name": str,
@@ -57,16 +39,11 @@ _SCENE = {
     **dict.fromkeys(NUMBERS, float),
 }
 _SHOT = get_type_hints(Shot)
-_PARAMETERS = {name: each.default for name, each in PARAMETERS.items()}
-_PARAMETERS |= {name: value for each in SCENES.values() for name, value in each.parameters.items()}
+_VALUES = {name: each.default for name, each in NUMBERS.items()}
+_VALUES |= {name: value for each in SCENES.values() for name, value in each.parameters.items()}
 _EXAMPLES = {
     "name": '"swing"',
     "from": '"near-separatrix"',
-    "theta": '"57deg"',
-    "omega": "2.0",
-    "length": "1.0",
-    "gravity": "9.81",
-    "h": "0.05",
     "watch": '"Verlet keeps its energy."',
     "model": '"damped"',
     "speed": "4",
@@ -87,7 +64,8 @@ _EXAMPLES = {
     "truth": '"Its step is symmetric."',
     "equal_cost": "true",
     "returns": "true",
-    **{name: f"{value:g}" for name, value in _PARAMETERS.items()},
+    **{name: f"{value:g}" for name, value in _VALUES.items()},
+    "theta": '"57deg"',
 }
 
 
@@ -241,7 +219,7 @@ def _values(given: Mapping[str, Any], types: Mapping[str, Any], *above: str) -> 
             if name in _READERS:
                 value = _READERS[name](str(value))
             found[name] = _printable(msgspec.convert(value, types[name]))
-        except (argparse.ArgumentTypeError, msgspec.ValidationError) as error:
+        except (ValueError, msgspec.ValidationError) as error:
             why = str(error).partition(";")[0]
             like = f"{name} = {_EXAMPLES[name]}"
             raise _FieldError(f"{name}: {why}; use for example {like}.", *above, name) from None

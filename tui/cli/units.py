@@ -1,6 +1,5 @@
 """Units of time and energy: how heads of tables write them, and their sizes."""
 
-import argparse
 import re
 
 NANOSECONDS = {
@@ -82,7 +81,7 @@ def quantity(text: str) -> tuple[float, str]:
     match = re.fullmatch(r"(\d*\.?\d+(?:e[-+]?\d+)?)\s*([^\W\d]\S*)?", text.strip())
     value = float(match[1]) if match else 0.0
     if match is None or not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a step; use for example 2 or 0.5fs")
+        raise ValueError(f"{text!r} is not a step; use for example 2 or 0.5fs")
     return value, match[2] or ""
 
 
@@ -91,5 +90,5 @@ def assignments(text: str) -> dict[str, str]:
     pairs = [part.partition("=") for part in text.split(",") if part]
     found = {kind.strip(): unit.strip() for kind, _, unit in pairs}
     if not found or not set(found) <= {"time", "energy"} or not all(found.values()):
-        raise argparse.ArgumentTypeError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
+        raise ValueError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
     return found

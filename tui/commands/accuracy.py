@@ -48,9 +48,7 @@ def h_values(text: str) -> tuple[float, float, int]:
         case [first, last, many] if count(many) <= MAX_RUNGS:
             low, high = sorted((positive(first), positive(last)))
             return high, low, count(many)
-    raise argparse.ArgumentTypeError(
-        f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10"
-    )
+    raise ValueError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
 
 
 def run(options: argparse.Namespace) -> int:

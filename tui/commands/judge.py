@@ -85,7 +85,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def _time(text: str) -> float:
     value = number(text)
     if math.isnan(value):
-        raise argparse.ArgumentTypeError("nan is not a time")
+        raise ValueError("nan is not a time")
     return value
 
 
@@ -95,8 +95,8 @@ def scale(text: str) -> float | str:
         return text
     try:
         return positive(text)
-    except argparse.ArgumentTypeError:
-        raise argparse.ArgumentTypeError(
+    except ValueError:
+        raise ValueError(
             f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
         ) from None
 

@@ -53,5 +53,5 @@ def run(options: argparse.Namespace) -> int:
 def moment(text: str) -> float:
     value = number(text)
     if not 0 <= value <= 3600:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a valid time; use 0 to 3600 s")
+        raise ValueError(f"{text!r} is not a valid time; use 0 to 3600 s")
     return value

@@ -1,7 +1,6 @@
 """Dialogs: texts, forms, and the help, which is made from BINDINGS."""
 
-import argparse
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby, zip_longest
 from typing import ClassVar
 
@@ -18,9 +17,8 @@ from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
 from pendu_tui.engine.methods import METHODS, Method
-from pendu_tui.engine.models import PARAMETERS
-from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
-from pendu_tui.tui.cli.options import angle, number
+from pendu_tui.engine.models import NUMBERS
+from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene, SceneError
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.lines import SizedScreen, key_text
 from pendu_tui.tui.words.cards import glossary, method_card, scene_card
@@ -199,20 +197,6 @@ class CastForm(Form[Scene]):
             self.notify("Take at least one method.")
 
 
-FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
-    "theta": ("rad, or 115deg", angle),
-    "omega": ("rad/s, or 90deg", angle),
-    "h": ("s, the step size", number),
-    "length": ("m", number),
-    "gravity": ("m/s²", number),
-    **{
-        each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number)
-        for each in PARAMETERS.values()
-    },
-}
-"""The unit and the parser of each number that the scene's model has."""
-
-
 class StartForm(Form[Scene]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "dismiss(None)"),
@@ -230,11 +214,13 @@ class StartForm(Form[Scene]):
             form.border_title = "Start values"
             form.border_subtitle = "Enter starts, Esc cancels"
             numbers = self._before.numbers
-            for name in [each for each in FIELDS if each in numbers]:
+            for name, value in numbers.items():
+                row = NUMBERS[name]
                 with Horizontal():
                     yield Label(name)
-                    yield Input(f"{numbers[name]!r}", id=name, compact=True, select_on_focus=True)
-                    yield Label(FIELDS[name][0], classes="unit")
+                    yield Input(f"{value!r}", id=name, compact=True, select_on_focus=True)
+                    hint = row.hint or f", {row.min:g} to {row.max:g}"
+                    yield Label(row.unit + hint, classes="unit")
             yield Label(id="verdict", markup=False)
 
     @on(Input.Changed)
@@ -245,12 +231,12 @@ class StartForm(Form[Scene]):
         try:
             for field in self.query(Input):
                 name = str(field.id)
-                values[name] = FIELDS[name][1](field.value.strip())
+                values[name] = NUMBERS[name].read(field.value.strip())
             self._scene = scene = self._before.altered(**values)
-        except argparse.ArgumentTypeError as error:
-            verdict.update(f"{name}: {error}.")
-        except ValueError as error:
+        except SceneError as error:
             verdict.update(str(error))
+        except ValueError as error:
+            verdict.update(f"{name}: {error}.")
         else:
             verdict.update(f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}")
         verdict.set_class(self._scene is None, "-wrong")

@@ -5,10 +5,10 @@ import textwrap
 from collections.abc import Mapping
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.quantities import QUANTITIES
 from pendu_tui.engine.run.verdicts import VERDICTS
-from pendu_tui.engine.scenes import SCENES, UNITS, Scene
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.words.numbers import counted, motion_text, z_text
 
 WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
@@ -91,7 +91,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
         "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
         "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = "
         f"{scene.w0:.4g} 1/s",
-        **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
+        **{name: f"{value:.5g} {NUMBERS[name].unit}" for name, value in scene.parameters.items()},
         "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
         "now": now,
         "motion": motion_text(scene, exact),

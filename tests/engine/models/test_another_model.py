@@ -16,7 +16,8 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State
+from pendu_tui.engine.models.numbers import Number
+from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, State
 from pendu_tui.engine.quantities import Chart, Quantity
 
 
@@ -27,7 +28,7 @@ class Decaying(Model):
 
     key = "decaying"
     equation = "theta'' = -w0² theta, u' = -decay u"
-    parameters = (Parameter("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
+    parameters = (Number("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
     turns = False
     second_order = False
     variables = (Quantity("u", about="decays"), Quantity("square", chart=Chart("u²")))

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import State
-from pendu_tui.engine.scenes import LIMITS, SCENES, Scene
+from pendu_tui.engine.scenes import SCENES, Scene
+from tests.truths import LIMITS
 
 W0 = math.sqrt(9.81)
 JUST = 2 * W0  # rad/s; at the bottom, the speed of the separatrix

@@ -15,8 +15,9 @@ from pendu_tui.engine.run.compiled import available, compiled
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import LIMITS, SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import SCENES, Scene, SceneError
 from pendu_tui.recordings.format import without_extremes
+from tests.truths import LIMITS
 
 scenes = st.builds(
     Scene,

@@ -1,4 +1,3 @@
-import argparse
 import math
 import re
 
@@ -61,7 +60,7 @@ def test_more_than_a_turn_without_a_unit_is_refused(theta, tmp_path):
 def test_a_list_is_ascending_and_what_is_none_is_refused(text):
     assert values(number)("2,1,2") == [1.0, 2.0]
     assert values(number)("1:2:3") == [1.0, 1.5, 2.0]
-    with pytest.raises(argparse.ArgumentTypeError, match="is not a list"):
+    with pytest.raises(ValueError, match="is not a list"):
         values(number)(text)
 
 

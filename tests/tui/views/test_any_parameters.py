@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pendu_tui.engine.models import MODELS, PARAMETERS
-from pendu_tui.engine.scenes import LIMITS, SCENES, Scene
+from pendu_tui.engine.models import MODELS, NUMBERS
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.cli.scene_file import scene_text
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import time_chart
@@ -20,6 +20,7 @@ from pendu_tui.tui.views.lab.error_table import table
 from pendu_tui.tui.views.phase.view import fact_rows
 from pendu_tui.tui.words.insight import insight_text, lasting, sentence
 from pendu_tui.tui.words.plain_text import description
+from tests.truths import LIMITS
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
 
@@ -35,7 +36,7 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
 
 def scenes(model: str) -> st.SearchStrategy[Scene]:
     base = next(scene for scene in SCENES.values() if scene.model == model)
-    limits = LIMITS | {name: PARAMETERS[name][3:5] for name in base.parameters}
+    limits = LIMITS | {name: NUMBERS[name][3:5] for name in base.parameters}
     values = st.fixed_dictionaries(
         {name: numbers(*each) for name, each in limits.items()} | {"z": numbers(1e-8, 2.5)}
     )
@@ -43,7 +44,7 @@ def scenes(model: str) -> st.SearchStrategy[Scene]:
     def scene(given: dict[str, float]) -> Scene:
         w0 = math.sqrt(given["gravity"] / given["length"])
         for name in base.parameters:
-            given[name] = min(given[name], PARAMETERS[name].max_over_w0 * w0)
+            given[name] = min(given[name], NUMBERS[name].max_over_w0 * w0)
         z = given.pop("z")
         return base.altered(h=z / w0, **given)
 
