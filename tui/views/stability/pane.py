@@ -59,7 +59,11 @@ def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: fl
             outcome = f"lost at step {cell['steps'] + 1}, {outcome}"
     else:
         outcome += f", energy error {cell['error']:.1e}"
-    other = np.flatnonzero(np.isin(row["fate"], HELD) != (here == "held"))
+    known = row["fate"] != UNKNOWN
+    other = np.flatnonzero(known & (np.isin(row["fate"], HELD) != (here == "held")))
+    if not len(other) and not known.all():
+        missing = {"lost": "loss", "held": "h that holds"}[there]
+        return f"{where} {outcome}; no {missing} found yet"
     if not len(other):
         return f"{where} {outcome}; {here} at every h on this map"
     nearest = grid.z[other[np.abs(other - z).argmin()]]

@@ -20,7 +20,6 @@ from pendu_tui.tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, m
 from pendu_tui.tui.drawing.picture import Ink, Row
 
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
-_WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # of lost swings, by when; and as many of held ones, by error
 
@@ -66,8 +65,10 @@ def panel(
     method = grid.methods[index]
     width = columns - MARGIN
     values = scores(cells[:, index], grid.steps)
+    lines: list[list[Cell]]
     if palette is None:
-        lines = _in_characters(worst(values, width, rows), grid.steps)
+        lowest = worst(values, width, rows).tolist()
+        lines = [[(character(each, grid.steps), NOBODY) for each in line] for line in lowest]
     else:
         lines = _in_colours(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
     signs = list(theory(method, grid, rows))
@@ -94,12 +95,8 @@ def panel(
 
 def _signed(ink: Ink, sign: str, palette: Palette | None) -> Cell:
     if palette and isinstance(ink, Style):
-        return sign, ink + Style(color=palette.text, reverse=sign == HERE)
-    return _WITHOUT_COLOUR[sign], ink
-
-
-def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
-    return [[(character(value, steps), NOBODY) for value in line] for line in values.tolist()]
+        ink += Style(color=palette.text, reverse=sign == HERE)
+    return sign, ink
 
 
 def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
@@ -200,19 +197,15 @@ def character(score: float, steps: int) -> str:
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
     held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
     lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
-    signs = _WITHOUT_COLOUR
     if palette is not None:
-        signs = {sign: sign for sign in signs}
         ink = ink_of(VELOCITY_VERLET, ())
         shades = [0.999 * part / 7 for part in range(8)]
         bright = [("█", Style(color=colour(1 + each, ink, palette))) for each in shades]
         dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
         held = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
         lost = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
-    lines: list[Cell] = [
-        (f"{signs[LIMIT]} linear limit   {signs[THRESHOLD]} global chaos above   ", NOBODY)
-    ]
-    orbit: list[Cell] = [(f"{signs[CATCHING]} stable 2-cycle   y: amplitude [°]", NOBODY)]
+    lines: list[Cell] = [(f"{LIMIT} linear limit   {THRESHOLD} global chaos above   ", NOBODY)]
+    orbit: list[Cell] = [(f"{CATCHING} stable 2-cycle   y: amplitude [°]", NOBODY)]
     if columns >= 80:
         return [held + lost, lines + orbit]
     return [held, lost, lines, orbit]

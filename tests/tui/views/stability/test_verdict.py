@@ -27,6 +27,7 @@ LADDER = cells(
     (40, 0.9, fates.OVER_THE_TOP),
     (3, 5.0, fates.GROWS),
 )
+BEGUN = cells((300, 1e-3, fates.HOLDS), *[(0, 0.0, fates.UNKNOWN)] * 4)
 HELD = cells(*[(300, 1e-3, fates.HOLDS)] * 5)
 LOST = cells(*[(0, 2.0, fates.GROWS)] * 5)
 
@@ -39,6 +40,7 @@ LOST = cells(*[(0, 2.0, fates.GROWS)] * 5)
         (LADDER, 4, "1.25 s, 90°: lost at step 4, grows; held at h 0.75 s"),
         (HELD, 0, "0.25 s, 90°: held, energy error 1.0e-03; held at every h on this map"),
         (LOST, 0, "0.25 s, 90°: lost at step 1, grows; lost at every h on this map"),
+        (BEGUN, 0, "0.25 s, 90°: held, energy error 1.0e-03; no loss found yet"),
         (GRID.unknown(), 0, "0.25 s, 90°: not computed yet"),
     ],
 )
