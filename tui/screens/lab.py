@@ -255,7 +255,10 @@ class LabScreen(SizedScreen[None]):
         if playhead.seen is not None and (stands_still or now - playhead.seen > STALL):
             playhead.seen = now
         before = self.source.sample
+        stood_still = self.source.failure is not None
         sample = self.source.tick(now)
+        if self.source.failure and not stood_still:
+            self.warn(f"{self.source.failure} The run stands still; space tries again.")
         if isinstance(self.source, Live):
             self._pause_where_due(self.source, before)
         if is_writing(self.app):

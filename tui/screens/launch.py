@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import NameTakenError
+from pendu_tui.recordings.errors import NameTakenError, printable
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import stop_requests
-from pendu_tui.tui.cli.report import progress, say, warn
+from pendu_tui.tui.cli.report import progress, warn
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
@@ -162,7 +162,9 @@ def say_goodbye(source: Source) -> int:
     if recorder.part.exists():
         file = recorder.part
     if file.exists():
-        say(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
+        quoted = shlex.quote(str(file))
+        for line in (f"saved {file}", f"replay it with: pendu-tui replay {quoted}"):
+            print(printable(line, limit=5000))  # whole, to be copied
     if recorder.failed:
         warn(f"the recording stopped: {recorder.failed}")
         return Exit.DISK

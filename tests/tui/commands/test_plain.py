@@ -31,7 +31,7 @@ def recorded_whole(folder: Path) -> Path:
     ("number", "arguments", "first"),
     [
         (signal.SIGINT, ("--speed", "8"), "The lab runs at 8 times"),
-        (signal.SIGTERM, ("tour",), "Tour 1 of 8: who gains. "),
+        (signal.SIGTERM, ("tour",), "The lab runs in real time"),
     ],
 )
 def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first):

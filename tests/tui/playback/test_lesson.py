@@ -1,17 +1,21 @@
 """A lesson leads a lab from page to page: to the moment, the question, and the answer."""
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Shot
+from pendu_tui.tui.cli.scene_file import read_scenes
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.words.plain_text import READING, tell
 from tests.tui.harness import FPS, Clocked
 
+DOCUMENTATION = Path(__file__).parents[3] / ".github/docs/lab.md"
 QUESTION = Shot(
     moment=1.0,
     sentence="A second has passed.",
@@ -121,6 +125,20 @@ def test_after_a_change_of_the_run_it_waits_until_the_user_begins_the_page_again
     assert (lesson.stage, live.scene) == ("watching", ASKS)
     live.change(live.stepping.reversed())
     assert lesson.is_astray(live)
+
+
+def test_the_lesson_in_the_documentation_is_walked_as_it_stands(tmp_path, live):
+    (text,) = re.findall("```toml\n(.*?)```", DOCUMENTATION.read_text(encoding="utf-8"), re.DOTALL)
+    file = tmp_path / "lesson.toml"
+    file.write_text(text, encoding="utf-8")
+    lesson = Lesson("Page", read_scenes(file).values())
+    lesson.begin(live, 0)
+    stages = []
+    while lesson.forward(live):
+        stages.append(lesson.stage)
+    assert stages == ["asked", "answered", "watching", "told"]
+    verlet, rk4 = (abs(reading.energy_error) for reading in live.sample.readings[2:])
+    assert rk4 > verlet
 
 
 def told(stop_at: float = math.inf, lesson: Lesson | None = None) -> list[tuple[float, str]]:

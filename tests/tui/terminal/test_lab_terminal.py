@@ -56,7 +56,7 @@ def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_v
         (path,) = library.iterdir()
         assert f"saved {path}" in session.output.decode()
         assert f"pendu-tui replay {path}" in session.output.decode()
-    assert whole(library) == ["start", "set_h", "pause", "start", "stop"]
+    assert whole(library) == ["start", "set_h", "pause", "start", "resume", "stop"]
 
 
 def program(code: str) -> list[str]:
