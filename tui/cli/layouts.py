@@ -13,7 +13,7 @@ from pendu_tui.tui.cli.units import split_unit
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\))?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
-VALUE = rf"(?P<value>{NUMBER}|{FAILED})"
+VALUE = rf"(?P<value>{FAILED}|{NUMBER})"
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class Layout:
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
     columns below; a `row`, which may begin with words; a `name` and its `value`, perhaps with a
     `unit`; `over`, names above a line of numbers; the `place` of a column, from 1, or the `set` of
-    xmgrace, from 0, and its `label`; the name of the `first` column, `units` of the others; the beginning of a new run (`part`); what is no longer data
-    (`end`), up to the next `part`.  A group of any other name is a value of that name.
+    xmgrace, from 0, and its `label`; the name of the `first` column, `units` of the others; the beginning of a new run (`part`); the `end` of the data,
+    until they begin `again`.  A group of any other name is a value of that name.
     """
 
     programs: str
@@ -53,7 +53,7 @@ LAYOUTS = (
     Layout(
         programs="GROMACS md.log",
         line=r"^(?P<over> {11}Step {11}Time\b.*|(?=.*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
-        r"|(?P<end><=+  A V E R A G E S)|^(?P<part>Started mdrun)",
+        r"|(?P<end><=+  A V E R A G E S)|^(?P<again>Started mdrun)",
         cells=".{15}",
         units=("ps", "kJ/mol"),
     ),
@@ -87,10 +87,6 @@ LAYOUTS = (
         units=("", "hartree"),
     ),
     Layout(
-        programs="i-PI",
-        line=r"^# *(?:column|cols?\.) +(?P<place>\d+)\S* +--> +(?P<label>[^\s{]+(?:\{[^}]*\})?)",
-    ),
-    Layout(
         programs="xtb",
         line=r"^ +(?P<names>time \(ps\) +<Epot>.*)",
         units=("", "hartree"),
@@ -110,6 +106,10 @@ LAYOUTS = (
         cells=r"(?:\[\d+\] *=|\b\d+:) *(.*?) *(?=\[\d+\] *=|\b\d+:|$)",
     ),
     Layout(
+        programs="i-PI, heads of a line for each column",
+        line=r"^# *(?:col(?:umn|s)?\.?)? *(?P<place>\d+)[-\d]* *(?:-->|[:=]) *(?P<label>.+?) *(?: : .*)?$",
+    ),
+    Layout(
         programs="PLUMED",
         line=r"^#! FIELDS +(?P<names>.*)",
     ),
@@ -120,14 +120,14 @@ LAYOUTS = (
     ),
     Layout(
         programs="prints of name value",
-        line=rf"(?<!\S)(?P<name>[A-Z]\w*) +{VALUE},?(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
+        line=rf"(?<!\S)(?P<name>[A-Z]\w{{,40}}) +{VALUE},?(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
-        line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]*"
-        rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]*)*)"
+        line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{{,40}}"
+        rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
         rf"(?: *= *|: +(?!{NUMBER}[^\S\n]+[-+.\d])){VALUE}"
-        rf" *(?P<unit>pico-seconds|[fpn]s|s|Ry|H|Ha|[mk]?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
+        rf" *[\[(]?(?P<unit>pico-seconds|[fpn]s|s|Ry|H|Ha|[mk]?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

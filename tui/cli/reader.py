@@ -7,6 +7,7 @@ import io
 import json
 import lzma
 import re
+import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
@@ -26,8 +27,10 @@ MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
 MAX_ROWS = 20_000_000  # half a minute; the input may be endless
 MAX_DOCUMENT = 1 << 28  # characters of JSON
+MAX_COLUMNS = 5000
 MAX_NAMES = 500  # of values that are printed with their names
 MAX_SHAPES = 10_000
+MAX_DEPTH = 8  # of objects in objects
 BLOCK = 4096  # lines
 _NOT_TEXT = {
     b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
@@ -49,7 +52,7 @@ _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortra
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
 _NO_NUMBERS = {ord(sign): None for sign in "0123456789.+- "}
 _PARTS = {"names", "row", "name", "value", "unit", "over", "place", "set", "label"} | {
-    *("first", "units", "part", "end")
+    *("first", "units", "part", "end", "again")
 }
 
 
@@ -61,7 +64,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
             try:
                 unpacked = io.BufferedReader(unpack(stream))
                 return read_sheets(unpacked, wanted, file.rpartition(".")[0])
-            except (EOFError, OSError, lzma.LZMAError) as error:
+            except (EOFError, OSError, lzma.LZMAError, zlib.error) as error:
                 why = printable(str(error), 100)
                 raise unreadable(f"it cannot be unpacked: {why}.") from None
     if not start:
@@ -150,7 +153,6 @@ class _Text:
         self._over: list[str] = []  # names above a line of numbers
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
-        self._words: set[int] = set()  # places of words in the rows
         self._line = 0
         self._shapes: dict[str, list[tuple[str, int]]] = {}  # lines that need no other look
 
@@ -171,7 +173,8 @@ class _Text:
 
     def _is_like_a_row(self, line: str) -> bool:
         is_wide = len(line.split(self._delimiter)) == self._width
-        return is_wide and line.startswith(self._opening) and '"' not in line
+        is_text = line.startswith(self._opening) and not line.isspace()
+        return is_wide and is_text and '"' not in line
 
     def _read(self, lines: list[str], are_alike: bool) -> None:
         """Read rows like the last one at once, other lines one by one."""
@@ -274,6 +277,8 @@ class _Text:
                 self._prints.append(_Prints(self._wanted, self._line))
             case {"end": _}:
                 self._is_over = True
+            case {"again": _}:
+                self._is_over = False
             case _ if self._is_over:
                 pass
             case {"name": name, "value": value}:
@@ -314,6 +319,8 @@ class _Text:
             return False  # what else xmgrace is told, or a rule
         is_comment = bare != text and number(text.split()[0]) is None
         fields, delimiter = _fields(bare)
+        if len(fields) > MAX_COLUMNS:
+            return True
         if delimiter is None and len(fields) != self._width:
             divided = _fields(bare, glued=True)[0]
             fields = divided if len(divided) == self._width else fields
@@ -340,12 +347,6 @@ class _Text:
             if sheet and opening == self._opening and (opening or numbers[0] is not None):
                 sheet.skipped += 1
             return False
-        words = {at for at, value in enumerate(numbers) if value is None and fields[at]}
-        if is_new:
-            self._words = words
-        elif delimiter is None and words > self._words:
-            sheet.skipped += 1
-            return False
         sheet.put_row(self._line, numbers)
         return True
 
@@ -362,7 +363,8 @@ class _Text:
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
             rest = numbers[1:] if opening else numbers
-            is_row = None not in rest or (delimiter and len(rest) > rest.count(None) + 1)
+            is_bare = delimiter and not self._heads  # rows that were cut out of a table
+            is_row = None not in rest or (is_bare and len(rest) > rest.count(None) + 1)
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
                 self._heads = self._heads if not is_like else []
@@ -387,8 +389,9 @@ class _Text:
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        heads = (names for ways in reversed(self._heads) for names in ways)
-        for names in chain(heads, [self._columns] if self._columns else []):
+        above = (names for ways in reversed(self._heads) for names in ways)
+        labels = self._labelled(width)
+        for names in chain([labels] if any(labels) else [], above, [self._columns]):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
             elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
@@ -411,12 +414,10 @@ class _Text:
             return 0
         if choice and asked and not all(text.isdecimal() for text in asked):
             return len(names) + 1
-        is_named = any(self._labels.values()) or None in numbers
-        if known > 1 and not any(self._labels.values()):
+        if known > 1:
             return known
-        is_numeric = any(number(name) is not None for name in names)
-        is_first = self._sheet is None or self._begins
-        return int(is_first and not is_numeric and not is_named)
+        is_numeric = any(number(name) is not None for name in names) or None in numbers
+        return int((self._sheet is None or self._begins) and not is_numeric)
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
@@ -459,7 +460,7 @@ def _ways(text: str, cells: str = "") -> list[list[str]]:
     ways = [_split(text, sign) for sign in "\t;,| " if sign in text or sign == " "]
     ways.append(re.split(r"\s{2,}", text))  # names may contain single blanks
     ways.append(re.sub(r"\s+(?=[(\[])", "\0", text).split())  # or a blank before the unit
-    ways.append(re.findall(r"[^)\]]+[)\]]", text))  # or end with the unit
+    ways.append(re.split(r"(?<=[)\]])\s+", text))  # or end with the unit
     return [[name.replace("\0", " ").strip(" '\"#") for name in names] for names in ways if names]
 
 
@@ -517,11 +518,11 @@ def _parsed(text: str) -> Any:
     return None
 
 
-def _records(item: Any) -> Iterable[Any]:
+def _records(item: Any, depth: int = 0) -> Iterable[Any]:
     """Return the objects or rows in a document: those of a list, or of lists in an object."""
     if isinstance(item, list):
         return item
-    if not isinstance(item, dict):
+    if not isinstance(item, dict) or depth > MAX_DEPTH:
         return []
     if isinstance(item.get("columns"), list) and isinstance(item.get("data"), list):
         return [dict(zip(item["columns"], row, strict=False)) for row in item["data"]]
@@ -542,13 +543,13 @@ def _records(item: Any) -> Iterable[Any]:
             dict(zip(names, row, strict=True))
             for row in zip(*(flat[name] for name in names), strict=True)
         ]
-    found = (_records(each) for each in item.values())
+    found = (_records(each, depth + 1) for each in item.values())
     return next((each for each in found if each), [])
 
 
 def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the values of an object with their names; those of a list have numbers."""
-    if isinstance(item, dict):
+    if isinstance(item, dict) and name.count(".") < MAX_DEPTH:
         for inner, value in item.items():
             yield from _flat(value, f"{name}.{inner}".lstrip("."))
     elif isinstance(item, list) and not name:

@@ -108,8 +108,12 @@ class Sheet:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
         self.choose()
         choice = self.choice or Choice()
+        if not self._lines:
+            return
         leading = (*choice.time, *choice.energy, 0)[0]
         lines = np.asarray(self._lines[leading])
+        if not len(lines):
+            return
         columns = {}
         here = np.ones(len(lines), dtype=bool)
         for place in choice.columns:

@@ -24,6 +24,7 @@ BOLTZMANN = {  # per kelvin, in the 2019 SI
     "erg": 1.380649e-16,
     "k": 1.0,
 }
+MAX_NAME = 100  # characters
 _KNOWN = {"time": NANOSECONDS, "energy": BOLTZMANN}
 _OTHER_NAMES = {
     "time": (
@@ -65,7 +66,7 @@ def is_unit(text: str) -> bool:
 
 def split_unit(name: str) -> tuple[str, str]:
     """Return name and unit of `Time (ps)`, `E [eV]`, `time{picosecond}`, `t/ps` or `time_ps`."""
-    name = name.strip()
+    name = name.strip()[:MAX_NAME]
     match = _BRACKETS.fullmatch(name)
     if match and not _NO_UNITS.fullmatch(match[2]):
         return match[1], match[2]

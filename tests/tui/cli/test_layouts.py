@@ -104,7 +104,7 @@ L0       100   5.0000000000E-01  -3.4500404117E+02   2.0127962207E+01
       2  0.000242        0.000002      0.0          300.0        -17.17           -17.15
 """,
     ),
-    "i-PI": (
+    "i-PI, heads of a line for each column": (
         "2 rows, time [ps], conserved [eV]",
         """\
 # column   1     --> step : The current simulation time step.
