@@ -5,13 +5,13 @@ if the name is still free or may be replaced.
 """
 
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from pendu_tui.recordings.errors import DiskError, NameTakenError, writing
+from pendu_tui.recordings.system import rename
 
 
 def check_target(path: Path, force: bool = False) -> None:
@@ -64,21 +64,6 @@ def publish(part: Path, path: Path, force: bool = False) -> None:
             part.replace(path)
             return
         try:
-            _rename(part, path)
+            rename(part, path)
         except FileExistsError as error:
             raise NameTakenError("a file of this name appeared meanwhile", path) from error
-
-
-def _rename(source: Path, target: Path) -> None:
-    """Rename a closed file.  Raises FileExistsError if the name is taken."""
-    if os.name == "nt":
-        source.rename(target)  # which elsewhere would replace a file
-        return
-    try:
-        os.link(source, target)
-    except FileExistsError:
-        raise
-    except OSError:  # the file system has no links
-        with source.open("rb") as old, target.open("xb") as new:
-            shutil.copyfileobj(old, new)
-    source.unlink()

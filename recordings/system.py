@@ -2,6 +2,7 @@
 
 import os
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -56,26 +57,44 @@ def key_by_key(keyboard: int) -> Iterator[bool]:
 
 def environment() -> dict[str, str]:
     """Return the environment variables, for a console of Windows with what others set."""
+    variables = dict(os.environ)
     if sys.platform == "win32":
-        return {"TERM": "xterm-256color", "COLORTERM": "truecolor", **os.environ}
-    return dict(os.environ)
+        variables = {"TERM": "xterm-256color", "COLORTERM": "truecolor"} | variables
+    return variables
+
+
+def rename(source: Path, target: Path) -> None:
+    """Rename a closed file.  Raises FileExistsError if the name is taken."""
+    if sys.platform == "win32":
+        source.rename(target)  # which elsewhere would replace a file
+    else:
+        try:
+            os.link(source, target)
+        except FileExistsError:
+            raise
+        except OSError:  # the file system has no links
+            with source.open("rb") as old, target.open("xb") as new:
+                shutil.copyfileobj(old, new)
+        source.unlink()
 
 
 def shell_command(arguments: list[str]) -> str:
     """Return a command for the system's shell, which it replaces where it can."""
     if sys.platform == "win32":
-        return subprocess.list2cmdline(arguments)
-    return f"exec {shlex.join(arguments)}"
+        command = subprocess.list2cmdline(arguments)
+    else:
+        command = f"exec {shlex.join(arguments)}"
+    return command
 
 
 def terminal_state() -> Any:
     """Return the settings of the terminal on stderr; None without one, or on Windows."""
-    if sys.platform == "win32":
-        return None
-    try:
-        return termios.tcgetattr(2)
-    except termios.error:
-        return None
+    if sys.platform != "win32":
+        try:
+            return termios.tcgetattr(2)
+        except termios.error:
+            pass
+    return None
 
 
 def restore_terminal(state: Any) -> None:
@@ -109,5 +128,8 @@ def is_stopped(process: int) -> bool:
 
 
 def kill(process: int, code: int) -> None:
-    """End a process at once; only Windows has a choice of its exit code."""
-    os.kill(process, code if sys.platform == "win32" else signal.SIGKILL)
+    """End a process at once; only on Windows it has this exit code."""
+    if sys.platform == "win32":
+        os.kill(process, code)
+    else:
+        os.kill(process, signal.SIGKILL)

@@ -73,6 +73,32 @@ def test_the_import_contracts_hold():
     assert "0 broken" in done.stdout
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("system", ["win32", "darwin"])
+def test_windows_and_macos_lack_no_name_that_is_used(system, tmp_path):
+    types = [ROOT / ".ci" / "types", "--platform", system, "--cache-dir", tmp_path]
+    done = subprocess.run(types, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def asks_which_system(node):
+    match node:
+        case ast.Attribute(ast.Name("sys"), "platform") | ast.Attribute(ast.Name("os"), "name"):
+            return True
+        case ast.Import([ast.alias(name)]) | ast.ImportFrom(name):
+            return name in ("fcntl", "msvcrt", "pty", "resource", "termios", "tty")
+    return False
+
+
+def test_one_module_alone_asks_which_system_it_runs_on():
+    asking = {
+        str(path.relative_to(ROOT))
+        for path in MODULES
+        if any(map(asks_which_system, ast.walk(ast.parse(path.read_text("utf-8")))))
+    }
+    assert asking == {str(Path("recordings/system.py"))}
+
+
 INSIDE = tuple(str(ROOT / "engine" / room) for room in ("models", "methods", "scenes"))
 OUTSIDE = [path for path in MODULES if not str(path).startswith(INSIDE)]
 MODEL_CLASSES = {"Model", *(model.__name__ for model in MODELS.values())}
