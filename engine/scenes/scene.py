@@ -60,6 +60,7 @@ class Shot:
     line: Line | None = None
     front: tuple[str, ...] = ()  # keys of the methods that are shown; (): all
     ring: bool = False  # of neighbouring starts in phase space
+    under: float | None = None  # s, the step size of a run laid under this one, in a lesson
     moment: float | None = None  # s, simulated, of a pause
     sentence: str = ""  # shown there
     question: str = ""  # asked there

@@ -56,6 +56,7 @@ _EXAMPLES = {
     "line": '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
     "front": '["rk4"]',
     "ring": "true",
+    "under": "0.05",
     "moment": "12.5",
     "sentence": '"Here they part."',
     "question": '"Which one comes back?"',

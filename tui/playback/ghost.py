@@ -11,11 +11,10 @@ from pendu_tui.tui.playback.rows import Window
 class Ghost:
     """The run before a restart, laid under the lab at the same simulated time."""
 
-    def __init__(self, name: str, history: History) -> None:
+    def __init__(self, history: History) -> None:
         self.scene = history.scene
         steps = dict.fromkeys(f"{abs(change.stepping.h):.4g}" for change in history.changes)
-        self._step = f"h {', '.join(steps)} s"
-        self._name = name
+        self.label = f"dim: before, h {', '.join(steps)} s"
         self._window = history.window()
         recent = history.rows.recent
         failed = ~np.isfinite(recent["high"][:, 0])
@@ -23,10 +22,6 @@ class Ghost:
         self._thetas = np.where(failed, math.nan, recent["states"][:, :-1, 0])
         self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
         """The largest angle that it comes to [rad]."""
-
-    def label(self, room: int) -> str:
-        text = f"dim: {self._name}, {self._step}"
-        return text if len(text) <= room else f"dim: {self._step}"
 
     def rods(self, t: float) -> dict[str, float]:
         """Return the angles [rad] at a time [s] by method key, without failed methods."""

@@ -66,7 +66,8 @@ class Lesson:
         if self.shot.returns and live.changes[-1].step == self._turn:
             expected = expected.reversed()
         is_same = (live.scene, live.stepping) == (self.page, expected)
-        return self.stage == "watching" and not is_same
+        has_moment = self.shot.moment is not None
+        return self.stage == "watching" and has_moment and not is_same
 
     def begin(self, live: Live, index: int) -> None:
         """Start the run of a page.  Raises SceneError or OwnMethodError."""
@@ -77,6 +78,8 @@ class Lesson:
         self.stage = "watching"
         if live.stepping != self._stepping:
             live.change(self._stepping)
+        if page.shot.under is not None and page.shot.moment is not None:
+            live.lay_under(page.shot.under, page.shot.moment)
         live.set_speed(page.speed)
         live.pause(False)
 

@@ -211,12 +211,25 @@ class Live(Source):
     def restart(self) -> None:
         """Begin again with the current step; a run with another step is laid under it."""
         before = self.history
-        number = self._run.run
         self.start(before.scene.altered(h=self.stepping.smallest))
         if self.scene != before.scene:
-            from pendu_tui.tui.playback.ghost import Ghost  # imports NumPy
+            self._lay_under(before)
 
-            self.ghost = Ghost(f"run {number}", before)
+    def lay_under(self, h: float, seconds: float) -> None:
+        """Lay a run with another step size [s] under this one, from the start to `seconds`."""
+        scene = self.scene.altered(h=h)
+        run = RewindableRun(scene, 0, compiled_in_background)
+        history = History(scene, run.changes)
+        history.add(run.sample())
+        for _ in range(round(seconds / h)):
+            run.forward(1)
+            history.add(run.sample())
+        self._lay_under(history)
+
+    def _lay_under(self, history: History) -> None:
+        from pendu_tui.tui.playback.ghost import Ghost  # imports NumPy
+
+        self.ghost = Ghost(history)
 
     @property
     def run_state(self) -> RunState:

@@ -51,7 +51,6 @@ from pendu_tui.tui.views.view import (
     Zoomed,
 )
 from pendu_tui.tui.words.events import event_lines, numbered
-from pendu_tui.tui.words.insight import return_text
 from pendu_tui.tui.words.numbers import seconds
 from pendu_tui.tui.words.plain_text import description
 
@@ -277,7 +276,7 @@ class LabScreen(SizedScreen[None]):
         is_new = returned is not None and before.step < returned.step == live.sample.step
         if returned and is_new and not live.playhead.paused and not live.is_marked:
             live.pause(True)
-            live.mark(return_text(live.scene, returned))
+            live.mark("Back at the start")
             self.show_now()
 
     def show_now(self) -> None:

@@ -334,8 +334,3 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Ins
                 text = "failed"
             misses.append(f"{method.letter} {text}")
     return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
-
-
-def return_text(scene: Scene, sample: Sample) -> str:
-    """Write the sentence for reversed time that is back at 0."""
-    return sentence(_returned(scene, sample))

@@ -40,7 +40,7 @@ def description(source: Source, only: Cast | None = None) -> list[str]:
     if source.failure:
         lines.append(f"It stands still: {source.failure}")
     if source.ghost:
-        lines.append(f"Under it, {source.ghost.label(60)}.")
+        lines.append(f"Under it, {source.ghost.label}.")
     for index, method in enumerate(scene.cast):
         if only is None or method in only:
             lines.append(method_sentence(source, index))

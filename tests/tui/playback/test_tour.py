@@ -23,7 +23,7 @@ from tests.tui.harness import FPS, Clocked
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
 DRIFT = SCENES["drift"]
-PAGES = tour().pages
+*PAGES, LAST = tour().pages
 GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = PAGES
 
 
@@ -116,12 +116,30 @@ def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s
     assert Walked(GAINS).source.milestones[0].t == pytest.approx(7.15)
 
 
+def test_half_the_step_is_seen_beside_the_run_with_the_whole_one():
+    live = Walked(SMALLER).source
+    assert live.ghost.scene.h == DRIFT.h
+    assert live.ghost.rods(17.6).keys() == {method.key for method in DRIFT.cast}
+
+
+def test_it_ends_with_a_fresh_run_to_play_with_that_is_not_called_astray():
+    lesson = Lesson("Tour", [LAST])
+    live = Live(SCENES["spin"], clock=lambda: 0.0)
+    lesson.begin(live, 0)
+    assert (live.scene.numbers, live.ghost) == (DRIFT.numbers, None)
+    live.start(DRIFT.altered(theta=2.0))
+    assert lesson.text == (LAST.watch,)
+    assert not lesson.is_astray(live)
+    assert "throw" in LAST.watch
+
+
 def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
     def ratio(h: float, seconds: float) -> float:
         readings = after(replace(CROSSING, h=h), seconds)
         return readings[RK].max_energy_error / readings[VERLET].max_energy_error
 
-    assert Walked(CROSSING).source.sample.t == pytest.approx(33, abs=1)
+    passed = [each.t for each in Walked(CROSSING).source.milestones if each.other]
+    assert passed == [pytest.approx(33, abs=1)]
     assert ratio(CROSSING.h, 5) < 1 / 5
     assert all(ratio(CROSSING.h, seconds) > 1.4 for seconds in (50, 100, 200))
     assert ratio(0.05, 31 * 60) < 1 < ratio(0.05, 34 * 60)

@@ -17,7 +17,7 @@ OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 @pytest.fixture(scope="module")
 def found() -> Ghost:
     """The ghost of a run of 15 s."""
-    return Ghost("run 1", after(OTHER_H, 15.0).history)
+    return Ghost(after(OTHER_H, 15.0).history)
 
 
 def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(found):
@@ -48,7 +48,7 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         chart = theatre.stage.query(TimeChart).first()
         assert chart.plot is not None
         assert colour in inks(chart.plot.picture)
-        assert "dim: run 1, h 0.05" in str(chart.border_subtitle)
+        assert "dim: before, h 0.05" in str(chart.border_subtitle)
 
 
 def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_one_drops_it():
@@ -58,7 +58,7 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live.restart()
     left = live.run_state
     assert live.scene.h == 0.1
-    assert live.ghost.label(40) == "dim: run 1, h 0.05, 0.1 s"
+    assert live.ghost.label == "dim: before, h 0.05, 0.1 s"
     assert live.ghost.window(3.0).high["energy_error"].max() == pytest.approx(
         old.cut(0, 3.0).high["energy_error"].max()
     )

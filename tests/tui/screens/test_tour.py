@@ -40,6 +40,8 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert (region.width, region.bottom) == (60, 15)  # the key line is below
             assert not theatre.stage.query_one(InsightLine).is_on_screen
             await theatre.press("enter")
+            if shot is STEPS[-1]:
+                break
             assert words(shot.shot.question) in panel(theatre)
             assert words(f"1: {shot.shot.answers[0]} 2: {shot.shot.answers[1]}") in panel(theatre)
             await theatre.press(str(1 + number % 2))

@@ -121,7 +121,7 @@ class TimeChart(Pane):
         if look.quantity == "shadow_error" and (known := modified_energy_of(self.cast)):
             return known
         if source.ghost is not None:
-            return source.ghost.label(room)
+            return source.ghost.label
         if not source.knows_past:
             return "reading what came before …"
         return "e: quantity, w: window, z: zoom, y: axes"
