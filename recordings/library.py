@@ -14,9 +14,8 @@ from typing import IO, Any, BinaryIO, NamedTuple
 
 import platformdirs
 
-from pendu_tui.recordings.errors import DiskError, RecordingError
-from pendu_tui.recordings.files import is_stream
-from pendu_tui.recordings.system import lock
+from pendu_tui.recordings.errors import DiskError, NameTakenError, RecordingError, writing
+from pendu_tui.recordings.system import lock, rename
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording
@@ -47,6 +46,39 @@ def free_path(path: Path) -> Path:
         number += 1
         candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
     return candidate
+
+
+def check_target(path: Path, force: bool = False) -> None:
+    """Raise DiskError if the name is taken, its folder is missing, or it is "-"."""
+    if str(path) == "-":
+        raise DiskError("is no name for a file; choose another", path)
+    why = "already exists; choose another name"
+    if path.is_dir():
+        raise NameTakenError(why, path)
+    if not force and os.path.lexists(path):
+        raise NameTakenError(f"{why}, or --force to overwrite it", path)
+    if not path.parent.is_dir():
+        raise DiskError(f"no folder {path.parent}; choose a folder that exists", path)
+
+
+def is_stream(path: Path) -> bool:
+    """Return whether this is a device, a pipe or a socket, which no file may replace."""
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+def publish(part: Path, path: Path, force: bool = False) -> None:
+    """Give a finished and closed file its name, if that is free or may be replaced.
+
+    Raises NameTakenError if another file took the name meanwhile.
+    """
+    with writing(path):
+        if force:
+            part.replace(path)
+            return
+        try:
+            rename(part, path)
+        except FileExistsError as error:
+            raise NameTakenError("a file of this name appeared meanwhile", path) from error
 
 
 def folder() -> Path:

@@ -19,7 +19,6 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
 from pendu_tui.recordings.events import MAX_EVENTS, Event
-from pendu_tui.recordings.files import check_target, is_stream, publish
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENT_SCHEMA,
@@ -31,7 +30,15 @@ from pendu_tui.recordings.format import (
     topics_of,
     without_extremes,
 )
-from pendu_tui.recordings.library import PROFILE, free_path, hold, part_of
+from pendu_tui.recordings.library import (
+    PROFILE,
+    check_target,
+    free_path,
+    hold,
+    is_stream,
+    part_of,
+    publish,
+)
 
 FLUSH_EVERY = 0.5  # s; with a frame and the flush, a kill loses less than a second
 MAX_WAIT = 2.0  # s, for another thread's flush

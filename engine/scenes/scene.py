@@ -9,6 +9,7 @@ from typing import Any
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.models.model import ExactMotion, Model
+from pendu_tui.engine.quantities import ENERGY_ERROR
 
 MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
@@ -54,7 +55,7 @@ class Shot:
 
     view: str = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
-    quantity: str = "energy_error"  # of the chart
+    quantity: str = ENERGY_ERROR.name  # of the chart
     log: bool = True
     seconds: float | None = None  # of the chart; None: all
     line: Line | None = None

@@ -19,15 +19,34 @@ from pendu_tui.tui.cli.errors import Exit, UserError
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """Yield a temporary path to write to, which is renamed to `path` at the end.
+    """Yield a temporary path beside `path`, whose name it gets at the end.
 
     If the block raises, or at Ctrl+C, SIGTERM or SIGHUP, nothing is left of it and an older file
-    stays as it was.  Raises DiskError before the block if the name is taken.
+    stays as it was.  Devices and pipes are written to directly.  Raises DiskError before the block
+    if the name is taken.
     """
-    from pendu_tui.recordings import files
+    from tempfile import mkstemp  # loads random and hashlib, which --help needs not
 
-    with interruptible(), files.whole_file(path, force) as part:
-        yield part
+    from pendu_tui.recordings.errors import writing
+    from pendu_tui.recordings.library import check_target, is_stream, publish
+
+    if is_stream(path):
+        yield path
+        return
+    check_target(path, force)
+    with writing(path):
+        handle, name = mkstemp(".part", f".{path.name[:100]}.", path.parent)
+        os.close(handle)
+    part = Path(name)
+    with interruptible():
+        try:
+            umask = os.umask(0)
+            os.umask(umask)
+            part.chmod(0o666 & ~umask)  # mkstemp makes files private
+            yield part
+            publish(part, path, force)
+        finally:
+            part.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -42,7 +61,7 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 
 def check_free(path: Path, force: bool) -> None:
     """Raise DiskError if this name is taken and must not, or cannot, be overwritten."""
-    from pendu_tui.recordings.files import check_target, is_stream
+    from pendu_tui.recordings.library import check_target, is_stream
 
     if not is_stream(path):
         check_target(path, force)

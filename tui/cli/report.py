@@ -20,7 +20,7 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
-from pendu_tui.recordings.files import is_stream
+from pendu_tui.recordings.library import is_stream
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import add_file
 
