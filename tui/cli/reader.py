@@ -114,24 +114,6 @@ def number(text: str) -> float | None:
     return None
 
 
-class _Prints:
-    """Values that are printed with their names."""
-
-    def __init__(self, wanted: Wanted, line: int = 0) -> None:
-        self.sheet = Sheet(wanted, line, is_printed=True)
-        self._places: dict[str, int] = {}
-
-    def add(self, line: int, name: str, value: float | None, unit: str = "") -> None:
-        if value is None:
-            return
-        if name not in self._places:
-            if len(self._places) == MAX_NAMES:
-                return
-            bare = "" if name.isdecimal() else name
-            self._places[name] = self.sheet.add_column(bare, unit or split_unit(name)[1])
-        self.sheet.put(self._places[name], line, value)
-
-
 class _Text:
     """Tables in lines of text."""
 
@@ -149,7 +131,7 @@ class _Text:
         self._delimiter: str | None = None
         self._opening = ""  # the word with which each row begins
         self._width = 0  # fields in a row
-        self._prints = [_Prints(wanted)]  # one for each run
+        self._prints = [Sheet(wanted, is_printed=True)]  # of each run
         self._over: list[str] = []  # names above a line of numbers
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
@@ -161,11 +143,11 @@ class _Text:
         while block := list(islice(lines, BLOCK)):
             for is_alike, group in groupby(block, self._is_like_a_row):
                 self._read(list(group), is_alike)
-            check_size(*self._sheets[-1:], self._prints[-1].sheet)
-            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0].sheet:
+            check_size(*self._sheets[-1:], self._prints[-1])
+            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0]:
                 raise unreadable(f"{self._line:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
-        for sheet in (prints.sheet for prints in self._prints):
+        for sheet in self._prints:
             sheet.choose()
             if sheet.choice and sheet.choice.energy and not (named and sheet.choice.doubt):
                 named.append(sheet)
@@ -177,22 +159,45 @@ class _Text:
         return is_wide and is_text and '"' not in line
 
     def _read(self, lines: list[str], are_alike: bool) -> None:
-        """Read rows like the last one at once, other lines one by one."""
-        for at, line in enumerate(lines):
+        """Read rows like the last one at once, other lines by their shapes."""
+        for at, line in enumerate(lines if are_alike else ()):
             sheet = self._sheet
-            is_plain = are_alike and not (
-                self._heads or self._over or self._is_over or self._begins
-            )
-            if is_plain and sheet and len(sheet) >= SAMPLE:
+            is_row = not (self._heads or self._over or self._is_over or self._begins)
+            if is_row and sheet and len(sheet) >= SAMPLE:
                 if sheet.choice is None:
                     sheet.choose()
                 block = self._block(sheet, lines[at:])
                 if block is not None:
-                    sheet.extend(self._line + 1, block)
+                    sheet.extend(self._line + 1, block, sheet.kept)
                     self._line += len(block)
                     return
-            self._line += 1
             self._take(line)
+        for shape, group in groupby(() if are_alike else lines, _shape):
+            some = list(group)
+            for at, line in enumerate(some):
+                holds = self._shapes.get(shape)
+                is_known = holds is not None and not self._over and not self._is_over
+                if is_known and self._extend(holds or [], some[at:]):
+                    break
+                found = self._take(line)
+                if found is not None and len(self._shapes) < MAX_SHAPES:
+                    self._shapes[shape] = found
+
+    def _extend(self, holds: list[tuple[str, int]], lines: list[str]) -> bool:
+        """Read lines of a shape that is known.  Return whether all hold the same."""
+        if holds:
+            numbers = _NUMBER.findall("".join(lines))
+            if len(numbers) != holds[0][1] * len(lines):
+                return False
+            try:
+                block = np.array(numbers, dtype=float).reshape(len(lines), -1)
+            except ValueError:  # Fortran's D
+                return False
+            places = [self._prints[-1].place(name, self._unit(name)) for name, _ in holds[1:]]
+            block = block[:, [at for _, at in holds[1:]]]
+            self._prints[-1].extend(self._line + 1, block, places)
+        self._line += len(lines)
+        return True
 
     def _block(self, sheet: Sheet, lines: list[str]) -> Any:
         """Return the kept columns of rows, (n, len(kept)), None if one has no number there."""
@@ -213,36 +218,20 @@ class _Text:
                 )
         return None
 
-    def _take(self, line: str) -> None:
-        """Read one line: what a layout finds in it, or else words or a row."""
-        if self._over:
-            names = self._over
-            self._over = []
-            values = [number(field) for field in line.split()]
-            if len(values) == len(names) and None not in values:
-                for name, value in zip(names, values, strict=True):
-                    self._print(name, value)
-                return
-        shape = line.translate(_NO_NUMBERS)
-        prints = self._shapes.get(shape)
-        if prints is None:
-            prints = self._by_layout(line)
-            if prints is not None and len(self._shapes) < MAX_SHAPES:
-                self._shapes[shape] = prints
-            return
-        numbers = _NUMBER.findall(line)
-        if prints and len(numbers) == prints[0][1] and not self._is_over:
-            for name, at in prints[1:]:
-                self._print(name, float(_FORTRAN_POWER.sub("e", numbers[at])))
-        elif prints:
-            self._by_layout(line)
-
-    def _by_layout(self, line: str) -> list[tuple[str, int]] | None:
-        """Read a line by the layouts.
+    def _take(self, line: str) -> list[tuple[str, int]] | None:
+        """Read one line: what a layout finds in it, or else words or a row.
 
         Return what lines of this shape hold, if it is nothing, or numbers with their names: the
         names with the places of their numbers, behind the count of all numbers in the line.
         """
+        self._line += 1
+        names = self._over
+        self._over = []
+        values = [number(field) for field in line.split()] if names else []
+        if names and len(values) == len(names) and None not in values:
+            for name, value in zip(names, values, strict=True):
+                self._print(name, value)
+            return None
         begins: dict[str, int] = {}  # of the numbers
         is_data = False
         for layout in LAYOUTS:
@@ -274,7 +263,7 @@ class _Text:
                 self._begins = True
                 self._is_over = False
                 self._passed += max(self._width - 1, 0)
-                self._prints.append(_Prints(self._wanted, self._line))
+                self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
             case {"end": _}:
                 self._is_over = True
             case {"again": _}:
@@ -303,7 +292,9 @@ class _Text:
         return True
 
     def _print(self, name: str, value: float | None, unit: str = "") -> None:
-        self._prints[-1].add(self._line, name, value, unit or self._unit(name))
+        sheet = self._prints[-1]
+        if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
+            sheet.put(sheet.place(name, unit or self._unit(name)), self._line, value)
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or by what the layout says of times, energies."""
@@ -446,6 +437,11 @@ class _Text:
         return units
 
 
+def _shape(line: str) -> str:
+    """Return a line without its numbers; lines that are alike have the same."""
+    return line.translate(_NO_NUMBERS)
+
+
 def check_size(*sheets: Sheet) -> None:
     """Raise UserError if there are too many rows; the input may be endless."""
     if any(len(sheet) > MAX_ROWS for sheet in sheets):
@@ -503,13 +499,15 @@ def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
             return _Text(wanted, file).read(iter(whole.splitlines(keepends=True)))
     if isinstance(items, list):
         items = _records(items[0])
-    prints = _Prints(wanted)
+    sheet = Sheet(wanted, is_printed=True)
     for line, item in enumerate(items):
-        for name, value in _flat(item):
-            prints.add(line, name, number(str(value)))
+        for name, text in _flat(item):
+            value = number(str(text))
+            if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
+                sheet.put(sheet.place(name, split_unit(name)[1]), line, value)
         if line % BLOCK == 0:
-            check_size(prints.sheet)
-    return [prints.sheet]
+            check_size(sheet)
+    return [sheet]
 
 
 def _parsed(text: str) -> Any:
@@ -584,5 +582,5 @@ def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> Sheet:
     long = [(name, column) for name, column in columns if len(column) == rows[0][0]]
     for name, _ in long:
         sheet.add_column(name, split_unit(name)[1])
-    sheet.extend(0, np.stack([column for _, column in long], axis=1))
+    sheet.extend(0, np.stack([column for _, column in long], axis=1), sheet.kept)
     return sheet

@@ -45,6 +45,7 @@ class Sheet:
         self.kept: Sequence[int] = ()  # the columns that are still read
         self.choice: Choice | None = None
         self.skipped = 0  # rows without numbers
+        self.places: dict[str, int] = {}  # of columns by name
         self._lines: list[array[int]] = []
         self._values: list[array[float]] = []
         self._wanted = wanted
@@ -59,6 +60,13 @@ class Sheet:
         self.kept = range(len(self.names))
         return len(self.names) - 1
 
+    def place(self, name: str, unit: str = "") -> int:
+        """Return the place of a named column, which is added if it is not there yet."""
+        if name not in self.places:
+            bare = "" if name.isdecimal() else name  # a place in a list
+            self.places[name] = self.add_column(bare, unit)
+        return self.places[name]
+
     def put(self, place: int, line: int, value: float) -> None:
         self._lines[place].append(line)
         self._values[place].append(value)
@@ -69,12 +77,12 @@ class Sheet:
             if value is not None:
                 self.put(place, line, value)
 
-    def extend(self, line: int, block: Any) -> None:
-        """Add rows of the kept columns, (n, len(kept))."""
+    def extend(self, line: int, block: Any, places: Sequence[int]) -> None:
+        """Add rows of some columns, (n, len(places))."""
         lines = np.arange(line, line + len(block)).tobytes()
-        for place, values in zip(self.kept, block.T, strict=True):
+        for place, values in zip(places, block.T, strict=True):
             self._lines[place].frombytes(lines)
-            self._values[place].frombytes(values.astype(float).tobytes())
+            self._values[place].frombytes(values.tobytes())
 
     def __len__(self) -> int:
         """Return the length of the longest column."""
