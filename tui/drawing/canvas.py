@@ -234,28 +234,47 @@ class Canvas:
         look like the steps of one line.
         """
         columns = self.columns
-        kept: dict[int, list[bool]] = {}  # by ink: the columns in which it has a cell
+        layers = {ink: self._layers[ink] for ink in rank}
+        kept: dict[int, bytearray] = {}  # by ink: the columns in which it has a cell
         poor = set()  # inks with a cell in less than half of their columns
-        for ink in rank:
-            own = colours.translate(bytes([each + NOBODY == ink for each in range(256)]))
-            layer = self._layers[ink]
-            kept[ink] = [any(own[column::columns]) for column in range(columns)]
-            if 2 * sum(kept[ink]) < sum(any(layer[column::columns]) for column in range(columns)):
+        for ink, layer in layers.items():
+            kept[ink] = self._columns_of(colours.translate(_only(ink)))
+            missing = self._columns_of(layer).count(0)
+            if 2 * (columns - kept[ink].count(0)) < columns - missing:
                 poor.add(ink)
-        for cell in [place for place, full in enumerate(shared) if full]:
+        for cell in [found.start() for found in _FULL_CELLS.finditer(shared)]:
             row, column = divmod(cell, columns)
-            inks = [ink for ink in rank if self._layers[ink][cell]]
+            inks = [ink for ink, layer in layers.items() if layer[cell]]
             unseen = [ink for ink in inks if not kept[ink][column]]
-            turns = poor.intersection(unseen) or unseen or inks
-            ink = sorted(turns)[(column + 3 * row // 5) % len(turns)]
+            turns = unseen or inks
+            if poor and (poorest := poor.intersection(unseen)):
+                turns = sorted(poorest)
+            ink = turns[(column + 3 * row // 5) % len(turns)]
             kept[ink][column] = True
-            dots[cell] = self._layers[ink][cell]
+            own_dots = layers[ink][cell]
             colours[cell] = ink - NOBODY
-            if any(self._layers[other][cell] != dots[cell] for other in inks):
-                dots[cell] = _FLAT.get(dots[cell], dots[cell])
+            if own_dots in _FLAT and len({layers[other][cell] for other in inks}) > 1:
+                own_dots = _FLAT[own_dots]
+            dots[cell] = own_dots
+
+    def _columns_of(self, cells: bytes | bytearray) -> bytearray:
+        """Return a byte for each column, 0 where all its cells are."""
+        number = _number(cells)
+        rows = 1
+        while rows < self.rows:  # the first row takes in twice as many below it
+            number |= number >> (8 * self.columns * rows)
+            rows *= 2
+        return bytearray((number & (1 << 8 * self.columns) - 1).to_bytes(self.columns, "little"))
 
 
 _FULL = bytes([0, *[255] * 255])
+_FULL_CELLS = re.compile(rb"[^\0]")
+
+
+@lru_cache(maxsize=256)
+def _only(ink: int) -> bytes:
+    """Return a table that translates colours above NOBODY to 1 where they are this ink."""
+    return bytes([colour + NOBODY == ink for colour in range(256)])
 
 
 @lru_cache(maxsize=256)

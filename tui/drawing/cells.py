@@ -47,11 +47,12 @@ class CellWidget(Widget):
         self.draw()
 
     def show(self, picture: Picture) -> None:
-        changed = picture.changed_rows(self._picture)
+        changes = picture.changes(self._picture, self.room.width)
+        changed = [Region(x, y, columns, 1) for y, x, columns in changes]
         self._picture = picture
-        self._changed.update(changed)
+        self._changed.update(region.y for region in changed)
         if changed:
-            self.refresh(*(Region(0, y, self.room.width, 1) for y in changed))
+            self.refresh(*changed)
 
     @property
     def text(self) -> str:

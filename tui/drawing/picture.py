@@ -1,7 +1,7 @@
 """Picture: rows of characters with inks, ready for a screen."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Self
@@ -26,9 +26,15 @@ class Picture:
         """The characters without colours, a line per row, without trailing blanks."""
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self.rows)
 
-    def changed_rows(self, before: "Picture") -> list[int]:
-        pairs = zip_longest(before.rows, self.rows)
-        return [y for y, (old, new) in enumerate(pairs) if old != new]
+    def changes(self, before: "Picture", width: int) -> Iterator[tuple[int, int, int]]:
+        """Yield row, first column and number of columns of what differs in rows of this width."""
+        for y, (old, new) in enumerate(zip_longest(before.rows, self.rows, fillvalue=())):
+            if old != new:
+                begin = _equal(old, new)
+                end = width
+                if _length(old) == _length(new) == width:  # no character is two columns wide
+                    end = max(width - _equal(old[::-1], new[::-1]), begin + 1)
+                yield y, begin, end - begin
 
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
@@ -37,3 +43,17 @@ class Picture:
         above = (rows - len(lines)) // 2
         page = [""] * above + lines + [""] * (rows - above - len(lines))
         return cls(tuple(((line.center(columns), ink),) for line in page))
+
+
+def _length(row: Row) -> int:
+    return sum([len(text) for text, _ in row])
+
+
+def _equal(old: Row, new: Row) -> int:
+    """Return the length of the pieces that both rows begin with."""
+    length = 0
+    for one, other in zip(old, new, strict=False):
+        if one != other:
+            break
+        length += len(one[0])
+    return length
