@@ -47,6 +47,11 @@ def judge(text: str | bytes, *more: object, time="t", energy="E") -> Outcome:
     return pendu("judge", "energies.csv", "--time", time, "--energy", energy, *more)
 
 
+def guess(text: str, *more: object) -> Outcome:
+    Path("energies.csv").write_text(text)
+    return pendu("judge", "energies.csv", *more)
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -58,30 +63,6 @@ FIRST = [(t, e - 9) for t, e in ROWS[:200]]
 LOG = "LAMMPS (2 Aug 2023)\nthermo_style custom step temp etotal\n   Step   Temp   TotEng\n"
 LOG += lines("  {t:.1f} 300. {e!r}", FIRST) + "Loop time of 1 on 1 procs\n\n"
 LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "names"),
-    [
-        (table(), ("t", "E")),
-        (table(), ("T", "2")),
-        ("\ufeff" + table(), ("t", "E")),
-        (table("{t}\t{e}", '"t"\t"E"'), ("t", "E")),
-        (table("{t};{e}", "t;E").replace(".", ","), ("t", "E")),
-        (table("{t} ; {e}", "t [s] ; E (kJ/mol)"), ("t", "e")),
-        (table(head='"time, s","energy, J"'), ("time, s", "energy, J")),
-        (table(head="t,E\ns,J"), ("t", "E")),
-        (table("{t}   {e}", "  t    E"), ("t", "E")),
-        (table("{t} {e}", "# t, E"), ("t", "E")),
-        (table().replace("\n", "\n\n# remark\n"), ("t", "E")),
-        (XVG, ("1", "Total Energy")),
-        (XVG, ("Time", "total energy")),
-    ],
-)
-def test_a_table_is_read_whatever_its_form(text, names):
-    found = read(text, *names)
-    assert list(zip(found.times, found.energies, strict=True)) == ROWS
-    assert not any(found.skipped.values())
 
 
 CP2K = "#   Step Nr.   Time[fs]   Kin.[a.u.]   Pot.[a.u.]   Cons Qty[a.u.]   UsedTime[s]\n"
@@ -131,6 +112,52 @@ def test_one_table_is_judged_and_named():
     answer = judge(LOG, "--json", "--table", 1, **names).json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
+
+
+def test_a_file_alone_is_listed_guessed_and_judged():
+    outcome = guess(LOG)
+    assert outcome.code == 0
+    for words in ("table 1 ", "Step, TotEng, Temp", "time Step, energy TotEng", "--energy"):
+        assert words in outcome.out
+    answer = guess(LOG, "--json").json
+    assert (answer["time"], answer["energy"], answer["is_guess"]) == ("Step", "TotEng", True)
+    assert [each["rows"] for each in answer["seen"]] == [200, 300]
+    assert answer["seen"][1]["columns"][2] == {"name": "Temp", "unit": ""}
+
+
+def test_what_is_not_certain_is_listed_and_asked_for():
+    text = table("{t},{e},{e}", "t,E1,E2")
+    outcome = guess(text)
+    assert outcome.code == 2
+    assert "E1, E2" in outcome.out
+    assert outcome.err.startswith("pendu-tui: energies.csv: ")
+    assert "--energy" in outcome.err
+    assert guess(text, "--json").json["seen"][0]["energy"] == "row"
+    assert guess(text, "--energy", "E2").code == 0
+
+
+def test_only_rows_in_the_range_of_time_are_judged():
+    answer = judge(table(), "--json", "--from", 5, "--to", 20).json
+    assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
+    assert judge(table(), "--from", 5, "--to", 4).refused(2, "no time from 5 to 4")
+    assert judge(table(), "--to", "nan").refused(2, "nan")
+
+
+def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
+    text = "Step E\n" + lines("{n} {e}", [(t, e + t) for t, e in ROWS])
+    asked = ("--step", "2fs", "--units", "energy=eV", "--atoms", 10, "--temperature", 300)
+    answer = guess(text, "--json", *asked).json
+    assert (answer["time_unit"], answer["energy_unit"]) == ("fs", "eV")
+    assert answer["energy_per_ns_per_atom"] == pytest.approx(5000, rel=0.01)
+    assert guess(text, "--atoms", 10).refused(2, "--step 0.5fs")
+    for option in (("--step", "0"), ("--step", "fs"), ("--units", "ps"), ("--units", "mass=u")):
+        assert guess(text, *option).refused(2, option[0])
+
+
+def test_relative_errors_are_taken_as_they_are():
+    text = "t,dE/E\n" + lines("{t},{e}", [(t, 1e-6 * t) for t, _ in ROWS])
+    assert guess(text, "--json").json["max_energy_error"] == pytest.approx(29.9e-6)
+    assert guess(text.replace("dE/E", "E")).refused(2, "the first energy is 0")
 
 
 def test_only_energies_around_zero_are_advised_to_use_their_spread():
@@ -328,6 +355,7 @@ def test_any_input_is_columns_or_one_sentence(data):
         sentence = ""
         columns: object = ((), ())
         try:
+            read(text)
             found = read(text, *names)
             columns = (found.times, found.energies)
         except UserError as error:

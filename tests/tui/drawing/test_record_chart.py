@@ -1,0 +1,47 @@
+"""The chart of a record: its energy, its trend and its band, in any size."""
+
+import numpy as np
+import pytest
+
+from pendu_tui.tui.drawing.record_chart import ENERGY, TREND, record_chart
+
+TIMES = np.linspace(0, 50, 4000)
+ERRORS = 1e-3 * np.sin(7 * TIMES) + 1e-4 * TIMES
+
+
+def chart(size=(80, 16), errors=ERRORS, slope=1e-4, deviation=7e-4):
+    return record_chart(
+        TIMES, errors, size, slope=slope, deviation=deviation, title="energy error", unit="ps"
+    )
+
+
+def rows_of(picture, ink):
+    """Return the rows with dots of this ink, from the top."""
+    return [row for row, pieces in enumerate(picture.rows) if ink in [each for _, each in pieces]]
+
+
+def test_energy_trend_and_axes_fill_the_size_given():
+    picture = chart()
+    assert len(picture.rows) == 16
+    assert max(map(len, picture.text.splitlines())) <= 80
+    assert "energy error" in picture.text
+    assert " ps" in picture.text
+    assert len(rows_of(picture, ENERGY)) >= 6
+    assert len(rows_of(picture, TREND)) > 3
+
+
+def test_a_level_trend_is_one_row_and_none_is_not_drawn():
+    flat = 1e-3 * np.sin(7 * TIMES)
+    assert len(rows_of(chart(errors=flat, slope=0.0), TREND)) == 1
+    assert rows_of(chart(slope=None, deviation=None), TREND) == []
+
+
+def test_a_column_spans_the_lowest_to_the_highest_error_in_it():
+    spike = ERRORS.copy()
+    spike[2001] = 0.05
+    assert rows_of(chart(errors=spike), ENERGY)[0] <= 2
+
+
+@pytest.mark.parametrize("size", [(20, 7), (21, 40), (200, 10), (10, 3)])
+def test_any_size_has_a_chart_or_a_sentence(size):
+    assert len(chart(size=size).rows) == size[1]
