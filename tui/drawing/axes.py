@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from itertools import count
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,8 +38,12 @@ def nice(value: float) -> float:
     return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
 
 
-_DECADES = [*sorted({n / d for n in range(1, 5) for d in range(1, 17)}), 6, 12, 50, 200, 500]
+_DECADES = sorted(
+    {Fraction(n, d) for n in range(1, 5) for d in range(1, 17)} | {*map(Fraction, (6, 12, 50, 500))}
+)
 """How many decades a row of characters may span."""
+_STEPS = [(float(each), each.numerator * (1 + (each.denominator == 1))) for each in _DECADES]
+"""These, and the decades from a label to the next: a whole number, two rows or more apart."""
 FEW_ROWS = 9
 
 
@@ -50,19 +54,14 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
     """
     need = 3 if rows >= FEW_ROWS else 2
     axes: list[Axis] = []
-    for size in _DECADES:
+    for size, step in _STEPS:
         top = round(high / size)
         spare = rows - 1 - top + round(low / size)
-        step = next(step for step in count(1) if step / size >= 2 and _is_whole(step / size))
         axes += [_centred(top + above, size, step, rows) for above in range(spare + 1)]
         if axes and len(axes[-1].labels) >= need:
             break
     axis = next((axis for axis in axes if len(axis.labels) >= need), axes[-1])
     return replace(axis, labels={each: _power(each) for each in axis.labels})
-
-
-def _is_whole(value: float) -> bool:
-    return abs(value - round(value)) < 1e-9
 
 
 def _centred(top: int, row: float, step: float, rows: int) -> Axis:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from statistics import mean
 from typing import NamedTuple
 
 import numpy as np
@@ -99,9 +98,10 @@ class Frame:
         last = end.column - self.left - len(text)
         for begin in range(last - 1, 2 * self.columns // 3 - len(text), -1):
             beside = end.rows[:, max(begin, 0) : begin + len(text)]
-            if not np.isnan(beside).all():
-                over = range(int(np.nanmin(beside)) - 1, above, -1)[:2]
-                under = range(int(np.nanmax(beside)) + 1, below)[:2]
+            top = np.fmin.reduce(beside[0], initial=np.inf)
+            if top < np.inf:
+                over = range(int(top) - 1, above, -1)[:2]
+                under = range(int(np.fmax.reduce(beside[1])) + 1, below)[:2]
                 rows = [*under, *over] if len(under) > len(over) else [*over, *under]
                 row: int
                 for row in rows:
@@ -123,12 +123,16 @@ def spread(wanted: Sequence[float], room: int) -> list[int]:
     groups: list[list[float]] = []  # neighbours that touch: where each wants the first one
     for number, row in enumerate(wanted):
         groups.append([row - number])
-        while len(groups) > 1 and round(mean(groups[-2])) > round(mean(groups[-1])):
+        while len(groups) > 1 and _mean(groups[-2]) > _mean(groups[-1]):
             groups[-2:] = [groups[-2] + groups[-1]]
-    firsts = [round(mean(group)) for group in groups for _ in group]
+    firsts = [_mean(group) for group in groups for _ in group]
     last = max(room - len(wanted), 0)
     rows = [min(max(first, 0), last) + number for number, first in enumerate(firsts)]
     return [min(row, row * room // len(wanted)) for row in rows]
+
+
+def _mean(group: Sequence[float]) -> int:
+    return round(sum(group) / len(group))
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:

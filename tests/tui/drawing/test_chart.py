@@ -146,7 +146,7 @@ def test_plotext_draws_the_lines_of_a_loglog_chart_each_in_its_own_ink(monkeypat
         assert len(mine) > 10
         for place in mine:
             assert dots_of(both[place][0], *place) <= dots_of(alone[place][0], *place)
-    monkeypatch.setattr("pendu_tui.tui.drawing.loglog._plotted", lambda *_: [])
+    monkeypatch.setattr("pendu_tui.tui.drawing.loglog.plotted", lambda *_: [])
     assert not [sign for sign, _ in drawn(*crossing).values() if "⠀" < sign <= "⣿"]
 
 
