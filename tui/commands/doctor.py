@@ -4,14 +4,15 @@ import argparse
 import platform
 import shutil
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from tempfile import TemporaryFile
 
+from pendu_tui.recordings import library
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
+from pendu_tui.tui.terminal.check import check_terminal
 from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
 from pendu_tui.tui.words.numbers import file_size
 
@@ -39,69 +40,43 @@ def run(options: argparse.Namespace) -> int:
 
 def _findings() -> Iterator[tuple[str, str, str]]:
     """Yield what was checked, what was found, and advice, which is empty if that is fine."""
-    from pendu_tui.recordings import library
-
-    yield "lab", *_lab()
-    if sys.stdout.isatty():
-        yield "size", *size(*shutil.get_terminal_size())
-    else:
+    try:
+        check_terminal()
+        yield "lab", "starts here", ""
+    except UserError as error:
+        yield "lab", "cannot start here", str(error)
+    size = shutil.get_terminal_size()
+    if not sys.stdout.isatty():
         yield "size", "unknown: the output is a file or a pipe", ""
+    else:
+        too_small = size.columns < SMALLEST[0] or size.lines < SMALLEST[1]
+        advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
+        yield "size", f"{size.columns}x{size.lines}", advice if too_small else ""
     encoding = sys.stdout.encoding
     advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
     yield "encoding", encoding, "" if is_utf8(encoding) else advice
-    yield "colours", *colour(environment())
-    yield "recordings", *folder(library.folder())
+    known = environment()
+    advice = "with true colour, set COLORTERM=truecolor; without any colour, set TERM"
+    is_fine = known.get("NO_COLOR") or colours(known) > 256
+    yield "colours", f"{colours(known)}, TERM={known.get('TERM', '')}", "" if is_fine else advice
+    yield "recordings", *recordings()
     yield "python", f"{platform.python_version()}, {platform.system()} {platform.machine()}", ""
     yield "versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES), ""
     try:
         yield "numba", version("numba"), ""
     except PackageNotFoundError:
-        yield "numba", "not installed", "speeds up long runs: pip install 'pendu-tui[fast]'"
+        yield "numba", "not installed", "it speeds up long runs: install pendu-tui[fast]"
 
 
-def _lab() -> tuple[str, str]:
-    from pendu_tui.tui.terminal.check import check_terminal
-
-    try:
-        check_terminal()
-    except UserError as error:
-        return "cannot start here", str(error)
-    return "starts here", ""
-
-
-def size(columns: int, rows: int) -> tuple[str, str]:
-    advice = ""
-    if columns < SMALLEST[0] or rows < SMALLEST[1]:
-        advice = f"too small: the lab needs {SMALLEST[0]}x{SMALLEST[1]}, better 80x24"
-    elif columns < 120 or rows < 40:
-        advice = "120x40 or larger shows all panes"
-    return f"{columns}x{rows}", advice
-
-
-def colour(environment: Mapping[str, str]) -> tuple[str, str]:
-    count = colours(environment)
-    text = str(count)
-    advice = "if your terminal supports true colour, set COLORTERM=truecolor"
-    if environment.get("NO_COLOR"):
-        text = "NO_COLOR"
-        advice = "off, as requested; methods keep their digits and letters"
-    elif not count:
-        text = "none"
-        advice = "set TERM correctly, e.g. xterm-256color"
-    elif count > 256:
-        text = "16 million"
-        advice = ""
-    return f"TERM={environment.get('TERM', '')}, {text}", advice
-
-
-def folder(path: Path) -> tuple[str, str]:
+def recordings() -> tuple[str, str]:
     """Check the folder, or its nearest parent, by creating a file: permissions may mislead."""
-    nearest = path
+    advice = "set PENDU_RECORDINGS to a writable folder"
+    path = None
     try:
+        path = nearest = library.folder()
         while not (nearest.exists() or nearest.is_symlink()):
             nearest = nearest.parent
         with TemporaryFile(dir=nearest):
             return f"{path}, {file_size(shutil.disk_usage(nearest).free)} free", ""
-    except OSError as error:
-        why = f"cannot be written ({error.strerror})"
-        return str(path), f"{why}: set PENDU_RECORDINGS to a writable folder"
+    except OSError as error:  # also of a PENDU_RECORDINGS that names no folder
+        return str(path or error.filename), f"{error.strerror}: {advice}"
