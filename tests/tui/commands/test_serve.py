@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -213,6 +214,21 @@ async def test_what_a_browser_makes_up_prints_nothing(tmp_path):
         await server.until_labs(0)
         server.process.terminate()
         assert server.process.communicate(timeout=PATIENCE) == ("", "")
+
+
+async def test_a_flood_of_sizes_neither_fills_memory_nor_keeps_the_lab_from_the_last_one(server):
+    async with server.tab() as tab:
+        await tab.shows("LIVE")
+        (lab,) = server.labs
+        for number in range(20_000):
+            size = {"width": 60 + number % 341, "height": 16 + number % 185}
+            await tab.socket.send_json(["resize", size])
+        await tab.socket.send_json(["resize", {"width": 10, "height": 10}])
+        tab.screen.resize(200, 400)
+        await tab.shows("10x10")
+        status = Path(f"/proc/{lab}/status").read_text()
+        largest = int(re.search(r"VmHWM:\s+(\d+) kB", status)[1])
+        assert 10_000 < largest < 200_000
 
 
 async def test_methods_of_ones_own_travel_in_a_folder_that_only_the_user_can_read(tmp_path):
