@@ -52,7 +52,7 @@ _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortra
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
 _NO_NUMBERS = {ord(sign): None for sign in "0123456789.+- "}
 _PARTS = {"names", "row", "name", "value", "unit", "over", "place", "set", "label"} | {
-    *("first", "units", "part", "end", "again")
+    *("first", "units", "part", "end", "again", "columns")
 }
 
 
@@ -109,7 +109,9 @@ def number(text: str) -> float | None:
     match = _WITH_UNIT.fullmatch(text)
     if match and is_unit(match[2]):
         text = match[1]
+    thousands = min(".,", key=text.find) if "." in text and "," in text else ""
     with suppress(ValueError):
+        text = text.replace(thousands, "") if thousands else text
         return float(_FORTRAN_POWER.sub("e", text.replace(",", ".")))
     return None
 
@@ -274,6 +276,8 @@ class _Text:
                 self._print(name, number(value), groups.get("unit", ""))
             case {"names": text}:
                 self._heads = [_ways(text, layout.cells)]
+            case {"columns": text}:
+                self._columns = re.findall(layout.cells, text)
             case {"over": text}:
                 self._over = [name.strip() for name in re.findall(layout.cells, text)]
             case {"row": text}:

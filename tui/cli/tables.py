@@ -18,7 +18,6 @@ from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.units import shown, split_unit
 
 LATEST = 1e300  # of times; squares and differences of later ones overflow
-MAX_ROWS = 20_000_000  # half a minute, 320 MB; the input may be endless
 MAX_SERIES = 1000
 NOT_TIMES = "its time never increases; name the column of times with --time."
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
@@ -129,7 +128,9 @@ class Sheet:
             here &= has_value
         last = np.flatnonzero(here).max(initial=-1)
         inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
-        if len(here) - 1 - last > max(inner, 1):  # the energy ended, it is not only rarer
+        if (
+            len(here) - 1 - last > max(inner, 1) and last >= 0
+        ):  # the energy ended, it is not only rarer
             here[last + 1 :] = True
         columns = {place: column[here] for place, column in columns.items()}
         rows = int(np.count_nonzero(here))
