@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.engine.run.verdicts import VERDICTS
-from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, split
+from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.dispatch import parser_of, split
 from pendu_tui.tui.commands.export import columns_of
 from pendu_tui.tui.screens.dialogs import bindings_of, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
@@ -22,7 +23,7 @@ README = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 LINKS = [
     (page.name, page.parent / target)
     for page in PAGES
-    for target in re.findall(r"\]\((?!http)(.*?)\)", page.read_text(encoding="utf-8"))
+    for target in re.findall(r"\]\((?!http)(.*?)(?:#.*?)?\)", page.read_text(encoding="utf-8"))
 ]
 
 
@@ -46,8 +47,8 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
     if "COMMAND" in words:
         return
     name, words = split(words)
-    parser, _ = command_of(name)
-    assert parser.parse_args(words + ["."] * (name == "verify"))
+    parser = parser_of(name)
+    assert parser.parse_args(["."] * (name == "verify") + words)
 
 
 def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.CompletedProcess:
@@ -181,11 +182,11 @@ def test_the_options_of_the_lab_that_are_named_are_there():
     for words in options:
         option, _, choices = words.partition(" ")
         for choice in choices.split("|"):
-            command_of("live")[0].parse_args([option, choice] if choice else [option])
+            parser_of("live").parse_args([option, choice] if choice else [option])
 
 
 def test_every_command_is_in_the_list():
-    rows = "".join(f"| `{name}` | {does} |\n" for name, does in COMMANDS.items())
+    rows = "".join(f"| `{name}` | {each.about} |\n" for name, each in COMMANDS.items())
     assert f"| command | does |\n|---|---|\n{rows}" in README
 
 

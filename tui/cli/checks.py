@@ -11,13 +11,12 @@ None means that the method never failed.  A field that is a word, such as `verdi
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
 
-import argparse
 import ast
 import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -28,12 +27,23 @@ from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, Progress
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import Suggestions, did_you_mean
+from pendu_tui.tui.cli.options import did_you_mean
 from pendu_tui.tui.cli.report import warn
 
 _OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
 FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)
 """The fields of `run --json` that are numbers."""
+
+JUDGED = (
+    *("max_energy_error", "trend", "absolute_trend", "fluctuation"),
+    *("energy_per_ns_per_atom", "kt_per_ns_per_atom", "samples", "skipped"),
+    *("independent_samples", "fluctuation_order", "drift_order"),
+)
+"""The fields of `judge --json` that its gate compares."""
+
+MEASURED_NUMBERS = ("order", "force_evaluations")
+MEASURED_WORDS = dict.fromkeys(("symplectic", "reversible"), ("yes", "no"))
+"""The fields of `methods --json` that its gate compares."""
 
 Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
 Gate = Callable[[Values], str]  # returns the values that trip it, "" if it passes
@@ -187,11 +197,6 @@ class Check(NamedTuple):
 
     name: str
     failure: str  # the values that trip it, "" if it passes
-
-
-def add_gate_option(parser: argparse.ArgumentParser, names: Iterable[str], meaning: str) -> None:
-    """Add --fail-if, whose comparisons have these names."""
-    parser.add_argument("--fail-if", metavar="EXPR", choices=Suggestions(names), help=meaning)
 
 
 def conclude(expression: str, checks: Sequence[Check], what: str = "runs") -> Exit:

@@ -10,10 +10,11 @@ import threading
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import takewhile
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from pendu_tui.tui.cli.dropped import DROPPED, refuse_dropped
+from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import (
     keep_results_apart,
@@ -24,24 +25,7 @@ from pendu_tui.tui.cli.files import (
 if TYPE_CHECKING:
     from pendu_tui.tui.cli.options import Parser
 
-COMMANDS = {
-    "live": "the lab: methods side by side, their errors, a recording",
-    "tour": "a tour of the lab: eight short steps, each with a question",
-    "replay": "play a recording on the same screen",
-    "snapshot": "save the lab as an SVG image",
-    "serve": "the lab in a browser",
-    "accuracy": "speed against accuracy: which method, which h, at what cost",
-    "stability": "where each method becomes unstable",
-    "run": "run a scene without the screen and judge each method; for CI",
-    "judge": "judge the energies of another program, from a file or stdin; for CI",
-    "verify": "re-simulate recordings and compare every bit",
-    "export": "convert a recording to CSV",
-    "recordings": "list the recordings, show or recover one",
-    "scenes": "list the scenes, with what to watch",
-    "methods": "list the methods with claimed and measured properties",
-    "doctor": "check the environment and suggest fixes",
-}
-"""Commands and what they do."""
+ROOM = "pendu_tui.tui.commands"
 
 USAGE = """\
 usage: pendu-tui [COMMAND | SCENE | FILE] [OPTIONS]
@@ -110,7 +94,7 @@ def _drop_output() -> None:
 def _dispatch(arguments: list[str]) -> int:
     match arguments:
         case ["-h" | "--help", *_] | ["help"]:
-            commands = "\n".join(f"  {name:<12}{about}" for name, about in COMMANDS.items())
+            commands = "\n".join(f"  {name:<12}{each.about}" for name, each in COMMANDS.items())
             print(USAGE.format(commands=commands), end="")
             return Exit.FINE
         case ["--version", *_]:
@@ -125,10 +109,10 @@ def _dispatch(arguments: list[str]) -> int:
             completion_parser().parse_args(arguments)
         name, arguments = split(arguments)
         refuse_dropped(name, arguments)
-        parser, command = command_of(name)
-        options = parser.parse_args(arguments)
+        options = parser_of(name).parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
         return Exit.FINE
+    command: ModuleType = import_module(f"{ROOM}.{name}")
     refuse_to_replace_inputs(options)
     if not getattr(options, "method", None):
         return int(command.run(options))
@@ -158,8 +142,16 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     return first, []
 
 
-def command_of(name: str) -> tuple["Parser", ModuleType]:
-    """Return a command's parser and module.  Raises UserError if there is none."""
+def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
+    """Raise UserError if a command, or one of the words after it, has been dropped."""
+    words = takewhile("--".__ne__, arguments)
+    for name in (command, *(f"{command} {word.partition('=')[0]}" for word in words)):
+        if name in DROPPED:
+            raise UserError(f"{name} has been dropped; use instead: {DROPPED[name]}.")
+
+
+def parser_of(name: str) -> "Parser":
+    """Return a command's parser.  Raises UserError if there is none."""
     from pendu_tui.tui.cli.options import Parser, did_you_mean
 
     if name not in COMMANDS:
@@ -167,16 +159,14 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
 
         hint = did_you_mean(name, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
         raise UserError(f"there is no command, scene or file {name!r}{hint}")
-    command = import_module(f"pendu_tui.tui.commands.{name}")
     parser = Parser(
         prog=f"pendu-tui {name}",
-        description=command.__doc__,
-        epilog=command.EXAMPLES,
+        description=COMMANDS[name].text,
         formatter_class=RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    command.add_options(parser)
-    return parser, command
+    import_module(f"{ROOM}.options").add_options(parser, name)
+    return parser
 
 
 def completion_parser() -> "Parser":
@@ -189,7 +179,7 @@ def completion_parser() -> "Parser":
     shtab.add_argument_to(parser, "--print-completion")
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(parser_class=ArgumentParser)
-    for name, about in COMMANDS.items():
-        subparser = commands.add_parser(name, help=about, description=about)
-        import_module(f"pendu_tui.tui.commands.{name}").add_options(subparser)
+    for name, each in COMMANDS.items():
+        subparser = commands.add_parser(name, help=each.about, description=each.about)
+        import_module(f"{ROOM}.options").add_options(subparser, name)
     return parser

@@ -15,6 +15,7 @@ from pendu_tui.engine.models.numbers import seconds as seconds
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
+MAX_RUNGS = 1000  # of a ladder of step sizes
 
 
 class Parser(argparse.ArgumentParser):
@@ -152,3 +153,45 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown word, "" without a suggestion."""
     near = difflib.get_close_matches(word[:200], known, n=1)  # long words would take seconds
     return f": did you mean {near[0]}?" if near else ""
+
+
+def ladder(text: str) -> tuple[float, float, int]:
+    """Return the ends of a ladder of step sizes [s], the larger first, and its rungs: A:B:N."""
+    match text.split(":"):
+        case [first, last, many] if count(many) <= MAX_RUNGS:
+            low, high = sorted((positive(first), positive(last)))
+            return high, low, count(many)
+    raise ValueError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
+
+
+def moment(text: str) -> float:
+    """Return a time [s] up to an hour."""
+    value = number(text)
+    if not 0 <= value <= 3600:
+        raise ValueError(f"{text!r} is not a valid time; use 0 to 3600 s")
+    return value
+
+
+def record_time(text: str) -> float:
+    """Return a time in a record, which may be infinite."""
+    value = number(text)
+    if math.isnan(value):
+        raise ValueError("nan is not a time")
+    return value
+
+
+def scale(text: str) -> float | str:
+    """Return a number, or the text: first, std or kinetic:COLUMN."""
+    if text in ("first", "std") or text.startswith("kinetic:"):
+        return text
+    try:
+        return positive(text)
+    except ValueError:
+        raise ValueError(
+            f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
+        ) from None
+
+
+def step_sizes(text: str) -> list[float]:
+    """Return a step size for each file."""
+    return [positive(part) for part in text.split(",")]

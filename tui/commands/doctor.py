@@ -11,22 +11,12 @@ from tempfile import TemporaryFile
 from pendu_tui.recordings import library
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
+from pendu_tui.tui.cli.report import Column, Report, publish
 from pendu_tui.tui.terminal.check import check_terminal
 from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
 from pendu_tui.tui.words.numbers import file_size
 
-EXAMPLES = """\
-examples:
-  pendu-tui doctor
-  pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
-"""
-
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:

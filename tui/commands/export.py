@@ -7,27 +7,14 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.files import text_file
-from pendu_tui.tui.cli.options import add_file, add_recording, resolve
-from pendu_tui.tui.cli.report import file_type, progress, warn, write_csv
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.cli.report import progress, warn, write_csv
 from pendu_tui.tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from pendu_tui.recordings.recording import Recording
 
-EXAMPLES = """\
-examples:
-  pendu-tui export latest -o latest.csv
-  pendu-tui export killed.mcap.part -o killed.csv
-"""
-
 Rows = Iterator[tuple[object, ...]]
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser)
-    where = "write to OUT.csv instead of stdout"
-    add_file(parser, "-o", "--output", metavar="OUT.csv", type=file_type([".csv"]), help=where)
-    parser.add_argument("--force", action="store_true", help="overwrite OUT.csv")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -13,13 +13,13 @@ from collections.abc import Mapping, Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
-from pendu_tui.engine.run.verdicts import CHAOTIC, FAILED, LEAVES, VERDICTS, Progress
+from pendu_tui.engine.run.verdicts import FAILED, LEAVES, Progress
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli import units
-from pendu_tui.tui.cli.checks import Check, add_gate_option, conclude, parse
+from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import add_file, count, did_you_mean, number, positive
-from pendu_tui.tui.cli.report import Report, add_report_options, fields_of, form_of, publish
+from pendu_tui.tui.cli.options import did_you_mean
+from pendu_tui.tui.cli.report import Report, fields_of, form_of, publish
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -27,82 +27,11 @@ if TYPE_CHECKING:
 
     from pendu_tui.tui.cli.tables import Series
 
-EXAMPLES = """\
-examples:
-  pendu-tui judge energy.xvg
-  pendu-tui judge md.log.gz --fail-if 'verdict != bounded' --atoms 648 --temperature 300
-  pendu-tui judge log.lammps --energy KinEng+PotEng --step 1fs --units energy=kcal/mol
-  pendu-tui judge a.csv b.csv --steps 1,2 --fail-if 'fluctuation_order < 1.8'
-  ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
-
-verdicts:
-""" + "\n".join(
-    f"  {each.word}: {each.meaning}" for each in VERDICTS.values() if each.word != CHAOTIC
-)
-
-FIELDS = (
-    *("max_energy_error", "trend", "absolute_trend", "fluctuation"),
-    *("energy_per_ns_per_atom", "kt_per_ns_per_atom", "samples", "skipped"),
-    *("independent_samples", "fluctuation_order", "drift_order"),
-)
 MAX_ERROR = 1e300  # JSON has no infinity
 MAX_LISTED = 30
 MIN_CHART = 10  # rows
 MAX_CHART = 20
 CHOOSE = "choose with --time, --energy"
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    table = "the log or table of a program; - for stdin"
-    add_file(parser, "files", metavar="FILE", nargs="+", help=table)
-    add = parser.add_argument
-    times = "the column of times or steps, by name or number from 1 (default: a guess)"
-    add("--time", metavar="COLUMN", help=times)
-    energies = "the column of total energies, or several joined by + (default: a guess)"
-    add("--energy", metavar="COLUMN", help=energies)
-    add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    step = "the time of a step, or of a row if there is no column of times, such as 0.5fs"
-    add("--step", metavar="TIME", type=units.quantity, help=step)
-    owned = "the units, where the file does not name them: time=ps,energy=kJ/mol"
-    add("--units", metavar="UNITS", type=units.assignments, default={}, help=owned)
-    add("--from", metavar="T", dest="start", type=_time, default=-math.inf, help="begin at time T")
-    add("--to", metavar="T", dest="end", type=_time, default=math.inf, help="end at time T")
-    divisor = (
-        "divide errors by the first energy (first), the standard deviation (std), the mean of a "
-        "column (kinetic:COLUMN) or a number; default: first, and 1 for relative errors"
-    )
-    add("--scale", type=scale, help=divisor)
-    add("--atoms", metavar="N", type=count, help="print the trend per ns and atom, too")
-    add("--temperature", metavar="K", type=positive, help="with --atoms: and in kT")
-    sizes = "the step size of each file, to see how the errors scale with it"
-    add("--steps", metavar="H,H", type=steps, default=[], help=sizes)
-    names = (*FIELDS, "verdict")
-    meaning = f"exit with 1 if the expression is true; fields: {', '.join(names)}"
-    add_gate_option(parser, names, meaning)
-    add_report_options(parser)
-
-
-def _time(text: str) -> float:
-    value = number(text)
-    if math.isnan(value):
-        raise ValueError("nan is not a time")
-    return value
-
-
-def scale(text: str) -> float | str:
-    """Return a number, or the text: first, std or kinetic:COLUMN."""
-    if text in ("first", "std") or text.startswith("kinetic:"):
-        return text
-    try:
-        return positive(text)
-    except ValueError:
-        raise ValueError(
-            f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
-        ) from None
-
-
-def steps(text: str) -> list[float]:
-    return [positive(part) for part in text.split(",")]
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -121,7 +50,7 @@ def _check(options: argparse.Namespace) -> None:
 def run(options: argparse.Namespace) -> int:
     gate = None
     if options.fail_if is not None:
-        gate = parse(options.fail_if, fields=FIELDS)
+        gate = parse(options.fail_if, fields=JUDGED)
     _check(options)
     results = [judge(name, options) for name in options.files]
     lines = [line for result in results for line in lines_of(result)]

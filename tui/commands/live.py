@@ -6,36 +6,12 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.cast import check_fits
-from pendu_tui.tui.cli.options import add_file, positive
-from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.cli.scene_file import read_scenes
-from pendu_tui.tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
     from pendu_tui.tui.playback.lesson import Lesson
     from pendu_tui.tui.playback.live import Live
-
-EXAMPLES = """\
-examples:
-  pendu-tui
-  pendu-tui live --scene crossover
-  pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
-  pendu-tui live --scene crossover --equal-cost
-  pendu-tui live --plain --no-record
-"""
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_scene_options(parser)
-    speed = "multiple of real time (default: the scene's)"
-    parser.add_argument("--speed", metavar="X", type=positive, help=speed)
-    equal = "give all methods equally many force evaluations: cheaper ones take smaller steps"
-    parser.add_argument("--equal-cost", action="store_true", help=equal)
-    recording = parser.add_mutually_exclusive_group()
-    record = "record to FILE instead of the data folder"
-    add_file(recording, "--record", metavar="FILE", type=Path, help=record)
-    recording.add_argument("--no-record", action="store_true", help="do not record")
-    add_terminal_options(parser)
 
 
 def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":

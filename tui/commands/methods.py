@@ -11,20 +11,11 @@ from typing import Any
 
 from pendu_tui.engine.methods import METHODS, Method, family_of, simplified
 from pendu_tui.engine.scenes import MAX_METHODS
-from pendu_tui.tui.cli.cast import KEYS, add_cast_options, cast_of
-from pendu_tui.tui.cli.checks import Check, Gate, add_gate_option, conclude, parse
+from pendu_tui.tui.cli.cast import cast_of
+from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.options import Suggestions
-from pendu_tui.tui.cli.report import Column, Report, add_report_options, fields_of, finite, publish
+from pendu_tui.tui.cli.report import Column, Report, fields_of, finite, publish
 from pendu_tui.tui.words.cards import method_card
-
-EXAMPLES = """\
-examples:
-  pendu-tui methods
-  pendu-tui methods rk4 verlet
-  pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
-  pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
-"""
 
 CLAIMS = (
     *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic"),
@@ -34,24 +25,12 @@ MEASURED = (
     *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
     "measured_force_evaluations",
 )
-GATE_WORDS = dict.fromkeys(("symplectic", "reversible"), ("yes", "no"))
-GATE_NUMBERS = ("order", "force_evaluations")
 NOTE = """
 found: the measured order of the theta error, over half a period.
 evals: force evaluations per step, on average if they vary.
 z limit: for the linear oscillator, z = h·w0; pendu-tui stability has those of the pendulum."""
 
 Row = dict[str, Any]
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    keys = Suggestions(KEYS)
-    parser.add_argument("keys", metavar="KEY", nargs="*", choices=keys, help="as --methods")
-    add_cast_options(parser, "all")
-    fields = ", ".join((*GATE_NUMBERS, *GATE_WORDS))
-    meaning = f"exit with 1 if the expression is true of a method, as measured; fields: {fields}"
-    add_gate_option(parser, (*GATE_NUMBERS, *GATE_WORDS), meaning)
-    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -61,7 +40,9 @@ def run(options: argparse.Namespace) -> int:
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
     cast = cast_of(options, () if options.method else METHODS)
-    gate = parse(options.fail_if, GATE_NUMBERS, words=GATE_WORDS) if options.fail_if else None
+    gate = None
+    if options.fail_if:
+        gate = parse(options.fail_if, MEASURED_NUMBERS, words=MEASURED_WORDS)
     rows = [_row(method) for method in cast]
     columns = (
         Column("method", "key"),
@@ -112,8 +93,8 @@ def _gated(row: Row) -> Row:
     """Return the measured properties as --fail-if compares them."""
     from pendu_tui.engine.methods.measure import yes
 
-    values = {name: row[f"measured_{name}"] for name in (*GATE_NUMBERS, *GATE_WORDS)}
-    for name in GATE_WORDS:
+    values = {name: row[f"measured_{name}"] for name in (*MEASURED_NUMBERS, *MEASURED_WORDS)}
+    for name in MEASURED_WORDS:
         if values[name] is not None:
             values[name] = yes(values[name])
     return values

@@ -2,18 +2,16 @@
 
 import argparse
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import check_free
-from pendu_tui.tui.cli.options import add_file, add_recording, resolve
+from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.cli.report import (
     Column,
     Report,
     Table,
-    add_report_options,
     fields_of,
     progress,
 )
@@ -23,31 +21,12 @@ if TYPE_CHECKING:
     from pendu_tui.recordings.library import Item
     from pendu_tui.recordings.recording import Recording
 
-EXAMPLES = """\
-examples:
-  pendu-tui recordings
-  pendu-tui recordings show latest
-  pendu-tui recordings recover swing.mcap.part -o saved.mcap
-"""
-
 OPTIONS = {
     "file": ("show", "recover"),
     "output": ("recover",),
     "force": ("recover",),
 }
 """Option -> the verbs that take it."""
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    verbs = ["list", "show", "recover"]
-    names = "|".join(verbs)
-    what = "what to do (%(default)s)"
-    parser.add_argument("verb", metavar=names, nargs="?", choices=verbs, default="list", help=what)
-    add_recording(parser, nargs="?", help="for show and recover: a file, latest, or a name")
-    add_report_options(parser)
-    group = parser.add_argument_group("recover")
-    add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
-    group.add_argument("--force", action="store_true", help="overwrite OUT")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -3,31 +3,9 @@
 import argparse
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
+from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.options import add_recording, number, positive, resolve
-from pendu_tui.tui.terminal.options import add_terminal_options
-
-EXAMPLES = """\
-examples:
-  pendu-tui replay latest
-  pendu-tui replay drift --methods rk4,verlet
-  pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
-"""
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser)
-    add = parser.add_argument
-    start = "start S seconds into the recording (%(default)g)"
-    add("--start-at", metavar="S", type=number, default=0.0, help=start)
-    add_cast_options(parser, "all of the recording's")
-    speed = "playback speed (%(default)g)"
-    add("--speed", metavar="X", type=positive, default=1.0, help=speed)
-    add("--loop", action="store_true", help="start again at the end")
-    add("--paused", action="store_true", help="start paused")
-    add("--no-record", action="store_true", help="do not record what continues live")
-    add_terminal_options(parser)
+from pendu_tui.tui.cli.options import resolve
 
 
 def run(options: argparse.Namespace) -> int:

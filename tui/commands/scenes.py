@@ -6,30 +6,15 @@ from typing import Any
 
 from pendu_tui.engine.scenes import GROUPS, SCENES
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.options import Suggestions
-from pendu_tui.tui.cli.report import Column, Report, add_report_options, publish
+from pendu_tui.tui.cli.report import Column, Report, publish
 from pendu_tui.tui.cli.scene import scene_named
 from pendu_tui.tui.words.cards import scene_card
-
-EXAMPLES = """\
-examples:
-  pendu-tui scenes
-  pendu-tui scenes crossover
-  pendu-tui scenes --json | jq -r '.scenes[].name'
-"""
-
 
 COLUMNS = (
     Column("scene", lambda scene: scene.name),
     Column("z", lambda scene: scene.z, ".3g"),
     Column("what to watch", lambda scene: scene.watch),
 )
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    names = Suggestions(SCENES)
-    parser.add_argument("key", metavar="SCENE", nargs="?", choices=names, help="the scene to show")
-    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -6,33 +6,11 @@ from pathlib import Path
 
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import add_file, count
 from pendu_tui.tui.cli.report import warn
-from pendu_tui.tui.cli.scene import add_scene_options, scene_of
-from pendu_tui.tui.terminal.options import add_picture_options, terminal_options_of
-
-EXAMPLES = """\
-examples:
-  pendu-tui serve --port 8080 --scene crossover
-  pendu-tui serve --at-most 30 --record recorded/
-
-From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0.1:8000 there.
-Ctrl+C ends it.
-"""
+from pendu_tui.tui.cli.scene import scene_of
+from pendu_tui.tui.terminal.options import terminal_options_of
 
 THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    add = parser.add_argument
-    port = "port to listen on (%(default)s; 0: any free one)"
-    add("--port", metavar="N", type=int, default=8000, help=port)
-    host = "address to listen on (%(default)s)"
-    add("--host", metavar="ADDRESS", default="127.0.0.1", help=host)
-    add("--at-most", metavar="N", type=count, default=20, help="limit of open labs (%(default)s)")
-    add_file(parser, "--record", metavar="FOLDER", type=Path, help="record each lab in FOLDER")
-    add_scene_options(parser)
-    add_picture_options(parser, "dark", "braille")
 
 
 def run(options: argparse.Namespace) -> int:

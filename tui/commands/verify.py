@@ -7,32 +7,11 @@ from typing import Any
 
 from pendu_tui.recordings import library
 from pendu_tui.recordings.errors import RecordingError
-from pendu_tui.tui.cli.cast import add_cast_options, cast_of, own_methods
+from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.options import add_recording, count, resolve
-from pendu_tui.tui.cli.report import Report, add_report_options, progress, publish, say, warn
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.cli.report import Report, progress, publish, say, warn
 from pendu_tui.tui.words.numbers import counted
-
-EXAMPLES = """\
-examples:
-  pendu-tui verify latest
-  pendu-tui verify tests/recordings/ crossover.mcap
-  pendu-tui verify golden
-  pendu-tui verify crossover.mcap --methods rk4
-
-A folder stands for all recordings below it, golden for the bundled ones.
-Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
-3 one cannot be read.
-"""
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    about = "a file, a folder, latest, golden, or a name such as drift"
-    add_recording(parser, "files", metavar="FILE", nargs="+", help=about)
-    add_cast_options(parser, "all of a recording's")
-    limit = "simulate at most N steps of each recording"
-    parser.add_argument("--max-steps", metavar="N", type=count, help=limit)
-    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:

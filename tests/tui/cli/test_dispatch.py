@@ -11,9 +11,10 @@ import pytest
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.recordings.library import GOLDEN
-from pendu_tui.tui.cli.dispatch import COMMANDS, command_of, completion_parser, split
-from pendu_tui.tui.cli.dropped import DROPPED
+from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
+from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
 from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.commands.options import OPTIONS
 from tests.tui.command_line import PENDU, pendu
 
 ONE_SECOND = ("--time", "1", "--json")
@@ -65,9 +66,7 @@ def test_a_mistake_is_one_sentence_that_helps(line, code, words):
 
 def test_what_has_been_dropped_does_not_exist():
     options = {
-        f"{name} {option}"
-        for name in COMMANDS
-        for option in command_of(name)[0]._option_string_actions
+        f"{name} {option}" for name in COMMANDS for option in parser_of(name)._option_string_actions
     }
     assert not {*COMMANDS, *options} & {*DROPPED}
 
@@ -134,14 +133,17 @@ def test_help_and_version():
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_is_explained_and_the_parser_takes_the_examples(name):
-    parser, command = command_of(name)
+    parser = parser_of(name)
     assert all(action.help for action in parser._actions)
-    assert command.EXAMPLES.startswith("examples:\n")
-    examples = re.findall(r"^ +(pendu-tui .*)", command.EXAMPLES, re.MULTILINE)
+    examples = re.findall(r"^ +(pendu-tui .*)", parser.epilog, re.MULTILINE)
     assert examples
     for example in examples:
         word, words = split(shlex.split(example.split("|")[0])[1:])
-        command_of(word)[0].parse_args(words)
+        parser_of(word).parse_args(words)
+
+
+def test_every_option_in_the_table_belongs_to_a_command():
+    assert {name for each in COMMANDS.values() for name in each.options} == {*OPTIONS}
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -1,0 +1,251 @@
+"""The commands: what each does, the names of its options, and examples.
+
+The names are those of OPTIONS in tui/commands/options.py.  This module imports nothing, because
+`pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
+"""
+
+from typing import NamedTuple
+
+
+class Command(NamedTuple):
+    """A command; its module in tui/commands holds `run`."""
+
+    about: str  # in pendu-tui --help
+    text: str  # above its options
+    options: tuple[str, ...]
+    examples: str
+
+
+COMMANDS = {
+    "live": Command(
+        "the lab: methods side by side, their errors, a recording",
+        "The lab: methods side by side, their errors over time, and a recording.",
+        ("scene", "live --speed", "--equal-cost", "recording", "terminal"),
+        """\
+  pendu-tui
+  pendu-tui live --scene crossover
+  pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
+  pendu-tui live --scene crossover --equal-cost
+  pendu-tui live --plain --no-record
+""",
+    ),
+    "tour": Command(
+        "a tour of the lab: eight short steps, each with a question",
+        "A tour of the lab: eight short steps, each with a question and its answer.",
+        ("tour --no-record", "terminal"),
+        """\
+  pendu-tui tour
+  pendu-tui tour --plain --no-record
+
+Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
+""",
+    ),
+    "replay": Command(
+        "play a recording on the same screen",
+        "Replay a recording in the lab: pause, step, seek, loop, play backwards, or continue live.",
+        (
+            *("recording file", "--start-at", "cast of a recording", "replay --speed"),
+            *("--loop", "--paused", "replay --no-record", "terminal"),
+        ),
+        """\
+  pendu-tui replay latest
+  pendu-tui replay drift --methods rk4,verlet
+  pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
+""",
+    ),
+    "snapshot": Command(
+        "save the lab as an SVG image",
+        "Save the lab as an SVG image, with the same bytes each time.",
+        ("scene", "snapshot --time", "--size", "picture", "snapshot -o", "--force"),
+        """\
+  pendu-tui snapshot --time 12 -o lab.svg
+  pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
+""",
+    ),
+    "serve": Command(
+        "the lab in a browser",
+        "Show the lab in a browser, for a class without terminals; each tab gets its own lab.",
+        ("--port", "--host", "--at-most", "serve --record", "scene", "picture"),
+        """\
+  pendu-tui serve --port 8080 --scene crossover
+  pendu-tui serve --at-most 30 --record recorded/
+
+From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0.1:8000 there.
+Ctrl+C ends it.
+""",
+    ),
+    "accuracy": Command(
+        "speed against accuracy: which method, which h, at what cost",
+        "Chart speed against accuracy over a ladder of h; find the cheapest method and h.",
+        (
+            *("scene", "--all", "accuracy --time", "--h-values", "--error", "--cost"),
+            *("--target", "--no-compiled", "workers", "report figures"),
+        ),
+        """\
+  pendu-tui accuracy --target 1e-6 --time 100
+  pendu-tui accuracy --target 1e-3 --error energy --time 1000
+  pendu-tui accuracy --cost seconds --methods taylor_20,rk4
+  pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
+  pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
+
+Exit code 1: no method reaches the target.
+""",
+    ),
+    "stability": Command(
+        "where each method becomes unstable",
+        "Find the step size at which each method becomes unstable, in theory and as measured.",
+        (
+            *("scene", "--theta-values", "--z-values", "stability --steps"),
+            *("report figures", "workers"),
+        ),
+        """\
+  pendu-tui stability --theta 120deg --h 0.3
+  pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
+  pendu-tui stability --steps 1000 -o map.svg
+  pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.csv
+
+CSV and figures are of the map, with every swing.
+
+{lost}
+""",
+    ),
+    "run": Command(
+        "run a scene without the screen and judge each method; for CI",
+        "Simulate a scene as fast as possible, without the TUI, and judge each method.",
+        (
+            *("scene lists", "run --time", "run --record", "--sample-every", "run --fail-if"),
+            *("--no-compiled", "report figures", "workers"),
+        ),
+        """\
+  pendu-tui run --time 100
+  pendu-tui run --scene crossover --time 100 --record crossover.mcap
+  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step
+  pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
+  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
+  pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
+
+drift_per_second: the slope of the relative energy error, or null without evidence for a trend
+
+verdicts:
+{verdicts}
+""",
+    ),
+    "judge": Command(
+        "judge the energies of another program, from a file or stdin; for CI",
+        """\
+Judge the energies of another program: does its integrator gain or lose energy?
+
+FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
+.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
+certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
+""",
+        (
+            *("judge files", "judge --time", "--energy", "--table", "--step", "--units"),
+            *("--from", "--to", "--scale", "--atoms", "--temperature", "judge --steps"),
+            *("judge --fail-if", "report"),
+        ),
+        """\
+  pendu-tui judge energy.xvg
+  pendu-tui judge md.log.gz --fail-if 'verdict != bounded' --atoms 648 --temperature 300
+  pendu-tui judge log.lammps --energy KinEng+PotEng --step 1fs --units energy=kcal/mol
+  pendu-tui judge a.csv b.csv --steps 1,2 --fail-if 'fluctuation_order < 1.8'
+  ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
+
+verdicts:
+{verdicts of judge}
+""",
+    ),
+    "verify": Command(
+        "re-simulate recordings and compare every bit",
+        "Simulate recordings again from their inputs, and compare every number bit for bit.",
+        ("recording files", "cast of a recording", "--max-steps", "report"),
+        """\
+  pendu-tui verify latest
+  pendu-tui verify tests/recordings/ crossover.mcap
+  pendu-tui verify golden
+  pendu-tui verify crossover.mcap --methods rk4
+
+A folder stands for all recordings below it, golden for the bundled ones.
+Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
+3 one cannot be read.
+""",
+    ),
+    "export": Command(
+        "convert a recording to CSV",
+        "Write a recording as CSV, one row per sample and method.",
+        ("recording file", "export -o", "--force"),
+        """\
+  pendu-tui export latest -o latest.csv
+  pendu-tui export killed.mcap.part -o killed.csv
+""",
+    ),
+    "recordings": Command(
+        "list the recordings, show or recover one",
+        "List the recordings, show the contents of one, or recover a damaged one.",
+        ("verb", "recordings file", "report", "recover"),
+        """\
+  pendu-tui recordings
+  pendu-tui recordings show latest
+  pendu-tui recordings recover swing.mcap.part -o saved.mcap
+""",
+    ),
+    "scenes": Command(
+        "list the scenes, with what to watch",
+        "List the scenes and what to watch in them, or show one scene and its numbers.",
+        ("scene name", "report"),
+        """\
+  pendu-tui scenes
+  pendu-tui scenes crossover
+  pendu-tui scenes --json | jq -r '.scenes[].name'
+""",
+    ),
+    "methods": Command(
+        "list the methods with claimed and measured properties",
+        """\
+List the methods with their claimed and measured properties.
+
+A method of your own has measured properties only.
+""",
+        ("method names", "cast of all", "methods --fail-if", "report"),
+        """\
+  pendu-tui methods
+  pendu-tui methods rk4 verlet
+  pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
+  pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
+""",
+    ),
+    "doctor": Command(
+        "check the environment and suggest fixes",
+        "Check the terminal, its colours, the recordings folder and versions, and suggest fixes.",
+        ("report",),
+        """\
+  pendu-tui doctor
+  pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
+""",
+    ),
+}
+"""The commands by name, in the order of pendu-tui --help."""
+
+DROPPED = {
+    "keys": "pendu-tui live, and there the key ?",
+    "section": "pendu-tui live, and there F3 and the key x",
+    "info": "pendu-tui recordings show",
+    "recover": "pendu-tui recordings recover",
+    "stability --section": "pendu-tui live, and there F3 and the key x",
+    "stability --starts": "pendu-tui live, and there F3 and the key x",
+    "stability --map": "-o map.csv or -o map.svg; pendu-tui live draws it with F5",
+    "run --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    "judge --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    "run --resume": "several lists that are shorter",
+    "run --executor": "--workers N, or --dask ADDRESS for other machines",
+    "stability --executor": "--workers N, or --dask ADDRESS for other machines",
+    "accuracy --executor": "--workers N, or --dask ADDRESS for other machines",
+    "accuracy --budget": "--target, whose table has the cost of each method",
+    "accuracy --safety": "a smaller --target",
+    "completion": "pendu-tui --print-completion SHELL",
+    "export --format": "CSV, which DuckDB, polars and pandas read",
+    "recordings prune": "rm; pendu-tui recordings lists the files, newest first",
+    "diff": "pendu-tui verify, which names the first difference; or export both and compare",
+    "live --ghost": "pendu-tui replay FILE; in the lab r keeps the run before it, dimmed",
+}
+"""Of earlier versions, for one version: what to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option`."""
