@@ -11,7 +11,7 @@ from pendu_tui.tui.playback.shown import WINDOWS, quantities
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
-from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.lab.event_list import EventList
 from pendu_tui.tui.views.lab.stage import Stage
 from pendu_tui.tui.views.lab.time_chart import TimeChart

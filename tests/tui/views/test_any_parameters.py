@@ -16,8 +16,7 @@ from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities
 from pendu_tui.tui.screens.lines import status_row
-from pendu_tui.tui.views.lab.error_table import table
-from pendu_tui.tui.views.phase.view import fact_rows
+from pendu_tui.tui.views.error_table import table
 from pendu_tui.tui.words.insight import insight_text, lasting, sentence
 from pendu_tui.tui.words.plain_text import description
 from tests.truths import LIMITS
@@ -53,8 +52,7 @@ def scenes(model: str) -> st.SearchStrategy[Scene]:
 
 def on_screen(live) -> str:
     """The text of the lab's lines, tables and charts, and its sentences."""
-    tables = table(live, live.sample, Shown(), 120), fact_rows(live, Shown(), None, 120)
-    pictures = [Picture([status_row(live, 120), *tables[0], *tables[1]])]
+    pictures = [Picture([status_row(live, 120), *table(live, live.sample, Shown(), 120)])]
     for quantity, log in product(quantities(live.scene), (True, False)):
         shown = Shown(quantity=quantity, log=log)
         chart = time_chart(live.history.window(), live.scene.cast, shown, 60, 14)

@@ -10,7 +10,7 @@ from textual.widget import Widget
 
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.lab.event_list import EventList
 from pendu_tui.tui.views.lab.stage import Stage
 from pendu_tui.tui.views.lab.time_chart import TimeChart

@@ -80,11 +80,14 @@ class PhasePane(Chooser[State]):
             caption,
             method_points,
             phase_picture,
+            ring_text,
         )
 
-        title = "Phase space (F3): theta [rad], omega [rad/s]"
-        self.write_titles(title, "click: start, wheel: zoom, g: ring")
         self._carry_ring(source, sample)
+        below = "click: start, wheel: zoom, g: ring"
+        if self.shown.ring:
+            below = ring_text(source, self.neighbours) or below
+        self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
         plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.models.model import Model, State
-from pendu_tui.engine.phase_space.area import Neighbourhood
+from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
 from pendu_tui.engine.phase_space.section import Points
 from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.axes import in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.canvas import Canvas
@@ -179,16 +180,18 @@ def method_points(
         points.append(PhasePoint(*exact, EXACT, "x"))
     trails = source.history.trails
     cast = source.scene.cast
+    own = source.stepping.own
+    colours = inks(cast)
     for place in shown.places(cast):
         reading = sample.readings[place]
-        h = abs(source.stepping.own[place])
+        h = abs(own[place])
         is_each_step_seen = h * FPS >= abs(source.playhead.speed)
         chords = CHORDS if is_each_step_seen and 0.3 <= h * source.scene.w0 <= 1 else 0
         points.append(
             PhasePoint(
                 reading.theta,
                 reading.omega,
-                inks(cast)[place],
+                colours[place],
                 cast[place].letter,
                 trail=(trails[:, place, 0], trails[:, place, 1]),
                 chords=chords,
@@ -196,6 +199,23 @@ def method_points(
             )
         )
     return points
+
+
+def ring_text(source: Source, neighbours: Neighbours | None) -> str:
+    """Return what there is to say about the ring, or why there is none."""
+    if neighbours is None:
+        return source.scene.why_no_ring
+    step = 0
+    if neighbours.ring_of(source.scene, source.sample.run):
+        step = neighbours.step
+    change = change_before(source.changes, step)
+    left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
+    text = f"ring, radius {neighbours.radius:g} rad"
+    if left != 1:
+        text += f": the true motion leaves {left:.9f} of its area"
+    if behind := source.sample.step - step:
+        text += f", {behind} steps behind"
+    return text
 
 
 def caption(source: Source, aim: State | None, width: int) -> Row:

@@ -1,6 +1,7 @@
 """PhaseView: phase space over the whole screen, with a table of areas."""
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import ClassVar
 
@@ -11,15 +12,14 @@ from textual.reactive import var
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import Model, State
-from pendu_tui.engine.phase_space.area import Neighbours
 from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces, spread
+from pendu_tui.engine.quantities import Head
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import FRAME, QUIET, TEXT, faint, inks, mark
-from pendu_tui.tui.drawing.picture import Picture, Row
-from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.drawing.palette import FRAME, TEXT, faint, inks
+from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.views.error_table import Column, ErrorTable
 from pendu_tui.tui.views.phase.pane import PhasePane
 from pendu_tui.tui.views.phase.portrait import (
     BLOCK,
@@ -33,14 +33,13 @@ from pendu_tui.tui.views.phase.portrait import (
     write_words,
 )
 from pendu_tui.tui.views.phase.viewport import Viewport
-from pendu_tui.tui.views.view import Memo, Pane, StudyView
-from pendu_tui.tui.words.numbers import scientific
+from pendu_tui.tui.views.view import Memo, StudyView
 from pendu_tui.tui.words.orbit import sentence
 
 STARTS = 300  # orbits of a section
 ORBIT_STEPS = 2000  # they take a few ms
 GAP = 2  # dots between orbits of a section
-NAME, CELL = 22, 14  # characters across in the table
+AREA = Head("area", 11, "area/area0", 11)
 
 
 def starts(viewport: Viewport, count: int) -> Points:
@@ -169,17 +168,20 @@ def _orbit(method: Method, model: Model, h: float, start: State) -> tuple[Points
     return points, kind_of(method, model, h, points)
 
 
-class Facts(Pane):
-    """The table below: what each method did to the ring."""
+class AreaTable(ErrorTable):
+    """Also says how each method has changed the area of the ring, if there is one."""
 
-    def __init__(self, pane: SectionPane) -> None:
-        super().__init__(id="facts")
+    def __init__(self, pane: PhasePane) -> None:
+        super().__init__()
         self._pane = pane
 
-    def picture(self, source: Source, sample: Sample) -> Picture:
-        rows = fact_rows(source, self.shown, self._pane.neighbours, self.room.width)
-        self.styles.height = len(rows)  # more methods, more rows
-        return Picture(rows)
+    @property
+    def more(self) -> Sequence[Column]:
+        ring = self._pane.ring
+        if ring is None or len(ring.area_ratios) != len(self.cast):  # of the run before
+            return ()
+        ratios = dict(zip(self.cast, ring.area_ratios, strict=True))
+        return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
 
 
 class PhaseView(StudyView):
@@ -187,77 +189,15 @@ class PhaseView(StudyView):
 
     def compose(self) -> ComposeResult:
         yield from super().compose()
-        yield self.with_source(Facts(self.pane))
-
-    def on_resize(self) -> None:
-        self._make_room()
-
-    def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
-        if read:
-            self._make_room()
-        super().follow(sample, shown, read)
-
-    def _make_room(self) -> None:
-        has_room = self.size.height >= 18
-        self.query_one(Facts).display = has_room and not self.pane.shows_section
+        yield self.with_source(AreaTable(self.pane))
 
 
-def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
-    """Return a table of the methods, as wide as fits, with a line and areas if there is a ring."""
-    scene = source.scene
-    model = scene.equations
-    exact = source.exact.at(source.sample.t)
-    ring = None
-    if neighbours is not None and not scene.why_no_ring:
-        ring = neighbours.ring_of(scene, source.sample.run)
-    fit = max((width - NAME) // CELL, 0)
-
-    def cells(*texts: str) -> str:
-        return "".join(text.rjust(CELL) for text in texts[:fit])
-
-    areas = ("ln area ratio", "area/area0") if neighbours else ()
-    heads = cells("theta error", model.error.head.narrow, *areas)
-    rows: list[Row] = [[(" " * NAME + heads, QUIET)]]
-    if shown.ring and (text := _ring_text(source, neighbours)):
-        rows.insert(0, [(text[:width], TEXT)])
-    for place in shown.places(scene.cast):
-        method = scene.cast[place]
-        reading = source.sample.readings[place]
-        area = area_text(ring.area_ratios[place]) if ring else ("-", "-")
-        off = scientific(model.theta_error(reading.theta, exact.theta), CELL, 3)
-        numbers = cells(off, scientific(reading.energy_error, CELL, 3), *area[: len(areas)])
-        name = f" {mark(place, method)} {method.label}".ljust(NAME)
-        rows.append([(name, inks(scene.cast)[place]), (numbers, TEXT)])
-    return rows
-
-
-def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
-    if why := source.scene.why_no_ring:
-        return f" {why}"
-    if neighbours is None:
-        return ""
-    step = 0
-    if neighbours.ring_of(source.scene, source.sample.run):
-        step = neighbours.step
-    change = change_before(source.changes, step)
-    left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
-    radius = f"radius {neighbours.radius:g} rad"
-    if left != 1:
-        return f" Ring, {radius}: the true motion leaves {left:.9f} of its area"
-    text = f" Ring of neighbouring starts, {radius}"
-    if behind := source.sample.step - step:
-        text += f": {behind} steps behind"
-    return text
-
-
-def area_text(ratio: float) -> tuple[str, str]:
-    """Return ln of an area ratio, and the ratio as a text that differs from 1: "1 + 2.2e-16"."""
+def area_text(ratio: float) -> str:
+    """Return an area ratio as a text that differs from 1: "1 + 2.2e-16"."""
     if not 0 < ratio < math.inf:
-        return "-", "> 1e308" if ratio else "< 1e-308"
+        return "> 1e308" if ratio else "< 1e-308"
     if ratio == 1:
-        text = "1"
-    elif abs(ratio - 1) < 1e-6:
-        text = f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
-    else:
-        text = f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"
-    return scientific(math.log(ratio), 10, 3), text
+        return "1"
+    if abs(ratio - 1) < 1e-6:
+        return f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
+    return f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from pendu_tui.tui.drawing.palette import EXACT, faint
 from pendu_tui.tui.terminal.options import SMALLEST
-from pendu_tui.tui.views.lab.error_table import ErrorTable
+from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.lab.lanes import Bob, Look, lanes, stage_picture
 from pendu_tui.tui.views.lab.stage import Lens, Stage
 from tests.tui.drawing.test_canvas import dots

@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.tui.drawing.palette import GOOD, QUIET, TEXT, WARN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.lab.error_table import COLUMNS, ErrorTable, extra_columns, table
+from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_columns, table
 from pendu_tui.tui.words.cards import head_text
 from tests.tui.harness import after
 from tests.tui.harness import lab as on_screen

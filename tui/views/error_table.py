@@ -103,9 +103,11 @@ def extra_columns(model: Model) -> list[Column]:
     return [column(each) for each in model.extra_columns]
 
 
-def _columns(source: Source, width: int, names: int) -> list[tuple[str, int, Column]]:
+def _columns(
+    source: Source, width: int, names: int, more: Sequence[Column]
+) -> list[tuple[str, int, Column]]:
     """Return heads and widths of the columns that fit; h only where methods differ in it."""
-    columns = [*COLUMNS[:5], *extra_columns(source.scene.equations), *COLUMNS[5:]]
+    columns = [*COLUMNS[:5], *more, *extra_columns(source.scene.equations), *COLUMNS[5:]]
     if len(set(source.stepping.own)) == 1:
         columns = [column for column in columns if column.head.narrow != "h"]
     first = 0
@@ -134,13 +136,15 @@ def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[flo
     return [reading.max_energy_error for reading in readings], [0.0] * len(readings), "method"
 
 
-def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
-    """Return the rows, the head first."""
+def table(
+    source: Source, sample: Sample, shown: Shown, width: int, more: Sequence[Column] = ()
+) -> list[Row]:
+    """Return the rows, the head first, with `more` columns after the errors."""
     cast = source.scene.cast
     model = source.scene.equations
     names = [f" {mark(place, method)} {method.label}" for place, method in enumerate(cast)]
     room = max([20, *map(len, names)])
-    columns = _columns(source, width, room)
+    columns = _columns(source, width, room, more)
     spare = width - 1 - room - sum(width + 1 for _, width, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), 3))
     lines, head = _lines(source, sample, shown)
@@ -206,8 +210,12 @@ class ErrorTable(Pane):
 
     _head: Sequence[str] = ()
 
+    @property
+    def more(self) -> Sequence[Column]:
+        return ()
+
     def picture(self, source: Source, sample: Sample) -> Picture:
-        rows = table(source, sample, self.shown, self.room.width)
+        rows = table(source, sample, self.shown, self.room.width, self.more)
         self.styles.height = len(rows)  # hidden methods leave no gap
         self._head = [text for text, _ in rows[0]]
         return Picture(rows)
