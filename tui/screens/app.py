@@ -1,14 +1,12 @@
-"""PenduApp: themes, signals, errors, and and the screen of the lab."""
+"""PenduApp: themes, signals, errors, and the screen of the lab."""
 
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from traceback import walk_tb
 from typing import Any, ClassVar
 
-from textual.app import App, ScreenStackError
+from textual.app import ScreenStackError
 from textual.binding import Binding, BindingType
-from textual.events import Event
 from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
@@ -18,6 +16,7 @@ from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.time_limit import Watch
 from pendu_tui.tui.drawing.palette import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.screens.palette_faults import ForgivingApp, is_of_palette
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
@@ -29,7 +28,7 @@ HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
 """Classes for the style sheet, each from so many columns or rows on."""
 
 
-class PenduApp(App[Exit | BaseException]):
+class PenduApp(ForgivingApp[Exit | BaseException]):
     """Returns the exit code, the error that ended it, or None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
@@ -75,27 +74,11 @@ class PenduApp(App[Exit | BaseException]):
             self._watchdog.begin(self.action_interrupt)
             Watch.end = self._watchdog.end  # type: ignore[method-assign]
 
-    async def on_event(self, event: Event) -> None:
-        """Survive a key that makes Textual's palette or list raise: it would end the app."""
-        try:
-            await super().on_event(event)
-        except Exception as error:
-            if not is_of_list(error):
-                raise
-            self._handle_exception(error)
-
     def _handle_exception(self, error: Exception) -> None:
-        """End with this error, in place of Textual's traceback; a test raises it.
-
-        Textual 8.2's palette and lists raise when keys come faster than they open and close; then
-        only they are closed.
-        """
+        """End with this error, in place of Textual's traceback; a test raises it."""
         if isinstance(error, ScreenStackError):
             return  # the screens are already gone
-        if is_of_list(error):
-            if self.screen is not self.lab:
-                self.call_later(self.screen.dismiss)
-        elif self.is_headless:
+        if self.is_headless or is_of_palette(error):
             super()._handle_exception(error)
         elif self.return_code is None:  # else it is ending already
             self.exit(error)
@@ -141,13 +124,6 @@ class PenduApp(App[Exit | BaseException]):
     def get_line_filters(self) -> Sequence[LineFilter]:
         filters = [*super().get_line_filters(), self.character_filter]
         return [each for each in filters if each.enabled]
-
-
-def is_of_list(error: BaseException) -> bool:
-    """Return whether an error, maybe of a worker, was raised in Textual's palette or list."""
-    raised = getattr(error, "error", error)
-    modules = {frame.f_globals["__name__"] for frame, _ in walk_tb(raised.__traceback__)}
-    return not modules.isdisjoint({"textual.command", "textual.widgets._option_list"})
 
 
 def _theme(name: str, colours: Palette) -> Theme:
