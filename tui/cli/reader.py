@@ -357,9 +357,11 @@ class _Text:
         names = self._head(fields, numbers)
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
+            names = [""] * len(fields)
             rest = numbers[1:] if opening else numbers
             is_bare = delimiter and not self._heads  # rows that were cut out of a table
-            is_row = None not in rest or (is_bare and len(rest) > rest.count(None) + 1)
+            is_row = None not in rest or self._worth(names, numbers) > 0
+            is_row |= bool(is_bare) and len(rest) > rest.count(None) + 1
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
                 self._heads = self._heads if not is_like else []
@@ -404,15 +406,16 @@ class _Text:
             return 0
         choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
         known = known_names(names)
-        asked = [text for text in (self._wanted.time, self._wanted.energy) if text]
         if choice and None in [numbers[place] for place in choice.columns]:
             return 0
-        if choice and asked and not all(text.isdecimal() for text in asked):
+        asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
+        if not all(map(str.isdecimal, asked)):
             return len(names) + 1
         if known > 1:
             return known
-        is_numeric = any(number(name) is not None for name in names) or None in numbers
-        return int((self._sheet is None or self._begins) and not is_numeric)
+        is_data = any(number(name) is not None for name in names)
+        is_first = self._sheet is None or self._begins
+        return int(is_first and not is_data and (bool(asked) or None not in numbers))
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
