@@ -3,15 +3,14 @@
 import pytest
 
 from pendu_tui.recordings.errors import RecordingError
-from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.events import Entry
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.reader import read_contents
-from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.recovery import recover
 from pendu_tui.recordings.verification import verify
-from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
+from tests.recordings.examples import SCENE, record, samples_of, start
 
 
 @pytest.fixture
@@ -39,28 +38,6 @@ def spoil(path, *numbers):
 def samples(path):
     with Recording.open(path) as recording:
         return [value for _, value in samples_of(recording)]
-
-
-def test_a_whole_recording_is_copied(tmp_path, out):
-    path = record(tmp_path / "a.mcap", two_runs())
-    recovery = recover(path, out)
-    assert (recovery["samples_kept"], recovery["entries_lost"]) == (10, 0)
-    assert (recovery["damaged"], recovery["reason"]) == (False, None)
-    with Recording.open(path) as was, Recording.open(out) as now:
-        assert list(now.entries()) == list(was.entries())
-
-
-def test_an_unfinished_recording_is_finished_and_not_called_damaged(tmp_path, out):
-    with Recorder(tmp_path / "a.mcap") as recorder:
-        for clock, value in two_runs():
-            write = recorder.event if isinstance(value, Event) else recorder.sample
-            write(value, clock)
-        recorder.flush()
-        recovery = recover(recorder.part, out)
-    assert (recovery["samples_kept"], recovery["damaged"]) == (10, False)
-    assert recovery["reason"] == "its end is missing or damaged"
-    assert verify(out).complete
-    assert verify(out).identical
 
 
 def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_path, out):
