@@ -262,7 +262,7 @@ print(len(samples), recorder.failed)
 
 
 def test_a_real_file_size_limit_is_survived(tmp_path):
-    command = [sys.executable, "-c", LIMITED, str(tmp_path / "lab.mcap")]
+    command = [sys.executable, "-B", "-c", LIMITED, str(tmp_path / "lab.mcap")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.startswith("81 ")
     assert "File too large" in done.stdout
