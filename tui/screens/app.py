@@ -11,6 +11,7 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
+from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.time_limit import Watch
@@ -86,8 +87,9 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
     def notify(self, message: str, **options: Any) -> None:
         """Show a notice in place of an equal one, so that a held key covers one line only.
 
-        Notices have no markup, because units are in brackets.
+        Notices have no markup, because units are in brackets, and name files as they are named.
         """
+        message = printable(message, limit=1000)
         if message == self._last_notice:
             self.clear_notifications()
         self._last_notice = message

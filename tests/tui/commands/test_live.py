@@ -43,3 +43,15 @@ def test_a_lab_whose_recording_stopped_exits_with_5(tmp_path, capsys):
     live.close()
     assert say_goodbye(live) == 5
     assert "the recording stopped" in capsys.readouterr().err
+
+
+def test_a_folder_with_escapes_in_its_name_does_not_steer_the_terminal(tmp_path, capsys):
+    folder = tmp_path / "a\x1b]0;title\x07 \x1b[2J"
+    folder.mkdir()
+    live = Live(DEFAULT_SCENE)
+    live.record(LiveRecorder(folder / "lab.mcap"))
+    live.close()
+    assert say_goodbye(live) == 0
+    printed = capsys.readouterr().out
+    assert "lab.mcap" in printed
+    assert all(line.isprintable() for line in printed.splitlines())

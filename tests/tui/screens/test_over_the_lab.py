@@ -1,4 +1,4 @@
-"""What lies over the lab is closed once, and nothing else with it."""
+"""What lies over the lab: dialogs that close once, notices that cover no number, and "too small"."""
 
 import asyncio
 
@@ -8,8 +8,13 @@ from textual.geometry import Size
 from textual.screen import Screen
 from textual.widgets._toast import Toast
 
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import TextScreen
-from tests.tui.harness import lab
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.screens.lines import InsightLine, StatusLine, TooSmall
+from tests.tui.harness import lab, until
 
 
 async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
@@ -69,3 +74,35 @@ async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(
 async def test_the_lab_ends_quietly_while_a_form_opens():
     async with lab() as theatre:
         theatre.app.call_later(theatre.stage.action_start_values)
+
+
+async def test_a_moment_is_marked_once_and_the_notice_lies_on_the_insight_line():
+    app = PenduApp(LabScreen(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        await pilot.press("m")
+        await until(pilot, lambda: any(toast.region for toast in app.screen.query(Toast)))
+        region = app.screen.query_one(Toast).region
+        assert region.height == 1
+        assert app.screen.query_one(InsightLine).region.contains_region(region)
+        await pilot.press("m")
+        notices = [notice.message for notice in app._notifications]
+        assert notices == ["Mark at 0.00 s", "Already marked"]
+        assert [event.kind for event in app.lab.source.events].count("mark") == 1
+
+
+async def test_equal_notices_replace_each_other():
+    async with lab(DEFAULT_SCENE.altered(h=5e-10)) as theatre:
+        await theatre.press(*["minus"] * 9, "m")
+        assert len(theatre.app._notifications) == 2
+
+
+async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_work():
+    async with lab(size=(50, 12)) as theatre:
+        assert "Terminal too small: 50x12, need 60x16" in theatre.text(TooSmall)
+        assert not theatre.stage.query_one(StatusLine).is_on_screen
+        await theatre.press("greater_than_sign")
+        assert theatre.source.playhead.speed == 2
+        await theatre.pilot.resize_terminal(80, 24)
+        await theatre.run(0.1)
+        assert "2×" in theatre.text(StatusLine)
+        assert not theatre.stage.query_one(TooSmall).is_on_screen
