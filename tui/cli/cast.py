@@ -139,6 +139,7 @@ def _tried(source: str, key: str, file: str) -> "Measured":
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
     from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.tui.cli.workers import received
 
     os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
     context = get_context("spawn")
@@ -147,10 +148,11 @@ def _tried(source: str, key: str, file: str) -> "Measured":
     process.start()
     sending.close()
     try:
-        results.recv()  # it has started
-        if not results.poll(MAX_SECONDS):
-            raise OwnMethodError(f"{file}: {key} takes more than {MAX_SECONDS:g} s for a trial.")
-        found: Measured | OwnMethodError = results.recv()
+        received(results, process)  # when it has started
+        found: Measured | OwnMethodError = received(results, process, MAX_SECONDS)
+    except TimeoutError:
+        why = f"takes more than {MAX_SECONDS:g} s for a trial"
+        raise OwnMethodError(f"{file}: {key} {why}.") from None
     except EOFError:
         raise OwnMethodError(f"{file}: {key} ends the process in which it is tried.") from None
     finally:

@@ -16,6 +16,8 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from multiprocessing import active_children, get_context
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 from pendu_tui.engine.methods.own import OwnMethodError
@@ -41,6 +43,19 @@ def add_worker_options(parser: argparse.ArgumentParser) -> None:
     where.add_argument(
         "--dask", metavar="ADDRESS", help="on a Dask scheduler, such as tcp://10.0.0.1:8786"
     )
+
+
+def received(results: Connection, process: BaseProcess, seconds: float | None = None) -> Any:
+    """Return what a process sends.  Raises EOFError if it ends, or TimeoutError.
+
+    On Windows no end of the pipe tells of a process that ends before it has begun.
+    """
+    ready = wait([results, process.sentinel], seconds)
+    if not ready:
+        raise TimeoutError
+    if results not in ready:
+        raise EOFError
+    return results.recv()
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from typing import Any
 from pendu_tui.recordings.system import give_way
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.workers import received
 
 
 async def computed(
@@ -32,7 +33,7 @@ async def computed(
         process.start()
     sending.close()
     try:
-        while (result := await asyncio.to_thread(results.recv)) is not None:
+        while (result := await asyncio.to_thread(received, results, process)) is not None:
             if isinstance(result, Exception):
                 raise result
             yield result
