@@ -155,16 +155,27 @@ class Judged:
     """The verdict on a series of energies; a word of `pendu-tui judge --help`."""
 
     verdict: str
-    trend: float | None  # of the energies over the scale, per unit of time; None: too early
-    uncertainty: float | None  # standard deviation of the trend
-    max_error: float  # the largest distance from the first energy, over the scale
+    reason: str  # of `undecided`: what is missing, and whether a longer record helps
+    slope: float | None  # of the energies over the scale, per unit of time; None: nothing to fit
+    uncertainty: float | None  # of the slope: 68 % lie within
+    bound: float | None  # |slope| is below it with a probability of 99 %
+    share: float | None  # what the slope adds up to, over the width of the band
+    rests: (
+        bool  # the energy has left its start and stays in another band; the slope is that of rest
+    )
+    error: float  # the distance of the last energy from the first, over the scale
+    max_error: float  # the largest such distance
+    fluctuation: float | None  # standard deviation about a line, over the scale
+    independent: float  # samples
     scale: float  # in the energies' unit
-    progress: str  # how far it is to a verdict where it is too early: "10 of 64 samples"
 
     def __str__(self) -> str:
-        text = f"{self.verdict}{self.progress and f', {self.progress}'}"
-        if self.trend is not None:
-            text += f", trend {self.trend:+.2e} ± {self.uncertainty:.0e} per unit of time"
+        text = f"{self.verdict}{', rests now' * self.rests}{self.reason and f': {self.reason}'}"
+        if self.slope is not None:
+            text += (
+                f", slope {self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time, "
+                f"{100 * (self.share or 0):+.2g} % of its band, below {self.bound:.1e} at 99 %"
+            )
         return f"{text}, errors up to {self.max_error:.2e}, relative to {self.scale:g}"
 
 
@@ -176,7 +187,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     """
     import numpy as np
 
-    from pendu_tui.engine.run.energies import judge_record
+    from pendu_tui.engine.run.record import judge_record
 
     t = _finite("times", _array("times", times))
     e = _array("energies", energies)
@@ -188,21 +199,22 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
         e = e[:finite]
     e = _finite("energies", e)
     _increasing(t)
-    judgement = judge_record(t, e, failed=failed, absolute=scale != "std")
-    e = e[judgement.first :]
+    judgement = judge_record(t, e, failed=failed)
     size = _size(e, scale)
-    trend = judgement.slope
-    uncertainty = judgement.uncertainty
-    if trend is not None and uncertainty is not None:
-        trend = trend / size
-        uncertainty = uncertainty / size
+    scaled = judgement.scaled(1 / size)
     return Judged(
         verdict=judgement.verdict,
-        trend=trend,
-        uncertainty=uncertainty,
+        reason=judgement.reason,
+        slope=scaled.slope,
+        uncertainty=scaled.uncertainty,
+        bound=scaled.bound,
+        share=judgement.share,
+        rests=judgement.rests,
+        error=float(e[-1] - e[0]) / size,
         max_error=float(np.abs(e - e[0]).max()) / size,
+        fluctuation=scaled.fluctuation,
+        independent=judgement.independent,
         scale=size,
-        progress=str(judgement.progress or ""),
     )
 
 

@@ -112,6 +112,9 @@ TREND = Quantity(
     sentence="the mean change of dE/E0 per second; a bounded error can be larger than one that "
     "grows",
 )
+SLOPE = Quantity("slope", "1/s", in_gate=True)
+BOUND = Quantity("bound", "1/s", about="|slope| is below it at 99 %", in_gate=True)
+SHARE = Quantity("share", about="of the slope over the run in the width of the band", in_gate=True)
 EVALUATIONS = Quantity(
     "force_evaluations",
     in_gate=True,
@@ -123,7 +126,8 @@ EVALUATIONS = Quantity(
 
 QUANTITIES = (
     *(THETA, OMEGA, ENERGY, ENERGY_ERROR, LARGEST, LOW, HIGH, DIVERGED_AT, INVARIANT),
-    *(LOG_ENERGY_ERROR, THETA_ERROR, SHADOW_ERROR, TREND, EVALUATIONS),
+    *(LOG_ENERGY_ERROR, THETA_ERROR, SHADOW_ERROR, TREND, SLOPE, BOUND, SHARE),
+    EVALUATIONS,
 )
 """The quantities of every model, in the order of recorded fields."""
 

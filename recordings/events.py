@@ -17,7 +17,7 @@ from pendu_tui.recordings.errors import RecordingError
 
 if TYPE_CHECKING:
     from pendu_tui.engine.methods.own import OwnMethod
-    from pendu_tui.engine.run.judgement import Milestone
+    from pendu_tui.engine.run.verdicts import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred

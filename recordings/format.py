@@ -15,9 +15,8 @@ import msgspec
 
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.quantities import EXTREMES, RECORDED
-from pendu_tui.engine.run.judgement import Milestone, MilestoneKind
 from pendu_tui.engine.run.lockstep import Reading, Sample
-from pendu_tui.engine.run.verdicts import VERDICTS, word_of_before
+from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
 from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
 from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.recordings.events import (

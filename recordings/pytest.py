@@ -50,10 +50,10 @@ class EnergyDrift:
             judged = judge(times, energies, scale)
         except ValueError as error:
             raise pytest.fail.Exception(str(error)) from None
-        self._properties += [("verdict", judged.verdict), ("trend", judged.trend)]
+        self._properties += [("verdict", judged.verdict), ("slope", judged.slope)]
         if judged.verdict != verdict:
             pytest.fail(f"the verdict is not {verdict}: {judged}")
-        if max_drift is not None and (judged.trend is None or abs(judged.trend) > max_drift):
+        if max_drift is not None and (judged.slope is None or abs(judged.slope) > max_drift):
             pytest.fail(f"the energies drift by more than {max_drift:g}: {judged}")
         return judged
 

@@ -11,9 +11,9 @@ from operator import attrgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, Self
 
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene, SceneError
 from pendu_tui.recordings.errors import RecordingError, named
 from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, Method
@@ -85,5 +86,6 @@ def watch(scene: Scene) -> int:
 
 def is_true(letter: str, course: Course) -> bool:
     """Return whether the truth allows these verdicts; none are always allowed."""
-    words = tuple(verdict for verdict, *_ in course if verdict != "undecided")
-    return not words or words in ALLOWED[letter]
+    words = [verdict for verdict, *_ in course if verdict != "undecided"]
+    distinct = tuple(word for word, _ in groupby(words))
+    return not distinct or distinct in ALLOWED[letter]

@@ -1,38 +1,54 @@
 """Judge the methods of a run by their energy errors, and note the run's milestones.
 
 The lockstep shows each method to its judge at look points, a fixed number of steps apart, so a
-verdict depends on the scene, the stepping and the step alone.
+verdict depends on the scene, the stepping and the step alone.  The core judges the energy error in
+bins.  What is known of a method adds evidence:
 
 - A symplectic method can neither gain nor lose energy for good.  Its orbit is regular, and so
   `bounded`, where a theorem says so or neighbouring starts separate no faster than in proportion
-  to time.  Where they separate exponentially it is `chaotic`, or `wanders` if no invariant curve
-  fences it in.  A linear map is never chaotic.
-- Any other method is judged by the bands of its energy error: whether they have left the start
-  (`grows`, `loses`), have come to rest elsewhere (`caught`) or nowhere (`wanders`), or stay where
-  they began without a trend (`bounded`).
+  to time, and `chaotic` where they separate exponentially.  A linear map is never chaotic.
+- The error of any other method is exactly 0 at the start, and drifts sooner or later: it is
+  `bounded` only if it would stay in its band for ten times as long.
 """
 
 import copy
 import math
 from collections.abc import Sequence
-from itertools import permutations
-from typing import Self
+from itertools import pairwise, permutations
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.models.model import Model
-from pendu_tui.engine.run import judgement as limits
-from pendu_tui.engine.run.bands import (
-    MAX_BINS,
-    Bands,
-    Bin,
-    fit_line,
-    hull,
-    one_way_share,
-    typical_width,
-)
-from pendu_tui.engine.run.judgement import LookPoint, Milestone, MilestoneKind
+from pendu_tui.engine.run import levels
 from pendu_tui.engine.run.tangent import Stretching, at_bottom
-from pendu_tui.engine.run.verdicts import Judgement, Progress, in_todays_words
+from pendu_tui.engine.run.verdicts import (
+    BOUNDED,
+    CHAOTIC,
+    FAILED,
+    GROWS,
+    LEAVES,
+    LOSES,
+    UNDECIDED,
+    Judgement,
+    Milestone,
+    MilestoneKind,
+    Progress,
+)
+
+if TYPE_CHECKING:
+    from pendu_tui.engine.run.core import Bins
+
+
+class LookPoint(NamedTuple):
+    """A method at a step where its judge looks."""
+
+    step: int  # own steps since judging began
+    error: float  # relative, signed
+    low: float  # smallest and largest error since the previous look point
+    high: float
+    theta: float = 0.0  # rad, perhaps reduced by whole turns
+    omega: float = 0.0  # rad/s
+    energy: float = 1.0  # s⁻²
 
 
 def stride(period: float, h: float) -> int:
@@ -40,7 +56,75 @@ def stride(period: float, h: float) -> int:
 
     `period` [s] is the exact motion's, or 2 pi/w0 if it has none.
     """
-    return max(1, round(period / limits.LOOKS / abs(h)))
+    return max(1, round(period / levels.LOOKS / abs(h)))
+
+
+class _Bin(NamedTuple):
+    """A part of a run."""
+
+    step: float  # its middle
+    mean: float  # of the errors at its look points
+    low: float
+    high: float
+
+    def joined(self, other: "_Bin") -> "_Bin":
+        """Return the bin of both, which are equally long."""
+        step = (self.step + other.step) / 2
+        mean = (self.mean + other.mean) / 2
+        return _Bin(step, mean, min(self.low, other.low), max(self.high, other.high))
+
+
+class Bands:
+    """The bins of a run, in constant memory: at first one a look point; 64 merge pairwise.
+
+    `bins` is replaced and never changed in place, so `copy.copy` makes an independent copy.
+    """
+
+    def __init__(self) -> None:
+        self.bins: list[_Bin] = []
+        self._open: list[_Bin] = []
+        self._size = 1  # look points in a bin
+
+    def add(self, each: _Bin) -> bool:
+        """Add a look point; return whether a bin is full."""
+        self._open = [*self._open, each]
+        if len(self._open) < self._size:
+            return False
+        while len(self._open) > 1:
+            self._open = _merged(self._open)
+        self.bins = [*self.bins, *self._open]
+        self._open = []
+        if len(self.bins) == levels.MAX_BINS:
+            self.bins = _merged(self.bins)
+            self._size *= 2
+        return True
+
+    def recent(self) -> tuple[float, float]:
+        """Return the lowest and the highest value of the last quarter of the bins."""
+        last = self.bins[-max(1, len(self.bins) // 4) :]
+        return min(each.low for each in last), max(each.high for each in last)
+
+    @property
+    def one_way(self) -> float:
+        """The share of moves from bin to bin that go the more common way: 0.5 to 1."""
+        middles = [each.low + each.high for each in self.bins]
+        rising = sum(a < b for a, b in pairwise(middles))
+        falling = sum(a > b for a, b in pairwise(middles))
+        return 0.5 + abs(rising - falling) / max(len(middles) - 1, 1) / 2
+
+    def as_bins(self, h: float, rounding: float) -> "Bins":
+        """Return the bins for the core, in seconds."""
+        import numpy as np  # a run begins without it
+
+        from pendu_tui.engine.run.core import Bins
+
+        steps, means, lows, highs = np.array(self.bins).T
+        spreads = (highs - lows) / math.sqrt(8)  # those of a sine
+        return Bins(steps * h, means, lows, highs, spreads, rounding)
+
+
+def _merged(bins: list[_Bin]) -> list[_Bin]:
+    return [a.joined(b) for a, b in zip(bins[::2], bins[1::2], strict=True)]
 
 
 class Judge:
@@ -48,20 +132,21 @@ class Judge:
 
     def __init__(self, h: float, period: float, method: Method, model: Model) -> None:
         """`h` [s] is the method's step; `period` [s] as in `stride`."""
-        self.judgement = Judgement("too early")  # in the words of before
+        self.judgement = Judgement()
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
         self._period = period
         self._last: LookPoint | None = None
         self._start_error = 0.0  # at the first look point; bands are relative to it
-        self._bin_steps = max(limits.MIN_BIN_STEPS, round(period / self._h))  # at first
-        self._bands = Bands(self._bin_steps)
+        self._judged = 0  # the step of the last judgement
+        self._bands = Bands()
         self._conserved = model.conserves_energy  # else errors are ln(E/E_true)
         self._epsilon = method.epsilon
-        self._min_energy = (limits.MIN_AMPLITUDE * method.epsilon * model.w0) ** 2  # s⁻²
+        self._min_energy = (levels.MIN_AMPLITUDE * method.epsilon * model.w0) ** 2  # s⁻²
+        self._returns = method.symplectic
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
-        self._may_beat = method.symplectic or fastest_turn < limits.MIN_STEPS_A_TURN * self._h
+        self._may_beat = fastest_turn < levels.MIN_STEPS_A_TURN * self._h
         self._may_escape = not model.turns
         self._orbit: _Orbit | None = None
         if method.symplectic and method.general and not model.without_force:
@@ -75,7 +160,7 @@ class Judge:
         return other
 
     def look(self, point: LookPoint) -> None:
-        """Take in the next look point; a full bin brings a new judgement."""
+        """Take in the next look point; one step in eight or fewer brings a new judgement."""
         if self._last is None:
             self._last = point
             self._start_error = point.error
@@ -86,63 +171,92 @@ class Judge:
                 return  # mostly rounding
         if self._orbit:
             self._orbit.look(self._last, point)
+        start = self._start_error
+        step = (self._last.step + point.step) / 2
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
-        start = self._start_error
         full = self._bands.add(
-            point.step, point.low - start, point.high - start, point.error - start
+            _Bin(step, point.error - start, point.low - start, point.high - start)
         )
-        if full and len(self._bands.bins) >= limits.MIN_BINS:
-            self._judge()
-        elif self.judgement.verdict == "too early":
+        is_due = self._swings >= levels.MIN_SWINGS and point.step >= levels.LONGER_BY * self._judged
+        if full and is_due and len(self._bands.bins) >= levels.MIN_BINS:
+            self._judged = point.step
+            self.judgement = self._judgement()
+        if self._orbit:
+            self._follow(self._orbit)
+        if self.judgement.verdict == UNDECIDED:
             progress = self._progress()
-            self.judgement = self.judgement._replace(periods=self._periods, progress=progress)
-        if self._may_escape and point.error > limits.ESCAPED_ERROR:
-            self.judgement = self.judgement._replace(verdict="grows", progress=None)
+            reason = str(progress or self.judgement.reason)
+            self.judgement = self.judgement._replace(progress=progress, reason=reason)
+        self.judgement = self.judgement._replace(periods=self._swings)
+        if self._may_escape and point.error > levels.ESCAPED_ERROR:
+            self.judgement = self.judgement._replace(verdict=GROWS, progress=None, reason="")
 
     def fail(self, steps: int) -> None:
         """Note that the numbers have ended, so many steps after the first look point."""
-        self.judgement = Judgement("failed", periods=steps * self._h / self._period)
-
-    @property
-    def shown(self) -> Judgement:
-        """The judgement in today's words."""
-        rises = self._last is not None and self._last.error > 0
-        return in_todays_words(self.judgement, rises, symplectic=self._orbit is not None)
+        self.judgement = Judgement(FAILED, periods=steps * self._h / self._period)
 
     @property
     def _steps(self) -> int:
         return self._last.step if self._last else 0
 
     @property
-    def _periods(self) -> float:
+    def _swings(self) -> float:
         return self._steps * self._h / self._period
-
-    @property
-    def _min_steps(self) -> int:
-        """The steps after which bands that rest can be told from bands that do not."""
-        return max(MAX_BINS * self._bin_steps, limits.LONG)
 
     @property
     def _rounding(self) -> float:
         """How far roundings may have carried the error by now."""
-        walk = limits.WALK * self._epsilon * math.sqrt(self._steps)
-        return walk if self._conserved else max(walk, limits.REFERENCE_ERROR)
+        walk = levels.WALK * self._epsilon * math.sqrt(self._steps)
+        return walk if self._conserved else max(walk, levels.REFERENCE_ERROR)
 
-    def _judge(self) -> None:
-        orbit = self._orbit
-        previous = self.judgement.verdict
-        periods = self._periods
-        if orbit:
-            verdict = orbit.verdict(previous, self.peak, periods)
-        else:
-            verdict = self._verdict_of_bands(previous)
-        judgement = self._trend(verdict)._replace(verdict=verdict, periods=periods)
-        if verdict == "too early":
-            judgement = judgement._replace(progress=self._progress())
-        elif orbit and orbit.steps and verdict in ("chaotic", "wanders"):
-            judgement = judgement._replace(lyapunov=orbit.log / orbit.steps / self._h)
-        self.judgement = judgement
+    def _judgement(self) -> Judgement:
+        from pendu_tui.engine.run.core import growth_of, judge_bins, measure_bins
+
+        bins = self._bands.as_bins(self._h, self._rounding)
+        if self._orbit:
+            measured = measure_bins(bins)
+            return measured._replace(verdict=self.judgement.verdict, is_evident=False)
+        found = self._checked(judge_bins(bins, steady=True))
+        if found.verdict == GROWS:
+            found = found._replace(growth=growth_of(bins))
+        return found
+
+    def _follow(self, orbit: "_Orbit") -> None:
+        """Give the verdict that is known of an orbit."""
+        verdict = orbit.verdict(self.judgement.verdict, self.peak, self._swings)
+        lyapunov = None
+        if verdict == CHAOTIC and orbit.steps:
+            lyapunov = orbit.log / orbit.steps / self._h
+        found = self.judgement._replace(verdict=verdict, lyapunov=lyapunov)
+        if verdict != UNDECIDED:
+            found = found._replace(progress=None, reason="")
+        self.judgement = found
+
+    def _checked(self, found: Judgement) -> Judgement:
+        """Return a judgement of the core, or what is known better of this run."""
+        low, high = self._bands.recent()
+        if self._conserved and high + self._start_error < levels.AT_REST:
+            return found._replace(verdict=LOSES, reason="")
+        leaves = found.verdict in LEAVES
+        if leaves and self._returns:
+            return found._replace(verdict=UNDECIDED, reason=levels.RETURNS)
+        straight = self._steps >= levels.LONG and self._bands.one_way >= levels.MIN_ONE_WAY
+        if leaves and self._may_beat and not straight:
+            return found._replace(verdict=UNDECIDED, reason=levels.BEATS)
+        away = max(low, -high)  # how far the present band is from the start
+        if found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), self._rounding):
+            return found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
+        if found.verdict == BOUNDED and away > self._rounding:
+            return found._replace(verdict=UNDECIDED, reason=levels.NEAR)
+        if found.verdict == BOUNDED and self._steps < levels.LONG:
+            return found._replace(verdict=UNDECIDED, reason=levels.SHORT)
+        before = self.judgement.verdict
+        if found.verdict == UNDECIDED and before in LEAVES:
+            beyond = low if before == GROWS else -high
+            if beyond > -levels.AWAY * (high - low):
+                return found._replace(verdict=before, reason="")
+        return found
 
     def _progress(self) -> Progress | None:
         """Return how far it is to the first possible verdict, or else to the last one.
@@ -150,115 +264,16 @@ class Judge:
         None: a verdict can come any time.
         """
         steps_a_period = self._period / self._h
-        if self._orbit and self._orbit.is_regular:
-            need: float = limits.MIN_PERIODS
-        elif self._orbit:
-            need = limits.LONG / steps_a_period
-        elif len(self._bands.bins) < limits.MIN_BINS:
-            need = limits.MIN_BINS * self._bin_steps / steps_a_period
+        long = levels.LONG / steps_a_period
+        if self._orbit:
+            need = float(levels.MIN_PERIODS) if self._orbit.is_regular else long
+        elif self._swings < levels.MIN_SWINGS and not self._may_beat:
+            need = float(levels.MIN_SWINGS)
         else:
-            need = self._min_steps / steps_a_period
-        if self._periods >= need:
+            need = long
+        if self._swings >= need:
             return None
-        return Progress(int(self._periods), math.ceil(need), "swings")
-
-    def _trend(self, verdict: str) -> Judgement:
-        """Return a judgement with the recent slope, if there is evidence for one.
-
-        Where a line fits the logarithm of the energy better than the energy, the slope is the
-        growth rate of the logarithm times the energy.
-        """
-        leaves = verdict in ("grows", "loses")
-        if not leaves and (self._orbit or verdict != "too early"):
-            return Judgement()
-        bins = self._bands.bins
-        recent = bins
-        if len(bins) >= MAX_BINS / 2:  # with fewer, all count: growth that slows down has no slope
-            recent = self._bands.recent(0.5)
-        logarithms = [
-            Bin(step, self._logarithm(low), self._logarithm(high)) for step, low, high in recent
-        ]
-        trend = fit_line(recent)
-        logarithmic = fit_line(logarithms)
-        size = 1.0
-        if logarithms[-1].middle > 0 and logarithmic.sigmas > trend.sigmas:
-            trend = logarithmic
-            size = math.exp(logarithms[-1].middle)
-        significant = trend.sigmas > limits.SLOPE_SIGMAS
-        if leaves:  # the bands have shown the direction, so only that one counts
-            direction = 1 if verdict == "grows" else -1
-            significant = direction * trend.slope > limits.SLOPE_SIGMAS * trend.uncertainty
-        shift = abs(trend.slope) * (recent[-1].step - recent[0].step)
-        slope = trend.slope / self._h * size
-        uncertainty = trend.uncertainty / self._h * size
-        finite = math.isfinite(slope + uncertainty)
-        if not (significant and finite and shift > self._rounding):
-            return Judgement()
-        growth = trend.slope / self._h if size > 2 else None
-        return Judgement(slope=slope, uncertainty=uncertainty, growth=growth)
-
-    def _logarithm(self, error: float) -> float:
-        """Return ln(E/E0) if energy was gained, else the error; small errors hardly change."""
-        return math.log1p(error) if self._conserved and error > 0 else error
-
-    def _verdict_of_bands(self, previous: str) -> str:
-        """Return the verdict by the last quarter of the bins, the present band.
-
-        Errors are relative to the start, so the start is at 0.
-        """
-        low, high = hull(self._bands.recent(0.25))
-        width = high - low
-        distance = max(low, -high)  # of the band from the start; below 0 if it contains the start
-        if self._conserved and high + self._start_error < limits.AT_REST:
-            return "loses"
-        if settled := self._settled(previous, distance, width):
-            return settled
-        away = distance > -limits.RETURNED * width
-        if previous in ("caught", "wanders") or (previous in ("grows", "loses") and away):
-            return previous
-        if self._has_left(distance, self._logarithm(low), self._logarithm(high)):
-            return "grows" if low > 0 else "loses"
-        if self._steps < self._min_steps:
-            return "too early"
-        stays = distance < self._rounding and self._is_flat
-        return "bounded" if stays or previous == "bounded" else "too early"
-
-    def _has_left(self, distance: float, low: float, high: float) -> bool:
-        """Return whether a band, in the logarithm, is far enough from the start for its width."""
-        if distance < self._rounding or max(low, -high) < limits.LEFT * (high - low):
-            return False
-        if not self._may_beat:
-            return True
-        bins = self._bands.bins
-        straight = len(bins) >= limits.STRAIGHT_BINS and one_way_share(bins) >= limits.MIN_ONE_WAY
-        return distance >= 1 and straight
-
-    def _settled(self, previous: str, distance: float, width: float) -> str | None:
-        """Return `caught` if the second half lies in a band elsewhere, `wanders` if in none."""
-        half = self._bands.recent(0.5)
-        early = previous in ("grows", "loses") and len(half) >= MAX_BINS / 4
-        if not (early or self._steps >= self._min_steps):
-            return None
-        if fit_line(half).sigmas > limits.STEADY_SIGMAS:
-            return None
-        low, high = hull(half)
-        typical_widths = (high - low) / max(typical_width(half), self._rounding)
-        left = distance > max(limits.LEFT * width, self._rounding)
-        left = left or previous not in ("too early", "bounded")
-        if left and typical_widths < limits.ONE_BAND:
-            return "caught"
-        long = self._steps >= max(self._min_steps, 4 * limits.LONG)
-        if long and typical_widths > limits.NO_BAND and one_way_share(half) < limits.MAX_ONE_WAY:
-            return "wanders"
-        return None
-
-    @property
-    def _is_flat(self) -> bool:
-        """Whether the slope leaves the error in its band for HORIZON periods."""
-        trend = fit_line(self._bands.bins)
-        shift = (abs(trend.slope) + limits.SLOPE_SIGMAS * trend.uncertainty) * self._steps
-        width = max(typical_width(self._bands.bins), self._rounding)
-        return shift < width / 2 * min(1, self._periods / limits.HORIZON)
+        return Progress(int(self._swings), math.ceil(need), "swings")
 
 
 class _Orbit(Stretching):
@@ -280,8 +295,8 @@ class _Orbit(Stretching):
         """Take in a look point: follow a neighbour from the previous one."""
         self._min_omega = min(self._min_omega, point.omega)
         self._max_omega = max(self._max_omega, point.omega)
-        needed = self._z > limits.REGULAR_Z and not self._linear
-        if needed and self.steps < limits.LYAPUNOV_STEPS:
+        needed = self._z > levels.REGULAR_Z and not self._linear
+        if needed and self.steps < levels.LYAPUNOV_STEPS:
             self.carry((previous.theta, previous.omega), point.step - previous.step)
 
     @property
@@ -292,8 +307,8 @@ class _Orbit(Stretching):
         turn_a_step = max(-self._min_omega, self._max_omega) * abs(self._h)  # rad
         if not self._periodic_in_omega and turn_a_step >= math.pi:
             return False
-        fenced = self._z <= limits.FENCED_Z and self._swing < limits.NEAR_TOP
-        return fenced or self._z <= limits.REGULAR_Z
+        fenced = self._z <= levels.FENCED_Z and self._swing < levels.NEAR_TOP
+        return fenced or self._z <= levels.REGULAR_Z
 
     def verdict(self, previous: str, peak: float, periods: float) -> str:
         """Return the verdict; `peak` is the largest |energy error| so far.
@@ -302,18 +317,16 @@ class _Orbit(Stretching):
         first swing past upright.  The growth of the orbit itself is instability, not chaos.
         """
         if self._linear and not self.is_regular:
-            return "grows"
+            return GROWS
         regular = math.log(max(self.steps, 1))
         growth = math.log1p(peak) / 2  # the energy goes as the square of the orbit
-        if self.log - growth > regular + self._swing / 2 + limits.CHAOTIC_SEPARATION:
-            # a fence would hold h·omega within a range of 2 pi
-            free = (self._max_omega - self._min_omega) * abs(self._h) > math.tau
-            return "wanders" if free else "chaotic"
-        if previous != "too early":
+        if self.log - growth > regular + self._swing / 2 + levels.CHAOTIC_SEPARATION:
+            return CHAOTIC
+        if previous != UNDECIDED:
             return previous
-        proved = self.is_regular and periods >= limits.MIN_PERIODS
-        seen = self.steps >= limits.LONG and self.log < regular + limits.REGULAR_SEPARATION
-        return "bounded" if proved or seen else "too early"
+        proved = self.is_regular and periods >= levels.MIN_PERIODS
+        seen = self.steps >= levels.LONG and self.log < regular + levels.REGULAR_SEPARATION
+        return BOUNDED if proved or seen else UNDECIDED
 
 
 class Judges:
@@ -336,7 +349,7 @@ class Judges:
     @property
     def judgements(self) -> list[Judgement]:
         """The judgements since the last change of the stepping, in the order of the cast."""
-        return [judge.shown for judge in self._judges]
+        return [judge.judgement for judge in self._judges]
 
     def copy(self) -> Self:
         """Return other judges that go on from here."""
@@ -363,18 +376,18 @@ class Judges:
         for method, judge, point in zip(self._cast, self._judges, points, strict=True):
             if point is None:
                 continue
-            previous = judge.shown.verdict
+            previous = judge.judgement.verdict
             judge.look(point)
-            now = judge.shown
+            now = judge.judgement
             if now.verdict != previous:
                 verdict = Milestone("verdict", method, step, t, point.error, now.verdict)
-                self.milestones.append(verdict._replace(trend=now.slope, lyapunov=now.lyapunov))
+                self.milestones.append(verdict._replace(trend=now.trend, lyapunov=now.lyapunov))
         self._note_crossings(step, t, points)
 
     def _note_crossings(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
         for (index, leaving), (other, bounded) in permutations(enumerate(self._judges), 2):
-            leaves = leaving.judgement.verdict in ("grows", "loses")
-            stays = bounded.judgement.verdict == "bounded" and bounded.peak > limits.ROUNDING
+            leaves = leaving.judgement.verdict in LEAVES
+            stays = bounded.judgement.verdict == BOUNDED and bounded.peak > levels.ROUNDING
             if not (leaves and stays):
                 continue
             pair = (index, other)

@@ -7,11 +7,10 @@ from functools import partial
 from typing import NamedTuple
 
 from pendu_tui.engine.models.model import NO_EXTRA, Phase
-from pendu_tui.engine.run.judge import Judges, stride
-from pendu_tui.engine.run.judgement import LookPoint, Milestone
+from pendu_tui.engine.run.judge import Judges, LookPoint, stride
 from pendu_tui.engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import Judgement
+from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene, check_h
 
 

@@ -13,11 +13,10 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from pendu_tui.engine.run.compiled import TieredLoops
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange
-from pendu_tui.engine.run.verdicts import Judgement
+from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 
 COPY_EVERY = 1000  # steps, which take 4 ms: a step back is instant

@@ -5,6 +5,8 @@ This is the only place that spells a verdict; everything else names its constant
 
 from typing import Final, Literal, NamedTuple
 
+from pendu_tui.engine.methods import Method
+
 BOUNDED: Final = "bounded"
 GROWS: Final = "grows"
 LOSES: Final = "loses"
@@ -113,20 +115,40 @@ class Judgement(NamedTuple):
     bound: float | None = None  # |slope| is below it with a probability of 99 %
     share: float | None = None  # what the slope adds up to so far, over the width of the band
     reason: str = ""  # of `undecided`: what is missing, and whether a longer record helps
+    is_evident: bool = False  # the slope stands out from 0
     rests: bool = False  # the energy has left its start and stays in another band
     independent: float = 0.0  # samples
     fluctuation: float | None = None  # standard deviation about a line
-    transient: float = 0.0  # time at the start that was left out
-    first: int = 0  # the index of the first sample that was judged
+
+    @property
+    def trend(self) -> float | None:
+        """The slope, if there is evidence for one, and the energy is not bounded."""
+        return self.slope if self.is_evident and self.verdict not in (BOUNDED, CHAOTIC) else None
+
+    def scaled(self, factor: float) -> "Judgement":
+        """Return the judgement of energies multiplied by a factor."""
+        names = ("slope", "uncertainty", "bound", "fluctuation")
+        values = {name: getattr(self, name) for name in names}
+        return self._replace(**{name: v and v * factor for name, v in values.items()})
 
     def __str__(self) -> str:
         missing = self.progress or self.reason
         return f"{self.verdict}: {missing}" if missing else self.verdict
 
 
-def in_todays_words(judgement: Judgement, rises: bool, symplectic: bool) -> Judgement:
-    """Return a judgement in the words of before in those of today."""
-    return judgement._replace(
-        verdict=word_of_before(judgement.verdict, rises, symplectic),
-        rests=judgement.verdict == "caught",
-    )
+MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
+
+
+class Milestone(NamedTuple):
+    """A method goes over the top, fails, gets a verdict, or its error passes another's for good."""
+
+    kind: MilestoneKind
+    method: Method
+    step: int
+    t: float  # s, simulated
+    energy_error: float  # relative, at this step
+    verdict: str = UNDECIDED
+    other: Method | None = None  # whose error was passed
+    # of a new verdict:
+    trend: float | None = None  # 1/s
+    lyapunov: float | None = None  # 1/s

@@ -1,8 +1,11 @@
 """Compare the verdicts with runs of a million steps and with each other."""
 
+import math
 import subprocess
 import sys
 import time
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -11,20 +14,24 @@ import numpy as np
 
 from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.run.compiled import compiled
-from pendu_tui.engine.run.energies import judge_record
 from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.scenes import SCENES, Scene
-from tests.truths import is_true, scene_at, truths, verdicts, watch
+from tests.bench.truths import WINDOWS, letter, runner
+from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
 
 LIMITS = {
     "wrong": 0,  # cells of the truth table
     "median_wait": 8.1,  # periods
+    "wrong_runs": 0,  # of 400 methods, at five lengths
     "contradictions": 0,  # between `run` and the same energies alone
     "early_trends": 0,  # in symplectic runs of 10 and 30 s
     "million_lines": 2.0,  # s
 }
 SECONDS = 120.0  # of each scene
 SAMPLES = 4000
+SEED = 1
+LENGTHS = (300, 1000, 3000, 10_000, 30_000)  # steps
 
 
 def truth_table(share: float) -> dict[str, Any]:
@@ -33,13 +40,13 @@ def truth_table(share: float) -> dict[str, Any]:
     waits = []
     undecided = 0
     cells = list(truths())[:: round(1 / share)]
-    for method, start, z, letter in cells:
+    for method, start, z, truth in cells:
         scene = scene_at(start, z)
         course = verdicts(method, scene, compiled, watch(scene))
         if not course:
             undecided += 1
-        elif not is_true(letter, course):
-            wrong.append((method.key, start, z, letter, course))
+        elif not is_true(truth, course):
+            wrong.append((method.key, start, z, truth, course))
         elif z <= 0.9:
             waits.append(course[0][2])
     return {
@@ -52,29 +59,67 @@ def truth_table(share: float) -> dict[str, Any]:
     }
 
 
-def contradictions() -> list[tuple[str, str, str, str]]:
-    """Return where the verdicts on a run and on its energies alone differ, "undecided" apart."""
-    different = []
-    for scene in SCENES.values():
-        lockstep = Lockstep(scene, judged=True)
-        steps = round(SECONDS / scene.h)
-        every = max(1, steps // SAMPLES)
-        samples = [lockstep.sample()]
-        while lockstep.step < steps:
-            lockstep.advance(min(every, steps - lockstep.step))
-            samples.append(lockstep.sample())
-        name = "energy" if scene.equations.conserves_energy else "energy_error"
-        for index, judgement in enumerate(lockstep.judgements):
-            readings = [sample.readings[index] for sample in samples]
-            readings = [reading for reading in readings if reading.diverged_at is None]
-            times = np.abs([sample.t for sample in samples[: len(readings)]])
-            energies = np.array([getattr(reading, name) for reading in readings])
-            failed = len(readings) < len(samples)
-            alone = judge_record(times, energies, failed=failed).verdict
-            both = (judgement.verdict, alone)
-            if judgement.verdict != alone and "undecided" not in both:
-                different.append((scene.name, scene.cast[index].key, *both))
-    return different
+def runs(share: float, seed: int = SEED) -> dict[str, Any]:
+    """Return what becomes of random runs of methods that are not symplectic, at five lengths."""
+    random = np.random.default_rng(seed)
+    cast = [method for method in GENERAL if not method.symplectic]
+    loops = {method.key: runner(method) for method in cast}
+    wrong = []
+    verdicts: Counter[str] = Counter()
+    leaving = 0
+    for number in range(round(400 * share)):
+        method = cast[number % len(cast)]
+        theta = float(random.uniform(0.05, 3.1))
+        spins = float(random.uniform() < 0.2) * float(random.uniform(7, 30))
+        z = float(np.exp(random.uniform(math.log(0.01), math.log(2.5))))
+        scene = Scene(theta=theta, omega=spins, h=z / Scene().w0, cast=(method,))
+        rows = np.full((len(WINDOWS), 5), math.nan)
+        loops[method.key](scene.theta, scene.omega, scene.h, np.array(WINDOWS), rows)
+        truth = letter(method, scene.h, rows)
+        leaving += truth in "gdkw"
+        lockstep = Lockstep(scene, loops=compiled, judged=True)
+        for steps in LENGTHS:
+            lockstep.advance(steps - lockstep.step)
+            verdict = lockstep.judgements[0].verdict
+            verdicts[verdict] += 1
+            if (verdict == "bounded" and truth in "gdkw") or (
+                verdict not in ("undecided", "failed") and (verdict,) not in ALLOWED[truth]
+            ):
+                wrong.append((method.key, theta, spins, z, truth, steps, verdict))
+    return {"wrong_runs": len(wrong), "wrong": wrong, "leaving": leaving, "verdicts": verdicts}
+
+
+def contradictions(share: float) -> list[tuple[Any, ...]]:
+    """Return where the judgements of a run and of its energies alone exclude each other."""
+    random = np.random.default_rng(SEED)
+    scenes = list(SCENES.values())
+    for _ in range(round(200 * share)):
+        theta = float(random.uniform(0.05, 3.1))
+        z = float(np.exp(random.uniform(math.log(0.01), math.log(2.0))))
+        cast = tuple(random.choice(np.array(GENERAL, dtype=object), 3, replace=False))
+        scenes.append(Scene(theta=theta, h=z / Scene().w0, cast=cast))
+    return [each for scene in scenes for each in _contradictions(scene)]
+
+
+def _contradictions(scene: Scene) -> Iterator[tuple[Any, ...]]:
+    lockstep = Lockstep(scene, loops=compiled, judged=True)
+    steps = round(SECONDS / scene.h)
+    every = max(1, steps // SAMPLES)
+    samples = [lockstep.sample()]
+    while lockstep.step < steps:
+        lockstep.advance(min(every, steps - lockstep.step))
+        samples.append(lockstep.sample())
+    name = "energy" if scene.equations.conserves_energy else "energy_error"
+    for index, of_run in enumerate(lockstep.judgements):
+        readings = [sample.readings[index] for sample in samples]
+        readings = [reading for reading in readings if reading.diverged_at is None]
+        times = np.abs([sample.t for sample in samples[: len(readings)]])
+        energies = np.array([getattr(reading, name) for reading in readings])
+        failed = len(readings) < len(samples)
+        alone = judge_record(times, energies, failed=failed)
+        words = (of_run.verdict, alone.verdict)
+        if words[0] != words[1] and "undecided" not in words and words[0] != "chaotic":
+            yield scene.name, scene.theta, scene.z, scene.cast[index].key, *words
 
 
 def early_trends() -> int:
@@ -87,7 +132,7 @@ def early_trends() -> int:
                 scene = Scene(theta=float(theta), h=z / Scene().w0, cast=cast)
                 lockstep = Lockstep(scene, judged=True)
                 lockstep.advance(round(seconds / scene.h))
-                trends += sum(judgement.slope is not None for judgement in lockstep.judgements)
+                trends += sum(judgement.trend is not None for judgement in lockstep.judgements)
     return trends
 
 
@@ -106,9 +151,10 @@ def million_lines() -> float:
 
 
 def measure(share: float) -> dict[str, Any]:
-    contradicting = contradictions()
+    contradicting = contradictions(share)
     return {
         **truth_table(share),
+        **runs(share),
         "contradictions": len(contradicting),
         "contradicting": contradicting,
         "early_trends": early_trends(),

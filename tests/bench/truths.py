@@ -17,6 +17,7 @@ import numba
 import numpy as np
 
 from pendu_tui.engine.methods import USUAL_CAST, Method
+from pendu_tui.engine.methods.method import COMPILABLE
 from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
 
 WINDOWS = [1 << power for power in range(4, 20)] + [3 << 18, 1 << 20]  # steps at their ends
@@ -36,7 +37,8 @@ def runner(method: Method):  # type: ignore[no-untyped-def]
     """Return a loop that fills in a row for each window: the lowest and highest energy error, the
     logarithm of the stretching, and the lowest and highest omega.
     """
-    phases = numba.njit(method.phases)
+    compilable = COMPILABLE.get(method.phases)
+    phases = numba.njit(compilable() if compilable else method.phases)
     w0 = math.sqrt(9.81)
 
     @numba.njit

@@ -97,14 +97,14 @@ def test_a_force_may_use_its_array_again(key):
 def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale):
     found = judge(TIMES.tolist(), (WAVE + 1e-3 * TIMES).tolist(), scale=scale)
     assert found.verdict == "grows"
-    assert abs(found.trend * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
+    assert abs(found.slope * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
 
 
 def test_an_energy_that_never_changes_is_bounded_on_every_scale():
     for scale in ("std", "first"):
         found = judge(range(100), [3.0] * 100, scale=scale)
-        assert (found.verdict, found.trend, found.max_error) == ("bounded", 0, 0)
+        assert (found.verdict, found.slope, found.max_error) == ("bounded", 0, 0)
 
 
 @pytest.mark.parametrize("energy", [math.nan, math.inf])
@@ -113,7 +113,7 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
     energies = [*WAVE[: -10 - len(after)], *[energy] * 10, *after]
     found = judge(TIMES, energies)
     assert found.verdict == "failed"
-    assert found.trend is None
+    assert found.slope is None
     assert found.max_error < 10
 
 

@@ -242,6 +242,7 @@ def test_euler_caught_is_held_near_110_times_its_energy_by_half_a_turn_a_step():
     assert fmean(turns[half:]) == pytest.approx(0.5, abs=0.005)
     assert 100 < min(energies[half:]) < max(energies[half:]) < 120  # it wobbles
     assert fmean(energies[half:]) == pytest.approx(110, abs=2)
+    lockstep.advance(1000)
     judgement = lockstep.judgements[EXPLICIT]
     assert (judgement.verdict, judgement.rests) == ("grows", True)
 

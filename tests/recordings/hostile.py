@@ -10,8 +10,8 @@ from pathlib import Path
 import zstandard
 from mcap.writer import CompressionType, Writer
 
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.recordings.events import Event, noticed
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,

@@ -9,11 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.methods import METHODS, RK4, VELOCITY_VERLET
 from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Reading, Sample
-from pendu_tui.engine.run.verdicts import VERDICTS
+from pendu_tui.engine.run.verdicts import VERDICTS, Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.events import Event, fingerprint, noticed
@@ -236,3 +235,20 @@ def test_a_fingerprint_is_reproducible_and_differs_if_one_value_does(monkeypatch
     assert fingerprint.__wrapped__(function) == here
     monkeypatch.setattr(math, function, wrong)
     assert fingerprint.__wrapped__(function) != here
+
+
+@pytest.mark.parametrize(
+    ("word", "method", "error", "today"),
+    [
+        ("caught", RK4, 0.5, "grows"),
+        ("caught", RK4, -0.5, "loses"),
+        ("wanders", VELOCITY_VERLET, 0.5, "chaotic"),
+        ("wanders", RK4, 0.5, "undecided"),
+        ("too early", RK4, 0.5, "undecided"),
+        ("bounded", RK4, 0.5, "bounded"),
+    ],
+)
+def test_verdicts_of_before_read_as_those_of_today(word, method, error, today):
+    milestone = Milestone("verdict", method, 7, 0.7, error, word)
+    event = decode_event(encode_event(noticed(1, milestone)))
+    assert event.milestone.verdict == today

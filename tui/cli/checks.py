@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
-from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, Progress
+from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import did_you_mean
@@ -181,9 +181,8 @@ def _found(
     if not (unknown or compare(ours, limit)):
         return ""
     if isinstance(ours, str):
-        progress = reading.get("progress")
-        why = f": {Progress(**progress)}" if isinstance(progress, Mapping) else ""
-        return f"{name} is {ours}{why}"
+        reason = reading.get("reason")
+        return f"{name} is {ours}: {reason}" if reason else f"{name} is {ours}"
     return f"{name} is {ours:.3g}"
 
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
-from pendu_tui.engine.run.verdicts import FAILED, LEAVES, Progress
+from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
@@ -25,6 +25,7 @@ from pendu_tui.tui.words.numbers import counted
 if TYPE_CHECKING:
     from rich.text import Text
 
+    from pendu_tui.engine.run.verdicts import Judgement
     from pendu_tui.tui.cli.tables import Series
 
 MAX_ERROR = 1e300  # JSON has no infinity
@@ -175,34 +176,28 @@ def _judged(series: "Series", options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one table.  Raises UserError."""
     import numpy as np
 
-    from pendu_tui.engine.run.energies import judge_record
+    from pendu_tui.engine.run.record import judge_record
 
     _finish(series, options)
     times = series.times
     energies = series.energies
-    # relative to the standard deviation, no result may depend on the zero of energy
-    is_absolute = options.scale != "std"
-    judgement = judge_record(
-        times, energies, failed=series.failed_at is not None, absolute=is_absolute
-    )
-    rest = energies[judgement.first :]
-    size = _size(series, rest, options.scale)
+    judgement = judge_record(times, energies, failed=series.failed_at is not None)
+    size = _size(series, energies, options.scale)
     with np.errstate(over="ignore"):
-        errors = np.clip((rest - rest[0]) / size, -MAX_ERROR, MAX_ERROR)
+        errors = np.clip((energies - energies[0]) / size, -MAX_ERROR, MAX_ERROR)
     fields = {
         "table": series.number,
         "tables": series.count,
         "time": printable(series.named(series.choice.time)),
         "energy": printable(series.named(series.choice.energy)),
-        **fields_of(judgement, "verdict", "transient", "fluctuation"),
-        "progress": judgement.progress and judgement.progress._asdict(),
-        **_trend(series, judgement.slope, judgement.uncertainty, size),
+        **fields_of(judgement, "verdict", "reason", "rests", "share", "fluctuation"),
+        **_trend(series, judgement, size),
         "independent_samples": judgement.independent,
         "max_energy_error": float(np.abs(errors).max()),
         "energy_error": float(errors[-1]),
-        "first_energy": float(rest[0]),
-        "lowest_energy": float(rest.min()),
-        "highest_energy": float(rest.max()),
+        "first_energy": float(energies[0]),
+        "lowest_energy": float(energies.min()),
+        "highest_energy": float(energies.max()),
         "scale": size,
         "samples": len(times),
         "first_time": float(times[0]),
@@ -266,25 +261,25 @@ def _size(series: "Series", energies: Any, scale: float | str | None) -> float:
     return size
 
 
-def _trend(
-    series: "Series", slope: float | None, uncertainty: float | None, size: float
-) -> dict[str, Any]:
-    """Return the trend, absolute and relative to a size, with units."""
+def _trend(series: "Series", judgement: "Judgement", size: float) -> dict[str, Any]:
+    """Return the trend, absolute and relative to a size, with units; `slope` is its other name."""
     time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields: dict[str, Any] = {
         "time_unit": time_unit,
         "energy_unit": energy_unit,
         "trend": None,
+        "slope": None,
         "uncertainty": None,
+        "bound": None,
         "trend_unit": time_unit and f"1/{time_unit}",
         "absolute_trend": None,
         "absolute_uncertainty": None,
     }
-    if slope is not None and uncertainty is not None:
-        relative = {"trend": slope / size, "uncertainty": uncertainty / size}
-        if abs(relative["trend"]) + relative["uncertainty"] < MAX_ERROR:
-            fields |= relative
-            fields |= {"absolute_trend": slope, "absolute_uncertainty": uncertainty}
+    relative = judgement.scaled(1 / size)
+    if relative.slope is not None and abs(relative.slope) + (relative.bound or 0) < MAX_ERROR:
+        fields |= fields_of(relative, "slope", "uncertainty", "bound")
+        fields |= {"trend": relative.slope, "absolute_trend": judgement.slope}
+        fields["absolute_uncertainty"] = judgement.uncertainty
     return fields
 
 
@@ -333,18 +328,20 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
     time_unit = _spaced(fields["time_unit"])
     energy_unit = _spaced(fields["energy_unit"])
     verdict = fields["verdict"]
-    if fields["progress"]:
-        verdict += f": {Progress(**fields['progress'])}"
+    if fields["rests"]:
+        verdict += ", and rests now"
+    if fields["reason"]:
+        verdict += f": {fields['reason']}"
     if fields["diverged_at"] is not None:
         verdict += f": the energy is nan or inf at {fields['diverged_at']:g}{time_unit}"
-    if fields["transient"]:
-        verdict += f", after a transient of {fields['transient']:.3g}{time_unit}"
     lines = [_title(fields), *_listed(fields), _line("verdict", verdict)]
     if fields["trend"] is not None:
         per = f"per {fields['time_unit'] or 'unit of time'}"
         relative = f"relative {fields['trend']:+.2e} ± {fields['uncertainty']:.0e} {per}"
         absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}"
         lines.append(_line("trend", f"{relative}, absolute {absolute}{energy_unit} {per}"))
+        share = f"{100 * fields['share']:+.2g} % of the band over this record"
+        lines.append(_line("bound", f"relative {fields['bound']:.1e} {per} at 99 %; {share}"))
     if fields.get("energy_per_ns_per_atom") is not None:
         text = f"{fields['energy_per_ns_per_atom']:+.2e}{energy_unit} per ns"
         if "temperature" in fields:

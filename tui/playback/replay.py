@@ -8,10 +8,9 @@ from copy import copy
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
-from pendu_tui.engine.run.verdicts import FAILED, Judgement
+from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.tui.playback.history import History, changes_of

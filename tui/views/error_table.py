@@ -79,7 +79,7 @@ COLUMNS = (
     VERDICT,
     Column(8, ENERGY_ERROR.head, lambda line, w: scientific(line.reading.energy_error, w)),
     Column(7, LARGEST.head, lambda line, w: scientific(line.largest, w, 1, "-")),
-    Column(5, TREND.head, lambda line, w: scientific(line.judgement.slope, w)),
+    Column(5, TREND.head, lambda line, w: scientific(line.judgement.trend, w)),
     Column(3, THETA_ERROR.head, lambda line, w: scientific(line.theta_error, w, 1, "-")),
     Column(4, THETA.head, _angle),
     Column(2, OMEGA.head, _omega),

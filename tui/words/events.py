@@ -4,8 +4,7 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.run.judgement import Milestone
-from pendu_tui.engine.run.verdicts import FAILED, VERDICTS
+from pendu_tui.engine.run.verdicts import FAILED, VERDICTS, Milestone
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import energy_ratio, short_name
 from pendu_tui.tui.words.numbers import seconds, start, two_digits

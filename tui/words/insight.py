@@ -11,7 +11,6 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import SteppingChange
 from pendu_tui.engine.run.verdicts import (
@@ -22,6 +21,7 @@ from pendu_tui.engine.run.verdicts import (
     LOSES,
     VERDICTS,
     Judgement,
+    Milestone,
 )
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.palette import ink_of

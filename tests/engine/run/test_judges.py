@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run import compiled
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import SCENES, Scene
 
 DRIFT = SCENES["drift"]

@@ -9,9 +9,7 @@ import pytest
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run import compiled
-from pendu_tui.engine.run.bands import Bands, fit_line
-from pendu_tui.engine.run.judge import Judge
-from pendu_tui.engine.run.judgement import LookPoint
+from pendu_tui.engine.run.judge import Judge, LookPoint
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
@@ -117,35 +115,16 @@ def judged(errors: list[float]) -> Judge:
     return judge
 
 
-@pytest.mark.parametrize(("memory", "least"), [(0.0, 180), (0.6, 170)])
-def test_the_uncertainty_is_honest(memory: float, least: int) -> None:
-    """The true slope lies within two uncertainties in about 95 % of 200 noisy lines.
-
-    Noise may last over several bins; with the formula for independent residuals, 60 % would lie there.
-    """
-    hits = 0
-    for seed in range(200):
-        noise, slow, bands = random.Random(seed), 0.0, Bands(16)
-        for step in range(16 * 31 + 1):
-            if step % 16 == 0:
-                slow = memory * slow + noise.gauss(0, 0.1 if memory else 0.0)
-            error = 1e-3 * step + slow + noise.gauss(0, 0.1 * (1 - memory))
-            bands.add(step, error, error, error)
-        trend = fit_line(bands.bins)
-        hits += abs(trend.slope - 1e-3) < 2 * trend.uncertainty
-    assert least <= hits <= 199
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_a_random_walk_of_roundings_is_no_trend(seed: int) -> None:
     walk, errors = random.Random(seed), [0.0]
     for _ in range(20_000):
         errors.append(errors[-1] + walk.gauss(0, 1e-15))
-    assert judged(errors).shown.verdict in ("undecided", "bounded")
+    assert judged(errors).judgement.verdict in ("undecided", "bounded")
 
 
 def test_before_four_swings_it_is_too_early_and_there_is_no_slope() -> None:
-    judgement = judged([0.0] * 60).shown
+    judgement = judged([0.0] * 60).judgement
     assert (judgement.verdict, judgement.slope, judgement.uncertainty) == ("undecided", None, None)
     assert judgement.progress is not None
     assert judgement.progress.have < judgement.progress.need
@@ -155,8 +134,8 @@ def test_a_damped_energy_is_judged_only_where_it_is_above_rounding() -> None:
     scene = SCENES["damped"].altered(theta=2.0, omega=9.0, friction=0.5)
     lockstep = Lockstep(scene, loops=LOOPS, judged=True)
     lockstep.advance(round(160 / scene.h))
-    euler, lagged, *others = [each.verdict for each in lockstep.judgements]
-    assert (euler, lagged, {*others}) == ("grows", "loses", {"undecided"})
+    verdicts = [each.verdict for each in lockstep.judgements]
+    assert verdicts == ["grows", "loses", "undecided", "grows"]
 
 
 def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:

@@ -14,7 +14,7 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run import compiled, loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
-from pendu_tui.engine.run.verdicts import Judgement, Progress
+from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
@@ -132,8 +132,9 @@ def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) ->
             row
             | {
                 "theta_error": None if math.isnan(theta_error) else theta_error,
-                "drift_per_second": judgement.slope,
-                "verdict": judgement.verdict,
+                "drift_per_second": judgement.trend,
+                **fields_of(judgement, "slope", "uncertainty", "bound", "share"),
+                **fields_of(judgement, "verdict", "rests", "reason"),
                 "progress": judgement.progress and judgement.progress._asdict(),
                 "lyapunov_per_second": judgement.lyapunov,
                 "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
@@ -169,6 +170,8 @@ def _report(
         if milestone.kind in ("over the top", "errors cross")
     ]
     for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
+        if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
+            notes.append(f"{method.label} is undecided: {judgement.reason}.")
         insight = irregular(method, judgement, 0.0)
         if judgement.lyapunov and insight:
             notes.append(sentence(insight))
