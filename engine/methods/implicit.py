@@ -22,15 +22,16 @@ WIDTH = 2.0**-26  # rad, and relative, of the difference quotient: half the digi
 def implicit(share: float) -> Phases:
     """Return the method with the force at a share s of the step: 1/2 is the middle, 1 the end.
 
-    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.
+    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.  A
+    step for which Newton's iteration finds none is nan.
     """
-    for_numbers = _solving(share, abs, bool)
+    for_numbers = _solving(share, size=abs, any_of=bool, root=_root)
 
     @cache
     def for_arrays() -> Phases:
         import numpy as np
 
-        return _solving(share, np.abs, np.any)
+        return _solving(share, size=np.abs, any_of=np.any, root=np.sqrt)
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         if any(hasattr(value, "shape") for value in (*phase, h)):
@@ -41,8 +42,19 @@ def implicit(share: float) -> Phases:
     return implicit_steps
 
 
-def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], Any]) -> Phases:
-    """Return the method for numbers with these functions for |x| and "is any true"."""
+def _root(square: float) -> float:
+    return math.nan if square < 0 else math.sqrt(square)
+
+
+def _solving(
+    share: float,
+    size: Callable[[Any], Any],
+    any_of: Callable[[Any], Any],
+    root: Callable[[Any], Any],
+) -> Phases:
+    """Return the method for numbers with these functions for |x|, any(x) and a root,
+    which is nan below 0.
+    """
 
     def solved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta, omega = phase
@@ -61,6 +73,8 @@ def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], A
                 unsolved = size(correction) > precision
                 if not any_of(unsolved):
                     break
+            if any_of(unsolved):
+                inside = inside + root(-1.0 * unsolved)  # nan where there is no solution
             a = force(inside)
             theta = theta + h * (omega + part * a)
             omega = omega + h * a
@@ -91,9 +105,9 @@ BACKWARD_EULER = Method(
     other_names=("implicit Euler",),
     reference=f"{HAIRER}, I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
-    note="The mirror image of explicit Euler: it loses energy at every h. Newton's iteration to "
-    "1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 there may be several "
-    "solutions.",
+    note="The mirror image of explicit Euler: it loses the energy of small swings. Newton's iteration "
+    "to 1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 a step may have several "
+    "solutions, and fails if the iteration finds none.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -113,9 +127,9 @@ IMPLICIT_MIDPOINT = Method(
     reference=f"{HAIRER}, II.1.1",
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
-    note="It keeps the energy of small swings exactly at any h, but not their phase. Newton's "
-    "iteration to 1e-12 rad takes two evaluations a round; a spring has a closed form, counted as "
-    "one.",
+    note="It keeps the energy of small swings exactly up to z = 2, but not their phase; beyond, a "
+    "step fails if Newton's iteration finds no solution. To 1e-12 rad it takes two evaluations a "
+    "round; a spring has a closed form, counted as one.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

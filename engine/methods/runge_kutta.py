@@ -98,7 +98,7 @@ HEUN = Method(
     reference=f"{HAIRER}, II.1.1",
     used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical "
     "integration]",
-    note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
+    note="It gains energy: a step multiplies that of small swings by 1 + z⁴/4.",
 )
 
 EXPLICIT_MIDPOINT = Method(
@@ -113,7 +113,7 @@ EXPLICIT_MIDPOINT = Method(
     other_names=("modified Euler",),
     reference=f"{HAIRER}, II.1.1",
     used="neurons: Brian 2, rk2 [brian2.readthedocs.io, Numerical integration]",
-    note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
+    note="It gains energy: a step multiplies that of small swings by 1 + z⁴/4.",
 )
 
 FAMILY = (RK4, HEUN, EXPLICIT_MIDPOINT)

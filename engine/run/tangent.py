@@ -68,7 +68,10 @@ class Stretching:
 
     def carry(self, phase: Phase, steps: int) -> None:
         """Advance the displacement from this phase, by few enough steps not to overflow."""
-        _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
+        try:
+            _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
+        except (ArithmeticError, ValueError):  # the sine of a large imaginary number
+            return
         length = math.hypot(theta, omega / self._w0)
         if 0 < length < math.inf:
             self._along = theta / length, omega / length

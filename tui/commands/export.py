@@ -53,6 +53,9 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
         methods = recording.methods_of(sample.run)
         for method, reading in zip(methods, sample.readings, strict=True):
             place = (clock, sample.run, sample.step, sample.t, method)
-            yield *place, *scalars_of(reading), *map(reading.extra.get, extra)
+            values = [*scalars_of(reading), *map(reading.extra.get, extra)]
+            if reading.diverged_at is not None:  # a recording repeats the last finite numbers
+                values = [value if value == reading.diverged_at else None for value in values]
+            yield *place, *values
         if count % 1000 == 0:
             show(count, recording.samples)
