@@ -1,10 +1,12 @@
 """The bundled recordings: every later version of the methods is compared with them."""
 
 import csv
+from pathlib import Path
 
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.recordings.format import values_of
 from pendu_tui.recordings.library import GOLDEN, golden_names
 from pendu_tui.recordings.recording import Recording
@@ -86,3 +88,13 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number():
     columns, *rows = csv.reader(pendu("export", "drift").out.splitlines())
     assert tuple(columns) == columns_of(["pendulum"])
     assert rows == [[str(value).replace("None", "NaN") for value in row] for row in expected]
+
+
+def test_a_recording_made_with_the_eight_verdicts_of_before_reads():
+    older = Path(__file__).parent / "older" / "eight-verdicts.mcap"
+    with Recording.open(older) as before, Recording.open(GOLDEN / "verdicts.mcap") as now:
+        assert samples_of(before) == samples_of(now)
+        milestones = [each for run in before.runs for each in run.milestones]
+        words = {each.verdict for each in milestones if each.kind == "verdict"}
+        assert words == {"bounded", "grows", "loses"}
+        assert {each.verdict for each in milestones} <= VERDICTS.keys()

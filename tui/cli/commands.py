@@ -124,7 +124,9 @@ CSV and figures are of the map, with every swing.
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
-drift_per_second: the slope of the relative energy error, or null without evidence for a trend
+slope: of the relative energy error, per second; |slope| is below `bound` at 99 %; share: what it
+adds up to over the run, in widths of the band; drift_per_second: the slope, or null without
+evidence for a trend
 
 verdicts:
 {verdicts}

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pendu_tui.engine.models.model import ExactMotion
-from pendu_tui.engine.run.judgement import Milestone
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange
-from pendu_tui.engine.run.verdicts import Judgement
+from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback.history import History
