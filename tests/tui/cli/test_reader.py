@@ -258,6 +258,28 @@ def test_runs_are_parted_and_restarts_joined(text, lengths):
     assert [len(series.times) for series in tables(text)] == lengths
 
 
+@pytest.mark.parametrize(
+    ("head", "asked", "found"),
+    [
+        ("# t Kin Pot\n# [ps] (eV) (eV)\n", ("t", "kin+pot"), "t ps, Kin+Pot eV"),
+        ("Time[fs]  Kin.[a.u.]  Pot.[a.u.]\n", ("time", "Kin.+Pot."), "Time fs, Kin.+Pot. hartree"),
+        ("t,Kin,Pot\n", ("1", "2+3"), "t, Kin+Pot"),
+        ("", ("1", "2+3"), "column 1, column 2+column 3"),
+    ],
+)
+def test_columns_are_named_or_numbered_and_added(head, asked, found):
+    time, energy = asked
+    (series,) = tables(head + rows("{t:.6E} {k} {p}").replace("E+", "D+"), time=time, energy=energy)
+    assert columns(series) == found
+    assert series.energies == pytest.approx(ENERGIES)
+
+
+def test_a_head_on_each_page_does_not_begin_a_table():
+    pages = (rows("ENERGY: {s} 1.5 {e}", SAMPLES[at : at + 20]) for at in range(0, 90, 20))
+    text = "".join(f"ETITLE: TS BOND TOTAL\n{page}\n" for page in pages)
+    assert [len(series.times) for series in tables(text)] == [90]
+
+
 @pytest.mark.parametrize("legends", [("Total Energy", "Potential"), ("Potential", "Total Energy")])
 def test_each_set_of_xmgrace_has_its_own_legend(legends):
     names = "".join(f'@ s{place} legend "{name}"\n' for place, name in enumerate(legends))

@@ -57,48 +57,14 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-XVG = '# by gmx energy\n@    xaxis  label "Time (ps)"\n@ yaxis label "(kJ/mol)"\n'
-XVG += '@ s0 legend "Potential"\n@ s1 legend "Total Energy"\n' + lines("  {t:.6f}  -3.0  {e!r}")
 FIRST = [(t, e - 9) for t, e in ROWS[:200]]
 LOG = "LAMMPS (2 Aug 2023)\nthermo_style custom step temp etotal\n   Step   Temp   TotEng\n"
 LOG += lines("  {t:.1f} 300. {e!r}", FIRST) + "Loop time of 1 on 1 procs\n\n"
 LOG += table("  {t:.1f} {e!r} 300.", "Step TotEng Temp") + "Loop time\n"
 
 
-CP2K = "#   Step Nr.   Time[fs]   Kin.[a.u.]   Pot.[a.u.]   Cons Qty[a.u.]   UsedTime[s]\n"
-CP2K += "".join(f"  {n}  {n / 2}  0.5  -17.5  {-17 + n / 8}  1.0\n" for n in range(9))
-JSON_LINES = '{"t": 0, "E": 1.5}\n{"t": 1, "E": 1.5, "x": null}\n\nrubbish\n{"t": 2, "E": "1.5"}\n'
-MDOUT = "  4.  RESULTS\n"
-for ps in range(3):
-    MDOUT += f" NSTEP = {ps * 500:8} TIME(PS) =  {ps:.3f} TEMP(K) = 300.38 PRESS =     0.0\n"
-    MDOUT += " Etot   =  -5606.5 EKtot   =   1234.5 EPtot      =  -6841.0\n ------\n"
-MDOUT += "   A V E R A G E S   O V E R 3 S T E P S\n TIME(PS) = 9.0\n Etot = 0 EKtot = 1\n"
-NPZ = io.BytesIO()
-np.savez(NPZ, time=np.arange(3.0), E=np.full(3, 1.5))
 PICKLES = io.BytesIO()
 np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
-HALVES = [n / 2 for n in range(9)]
-RISING = [-17 + n / 8 for n in range(9)]
-
-
-@pytest.mark.parametrize(
-    ("data", "names", "units", "times", "energies"),
-    [
-        (CP2K, ("Time", "Cons Qty[a.u.]"), ("fs", "hartree"), HALVES, RISING),
-        (CP2K, ("step nr.", "Kin.+Pot."), ("", "hartree"), list(range(9)), [-17.0] * 9),
-        (JSON_LINES, ("t", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
-        (MDOUT, ("time", "EKtot+EPtot"), ("ps", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
-        (NPZ.getvalue(), ("time", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
-        ("t,E\nps,eV\n0,1\n1,1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
-        (XVG, ("1", "3"), ("ps", "kJ/mol"), *map(list, zip(*ROWS, strict=True))),
-        ("# t E\n# [ps] (eV)\n0 1\n1 1\n", ("t", "E"), ("ps", "eV"), [0, 1], [1, 1]),
-        ("t E\n0.0D0 1.5D+02\n1.0d-1 1.5d+02\n", ("t", "E"), ("", ""), [0, 0.1], [150, 150]),
-    ],
-)
-def test_other_forms_are_read_and_columns_added(data, names, units, times, energies):
-    found = read(data, *names)
-    assert found.units == units
-    assert [list(found.times), list(found.energies)] == [times, energies]
 
 
 def test_one_table_is_judged_and_named():
@@ -166,31 +132,6 @@ def test_only_energies_around_zero_are_advised_to_use_their_spread():
     names = {"time": "1", "energy": "2"}
     assert "--scale std" not in judge(spike, **names).out
     assert "--scale std" in judge(around_zero, **names).out
-
-
-HEAD = "   Step   Time   Temp   TotEng\n"
-FOOTER = "Loop time of 1 on 1 procs for 9 steps\nNlocal: 9 ave 9 max 9 min\nHistogram: 1 0 0 0\n"
-LATER = [(t + 30, e) for t, e in ROWS]
-RERUN = f"1 by 1 by 1 grid\n{HEAD}{lines('{n} {t} 300. {e}', FIRST)}{FOOTER}"
-RERUN += f"{HEAD}{lines('{n} {t} 300. {e}', LATER)}{FOOTER}"
-PAGES = (lines("ENERGY: {t} 1.5 {e}", ROWS[at : at + 20]) for at in range(0, 300, 20))
-
-
-@pytest.mark.parametrize(
-    ("text", "names", "tables"),
-    [
-        (lines("{t},{e}", FIRST) + lines("{t},{e}") + "29.95", ("1", "2"), 2),  # cut while written
-        (RERUN, ("Time", "TotEng"), 2),
-        (RERUN, ("2", "4"), 2),
-        ("".join(f"ETITLE: TS BOND TOTAL\n{page}\n" for page in PAGES), ("TS", "TOTAL"), 1),
-    ],
-)
-def test_a_second_header_or_time_begins_a_table_and_neither_a_footer_nor_a_page(
-    text, names, tables
-):
-    found = read(text, *names)
-    assert (found.count, len(found.times)) == (tables, 300)
-    assert found.energies[0] == 100
 
 
 def test_rows_that_cannot_be_used_are_counted():
