@@ -1,4 +1,4 @@
-"""Draw the animation of the README, .github/lab.svg: the lab as it runs, without scripts.
+"""Draw the animation of the README, .github/lab.svg: a run and a throw, without scripts.
 
 python tests/bench/film.py
 """
@@ -6,21 +6,27 @@ python tests/bench/film.py
 import asyncio
 import re
 import sys
+from collections.abc import AsyncIterator
 from pathlib import Path
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.tui.screens.still import still
+from pendu_tui.tui.screens.svg import normalised
+from pendu_tui.tui.views.lab.stage import Stage
+from pendu_tui.tui.views.view import Held
+from tests.tui.harness import Theatre, lab
 
 TARGET = Path(__file__).parent.parent.parent / ".github" / "lab.svg"
 SIZE = (80, 24)
 SECONDS_PER_FRAME = 0.6
-TIMES = [SECONDS_PER_FRAME * index for index in range(1, 21)]  # s: over the top at 7
+BEFORE = 5  # frames of the first run
+HELD = (0.5, 1.4, 2.1, 2.4)  # rad, where the pointer holds all bobs
+OMEGA = 1.5  # rad/s, with which it throws them
+AFTER = 9  # frames in which they part
 MAX_BYTES = 1_500_000
 
 
 def main() -> int:
     """Write the film; return 1 if it is too large for a README."""
-    frames = [asyncio.run(still(DEFAULT_SCENE, time, SIZE)) for time in TIMES]
+    frames = asyncio.run(shot())
     film = film_of(frames)
     size = len(film.encode())
     if size > MAX_BYTES:
@@ -29,6 +35,33 @@ def main() -> int:
     TARGET.write_text(film, encoding="utf-8")
     print(f'{{"frames": {len(frames)}, "bytes": {size}}}')
     return 0
+
+
+async def shot() -> list[str]:
+    async with lab(size=SIZE) as theatre:
+        return [picture async for picture in frames_of(theatre)]
+
+
+async def frames_of(theatre: Theatre) -> AsyncIterator[str]:
+    """Yield pictures of a run, of the bobs in the hand, and of the run after the throw."""
+    stage = theatre.stage.query_one(Stage)
+
+    def picture() -> str:
+        return normalised(theatre.app.export_screenshot())
+
+    for _ in range(BEFORE):
+        await theatre.run(SECONDS_PER_FRAME)
+        yield picture()
+    for theta in HELD:
+        stage.post_message(Held(theta))
+        await theatre.pilot.pause()
+        yield picture()
+    stage.post_message(Held(None))
+    stage.start_at(HELD[-1], OMEGA)
+    await theatre.pilot.pause()
+    for _ in range(AFTER):
+        await theatre.run(SECONDS_PER_FRAME)
+        yield picture()
 
 
 def film_of(frames: list[str]) -> str:
