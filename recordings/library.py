@@ -83,13 +83,16 @@ def publish(part: Path, path: Path, force: bool = False) -> None:
 
 def folder() -> Path:
     """Return $PENDU_RECORDINGS, or else a folder in the user's data, which need not exist."""
-    chosen = os.environ.get("PENDU_RECORDINGS")
+    chosen = os.environ.get("PENDU_RECORDINGS", "").strip()
     if not chosen:
         return platformdirs.user_data_path("pendu-tui", False) / "recordings"
+    why = "PENDU_RECORDINGS names no folder"
+    if "://" in chosen:
+        raise DiskError(why, chosen)
     try:
         return Path(chosen).expanduser()
     except RuntimeError as error:
-        raise DiskError("PENDU_RECORDINGS names no folder", chosen) from error
+        raise DiskError(why, chosen) from error
 
 
 def new_path(where: Path | None = None) -> Path:

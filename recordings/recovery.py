@@ -1,6 +1,7 @@
 """Recover: save the intact chunks of a damaged or unfinished recording as a complete one.
 
-No number is repaired, guessed or changed.
+No number is repaired, guessed or changed, but the extremes of the first sample after a gap: the
+steps before it are lost.
 """
 
 from pathlib import Path

@@ -7,7 +7,7 @@ import pytest
 from mcap.writer import Writer
 
 from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.errors import DiskError, RecordingError
 from pendu_tui.recordings.library import GOLDEN, being_made, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
@@ -31,8 +31,13 @@ def fill(folder, **ages):
 
 def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monkeypatch):
     assert library.folder() == folder
-    monkeypatch.delenv("PENDU_RECORDINGS")
-    assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
+    for nothing in ("", " "):
+        monkeypatch.setenv("PENDU_RECORDINGS", nothing)
+        assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
+    for no_folder in ("s3://bucket/runs", "~nosuchuser/runs"):
+        monkeypatch.setenv("PENDU_RECORDINGS", no_folder)
+        with pytest.raises(DiskError, match="names no folder"):
+            library.folder()
 
 
 def test_a_new_recording_has_a_free_name_with_the_time(folder, monkeypatch):
