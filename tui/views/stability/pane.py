@@ -11,7 +11,7 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.stability.grid import Grid, Piece, pieces
 from pendu_tui.engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, is_lost
 from pendu_tui.engine.stability.study import amplitude
-from pendu_tui.tui.drawing.palette import TEXT, Palette, palette
+from pendu_tui.tui.drawing.palette import TEXT, palette
 from pendu_tui.tui.drawing.picture import Picture, Row
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side
@@ -158,17 +158,11 @@ class StabilityPane(Chooser[tuple[int, int]]):
             index,
             columns,
             rows,
-            self._colours,
+            palette(self.app.theme),
             here=here,
             w0=self.source.scene.w0,
             note=words,
         )
-
-    @property
-    def _colours(self) -> Palette | None:
-        if self.app.no_color or self.app.native_ansi_color:
-            return None
-        return palette(self.app.theme)
 
     @property
     def _panel_size(self) -> tuple[int, int]:
@@ -180,7 +174,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     @property
     def _legend(self) -> list[Row]:
         # it may use the columns of the frame, too
-        lines = legend(self.grid.steps, self._colours, self.room.width + 2)
+        lines = legend(self.grid.steps, palette(self.app.theme), self.room.width + 2)
         return lines[: max(self.room.height // 7, 1)]
 
     def action_move(self, right: int, up: int) -> None:

@@ -1,4 +1,7 @@
-"""The map of stability in coloured half-blocks or characters: z across, amplitude up."""
+"""The map of stability in half-blocks: z across, amplitude up.
+
+Without colours its characters still tell held swings, lost ones, and unknown ones apart.
+"""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -52,7 +55,7 @@ def panel(
     index: int,
     columns: int,
     rows: int,
-    palette: Palette | None,
+    palette: Palette,
     *,
     here: tuple[float, float] | None = None,
     w0: float | None = None,
@@ -65,19 +68,15 @@ def panel(
     method = grid.methods[index]
     width = columns - MARGIN
     values = scores(cells[:, index], grid.steps)
-    lines: list[list[Cell]]
-    if palette is None:
-        lowest = worst(values, width, rows).tolist()
-        lines = [[(character(each, grid.steps), NOBODY) for each in line] for line in lowest]
-    else:
-        lines = _in_colours(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
+    lines = _blocks(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
     signs = list(theory(method, grid, rows))
     if here:
         signs.append((*here, HERE))
     for z, theta, sign in signs:
         if place := _place(grid, z, theta, width, rows):
             row, column = place
-            lines[row][column] = _signed(lines[row][column][1], sign, palette)
+            _, ink = lines[row][column]
+            lines[row][column] = sign, ink + Style(color=palette.text, reverse=sign == HERE)
     degrees = _degrees(grid, width, rows)
     map_rows = [
         [(f"{degrees.get(row, ''):>3} ", NOBODY), *_joined(line)] for row, line in enumerate(lines)
@@ -87,26 +86,22 @@ def panel(
     title = f"{name}{method.label}: {note}".rstrip(": ")
     if len(title) > columns:
         title = name + note
-    ink: Ink = NOBODY
-    if palette:
-        ink = Style(bold=True)
-    return [[(title[:columns].ljust(columns), ink)], *map_rows, [(axis, NOBODY)]]
+    head = (title[:columns].ljust(columns), Style(bold=True))
+    return [[head], *map_rows, [(axis, NOBODY)]]
 
 
-def _signed(ink: Ink, sign: str, palette: Palette | None) -> Cell:
-    if palette and isinstance(ink, Style):
-        ink += Style(color=palette.text, reverse=sign == HERE)
-    return sign, ink
-
-
-def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
+def _blocks(values: Scores, ink: int, palette: Palette) -> list[list[tuple[str, Style]]]:
     """Return half-blocks, two rows of pixels each, hatched with LOST where both are lost."""
     shades = [colour(level / SHADES, ink, palette) for level in range(-SHADES, 2 * SHADES + 1)]
     levels = np.rint((values + 1) * SHADES).astype(int).tolist()
 
-    def cell(up: int, low: int) -> Cell:
-        if min(up, low) >= SHADES and max(up, low) < 2 * SHADES:
+    def cell(up: int, low: int) -> tuple[str, Style]:
+        if max(up, low) < SHADES:
+            return " ", _style(shades[up], shades[low])
+        if max(up, low) < 2 * SHADES:
             return LOST, _style(palette.background, shades[min(up, low)])
+        if up < low:
+            return "▄", _style(shades[low], shades[up])
         return "▀", _style(shades[up], shades[low])
 
     pairs = zip(levels[::2], levels[1::2], strict=True)
@@ -118,7 +113,7 @@ def _style(front: str, back: str) -> Style:
     return Style(color=front, bgcolor=back)
 
 
-def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
+def _joined(line: Sequence[tuple[str, Style]]) -> Iterator[Cell]:
     for (text, ink), cells in groupby(line):
         yield text * len(list(cells)), ink
 
@@ -177,33 +172,13 @@ def colour(score: float, ink: int, palette: Palette) -> str:
     return mixed(palette.colour(ink), palette.background, 0.6 * (2 - score))
 
 
-def character(score: float, steps: int) -> str:
-    """Return # + or - where held, by energy error; a dot or n where lost in 10^n steps."""
-    if score < 0:
-        return " "
-    if score < 1:
-        survived = round(math.expm1(score * math.log1p(steps)))
-        if survived < 10:
-            return "."
-        return str(len(str(survived)) - 1)
-    digits = 12 * (score - 1)
-    if digits > 4:
-        return "#"
-    if digits > 1:
-        return "+"
-    return "-"
-
-
-def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
-    held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
-    lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
-    if palette is not None:
-        ink = ink_of(VELOCITY_VERLET, ())
-        shades = [0.999 * part / 7 for part in range(8)]
-        bright = [("█", Style(color=colour(1 + each, ink, palette))) for each in shades]
-        dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
-        held = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
-        lost = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
+def legend(steps: int, palette: Palette, columns: int = 80) -> list[Row]:
+    ink = ink_of(VELOCITY_VERLET, ())
+    shades = [0.999 * part / 7 for part in range(8)]
+    bright = [("▀", _style(*[colour(1 + each, ink, palette)] * 2)) for each in shades]
+    dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
+    held: list[Cell] = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
+    lost: list[Cell] = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
     lines: list[Cell] = [(f"{LIMIT} linear limit   {THRESHOLD} global chaos above   ", NOBODY)]
     orbit: list[Cell] = [(f"{CATCHING} stable 2-cycle   y: amplitude [°]", NOBODY)]
     if columns >= 80:
