@@ -2,6 +2,7 @@
 
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -39,6 +40,16 @@ def block_with(language: str, word: str) -> str:
 @pytest.mark.parametrize(("page", "target"), LINKS)
 def test_what_is_linked_is_there(page, target):
     assert target.is_file()
+
+
+@pytest.mark.parametrize("tool", ["pip", "uv"])
+@pytest.mark.parametrize("what", ["run it", "test it"])
+def test_the_table_has_a_command_for_each_system_that_the_workflow_runs(what, tool):
+    command = runpy.run_path(str(ROOT / ".ci" / "readme.py"))["command"]
+    here = command(what, tool)
+    there = command(f"{what} on Windows", tool)
+    in_powershell = here.replace(" && ", "; ").replace(".venv/bin/", ".venv\\Scripts\\")
+    assert there == in_powershell.replace("python3", "py")
 
 
 @pytest.mark.parametrize("command", re.findall(r"`(pendu-tui(?: [^`]*)?)`", README))

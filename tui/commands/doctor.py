@@ -1,6 +1,7 @@
 """Check the terminal, its colours, the recordings folder and versions, and suggest fixes."""
 
 import argparse
+import os
 import platform
 import shutil
 import sys
@@ -42,6 +43,8 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         too_small = size.columns < SMALLEST[0] or size.lines < SMALLEST[1]
         advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
         yield "size", f"{size.columns}x{size.lines}", advice if too_small else ""
+    if platform.system() == "Windows":
+        yield "console", *console()
     encoding = sys.stdout.encoding
     advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
     yield "encoding", encoding, "" if is_utf8(encoding) else advice
@@ -56,6 +59,13 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         yield "numba", version("numba"), ""
     except PackageNotFoundError:
         yield "numba", "not installed", "it speeds up long runs: install pendu-tui[fast]"
+
+
+def console() -> tuple[str, str]:
+    """Tell Windows Terminal from the older console."""
+    if "WT_SESSION" in os.environ:
+        return "Windows Terminal", ""
+    return "the older console", "use Windows Terminal, or --pixels half where dots are missing"
 
 
 def recordings() -> tuple[str, str]:

@@ -48,3 +48,14 @@ def test_colours_are_read_from_the_environment(environment, fine, monkeypatch):
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert bool(findings()["colours"]["advice"]) == (not fine)
+
+
+@pytest.mark.parametrize(("session", "fine"), [("1", True), ("", False)])
+def test_on_windows_it_says_which_terminal_to_use(session, fine, monkeypatch):
+    monkeypatch.setattr("platform.system", lambda: "Windows")
+    monkeypatch.delenv("WT_SESSION", raising=False)
+    if session:
+        monkeypatch.setenv("WT_SESSION", session)
+    advice = findings()["console"]["advice"]
+    assert fine == (not advice)
+    assert fine or "Windows Terminal" in advice
