@@ -101,10 +101,10 @@ Exit code 1: no method reaches the target.
         """\
   pendu-tui stability --theta 120deg --h 0.3
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
-  pendu-tui stability --steps 1000 -o map.svg
+  pendu-tui stability --steps 1000 -o limits.svg
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.csv
 
-CSV and figures are of the map, with every swing.
+CSV has every swing of the map; a figure shows the limits over the amplitude.
 
 {lost}
 """,
@@ -235,7 +235,7 @@ DROPPED = {
     "recover": "pendu-tui recordings recover",
     "stability --section": "pendu-tui live, and there F3 and the key x",
     "stability --starts": "pendu-tui live, and there F3 and the key x",
-    "stability --map": "-o map.csv or -o map.svg; pendu-tui live draws it with F5",
+    "stability --map": "-o map.csv; pendu-tui live draws it with F5",
     "run --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
     "judge --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
     "run --resume": "several lists that are shorter",

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
 Form = Literal["table", "json", "csv"]
+FIGURES = (".svg", ".pdf", ".png")  # the suffixes of figures
 MAX_CELL = 1000  # characters
 
 

@@ -36,10 +36,9 @@ from pendu_tui.tui.cli.options import (
     step_sizes,
     values,
 )
-from pendu_tui.tui.cli.report import add_report_options, file_type
+from pendu_tui.tui.cli.report import FIGURES, add_report_options, file_type
 from pendu_tui.tui.cli.scene import add_scene_options
 from pendu_tui.tui.cli.workers import add_worker_options
-from pendu_tui.tui.commands.studies.figures import SUFFIXES
 from pendu_tui.tui.terminal.options import add_picture_options, add_terminal_options, cells
 
 Add = Callable[[argparse.ArgumentParser], object]
@@ -96,7 +95,7 @@ OPTIONS: dict[str, Add] = {
     "cast of all": partial(add_cast_options, default="all"),
     "cast of a recording": partial(add_cast_options, default="all of the recording's"),
     "report": add_report_options,
-    "report figures": partial(add_report_options, csv=True, files=(".csv", ".json", *SUFFIXES)),
+    "report figures": partial(add_report_options, csv=True, files=(".csv", ".json", *FIGURES)),
     "workers": add_worker_options,
     "terminal": add_terminal_options,
     "picture": partial(add_picture_options, theme="dark", character_set="braille"),

@@ -1,14 +1,58 @@
 """Simulate a scene as fast as possible, without the TUI, and judge each method."""
 
 import argparse
+import math
+import time
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
+import numpy as np
+
+from pendu_tui.engine import quantities
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.run import compiled, loops
+from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
+from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.cli.checks import parse
-from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.scene import scenes_of
-from pendu_tui.tui.commands.studies import figures
+from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.tui.cli.cast import check_fits
+from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
+from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
+from pendu_tui.tui.cli.report import (
+    Column,
+    Report,
+    fields_of,
+    method_column,
+    progress,
+    publish,
+    scene_line,
+    warn,
+)
+from pendu_tui.tui.cli.scene import SceneList, scenes_of
+from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands import figures
+from pendu_tui.tui.drawing.loglog import Series
+from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
+from pendu_tui.tui.words.numbers import counted, file_size, z_text
 
 MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
+MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
+MAX_POINTS = 20_000  # samples for a figure
+MAX_PARTS = 400  # of a figure, each drawn as its largest error
+
+Row = dict[str, Any]
+ALWAYS = [each.name for each in quantities.RECORDED if each.recorded == "always"]
+IF_KNOWN = [
+    each.name for each in quantities.RECORDED if each.recorded == "if known" and each.in_gate
+]
 
 
 def run(options: argparse.Namespace) -> int:
@@ -19,8 +63,6 @@ def run(options: argparse.Namespace) -> int:
     for scene in scenes.corners():
         _check_time(scene, options.time)
     is_figure = figures.check_output(options)
-    from pendu_tui.tui.commands.studies.run import run_list, run_one
-
     if len(scenes) > 1:
         return run_list(scenes, options, gate, is_figure)
     (scene,) = scenes
@@ -34,3 +76,286 @@ def _check_time(scene: Scene, seconds: float) -> None:
         raise UserError(
             f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
         )
+
+
+def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+    if options.record:
+        check_fits(scene.cast)
+        check_free(options.record, options.force)
+    steps = steps_for(scene, options.time)
+    lockstep = lockstep_of(scene, steps, not options.no_compiled)
+    began = time.perf_counter()
+    samples = _simulate(lockstep, options, steps, is_figure)
+    wall_seconds = time.perf_counter() - began
+    sample = samples[-1]
+    is_whole = sample.step == steps
+    rows = rows_of(scene, sample, lockstep, is_whole)
+    if options.record:
+        size = file_size(options.record.stat().st_size)
+        warn(f"recorded {sample.t:g} s, {size}: {options.record}")
+    if not is_whole:
+        keep_older(options.output)
+    if is_figure:
+        axes = ("time / s", "largest |ΔE / E₀| of a half swing")
+        figures.draw(options, scene.cast, _series(scene, samples[1:] or samples), axes, log="y")
+    else:
+        publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
+    if not is_whole:
+        warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
+        return Exit.INTERRUPTED
+    return conclude(options.fail_if, [check_of(scene.name, rows, gate)])
+
+
+def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
+    """Return the lockstep of a run, compiled if that pays."""
+    if not is_compiled:
+        return Lockstep(scene, judged=True)
+    tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
+    return Lockstep(scene, loops=tiered, judged=True)
+
+
+def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: bool) -> list[Sample]:
+    """Run to the end or until a signal; return the last sample, or for a figure all of them."""
+    scene = lockstep.scene
+    recorder: Any = nullcontext()
+    every = MAX_BATCH
+    if options.method:  # a method of the user's own may be slow, and Ctrl+C waits for a batch
+        every = 16
+    if options.record:
+        recorder = Recorder(options.record, wall=None, overwrite=options.force)
+        every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
+    every = options.sample_every or every
+    if is_figure:
+        every = min(every, math.ceil(steps / MAX_POINTS))
+    samples: list[Sample] = []
+    with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
+        for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
+            show(sample.step, steps)
+            if not is_figure:
+                samples.clear()
+            samples.append(sample)
+            if stopped():
+                if recording:
+                    recording.keep_older()
+                    options.record = recording.path
+                break
+    return samples
+
+
+def _series(scene: Scene, samples: Sequence[Sample]) -> list[Series]:
+    """Return the largest energy error of each half swing, or of longer parts of a long run."""
+    t = np.array([sample.t for sample in samples])
+    error = scene.equations.error.name
+    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
+    swing = scene.exact().period or math.tau / scene.w0
+    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
+    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
+    return [
+        Series(0, method.letter, t[first], np.fmax.reduceat(np.abs(row), first))
+        for method, row in zip(scene.cast, errors, strict=True)
+    ]
+
+
+def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
+    """Return the results of each method, as in --json."""
+    model = scene.equations
+    exact = scene.exact().at(sample.t).theta
+    rows = []
+    methods = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
+    for method, reading, judgement in methods:
+        row = {"method": method.key, **fields_of(reading, *ALWAYS)}
+        if not model.conserves_energy:
+            row[quantities.LOG_ENERGY_ERROR.name] = reading.energy_error
+        optional = fields_of(reading, *IF_KNOWN)
+        row |= {name: value for name, value in optional.items() if value is not None}
+        row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
+        theta_error = math.nan
+        if reading.diverged_at is None:
+            theta_error = abs(model.theta_error(reading.theta, exact))
+        rows.append(
+            row
+            | {
+                "theta_error": None if math.isnan(theta_error) else theta_error,
+                "drift_per_second": judgement.trend,
+                **fields_of(judgement, "slope", "uncertainty", "bound", "share"),
+                **fields_of(judgement, "verdict", "rests", "reason"),
+                "progress": judgement.progress and judgement.progress._asdict(),
+                "lyapunov_per_second": judgement.lyapunov,
+                "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
+                "diverged_at": reading.diverged_at,
+            }
+        )
+    return rows
+
+
+def _evaluations(
+    scene: Scene, method: Method, reading: Reading, steps: int, is_whole: bool
+) -> float:
+    """Return the force evaluations; if they vary, count them by repeating a whole run."""
+    if reading.diverged_at is not None:
+        return method.evaluations(round(reading.diverged_at / scene.h))
+    if method.varies and steps and is_whole:
+        start = scene.equations.start(scene.theta, scene.omega)
+        return loops.count_evaluations(method, scene.equations, start, scene.h, steps)
+    return method.evaluations(steps)
+
+
+def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
+    failure = gate({row["method"]: row for row in rows}) if gate else ""
+    return Check(name, failure)
+
+
+def _report(
+    scene: Scene, sample: Sample, lockstep: Lockstep, rows: Sequence[Row], wall_seconds: float
+) -> Report:
+    notes = [
+        sentence(milestone_insight(milestone, scene.equations.conserves_energy))
+        for milestone in lockstep.milestones
+        if milestone.kind in ("over the top", "errors cross")
+    ]
+    for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
+        if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
+            notes.append(f"{method.label} is undecided: {judgement.reason}.")
+        insight = irregular(method, judgement, 0.0)
+        if judgement.lyapunov and insight:
+            notes.append(sentence(insight))
+    return Report(
+        name="run",
+        title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
+        f"{counted(sample.step, 'step')} to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
+        columns=columns_of(scene, quantity_column(quantities.TREND)),
+        rows=rows,
+        notes=notes,
+        fields={
+            "scene": scene.fields(),
+            "time": sample.t,
+            "steps": sample.step,
+            "wall_seconds": wall_seconds,
+            "methods": for_json(rows),
+        },
+        records=for_csv(rows),
+    )
+
+
+def for_json(rows: Sequence[Row]) -> list[Row]:
+    """Return rows for JSON, in which only irregular orbits have a Lyapunov number."""
+    lyapunov = "lyapunov_per_second"
+    return [{name: row[name] for name in row if name != lyapunov or row[name]} for row in rows]
+
+
+def for_csv(rows: Sequence[Row]) -> list[Row]:
+    return [{name: row[name] for name in row if name != "progress"} for row in rows]
+
+
+def quantity_column(quantity: quantities.Quantity) -> Column:
+    return Column(quantity.label, quantity.name, quantity.form)
+
+
+def columns_of(scene: Scene, *trend: Column) -> list[Column]:
+    model = scene.equations
+    return [
+        method_column(scene.cast),
+        Column("verdict", verdict_of),
+        *(
+            Column(each.chart.title, each.name, ".4g")
+            for each in model.variables
+            if each.chart.title
+        ),
+        quantity_column(model.error),
+        quantity_column(quantities.LARGEST),
+        *trend,
+        quantity_column(quantities.THETA_ERROR),
+        quantity_column(quantities.EVALUATIONS),
+    ]
+
+
+def verdict_of(row: Row) -> str:
+    """Return the verdict with the progress towards one, or when the method failed."""
+    if row["diverged_at"] is not None:
+        return f"failed at {row['diverged_at']:g} s"
+    if row["progress"] is None:
+        return str(row["verdict"])
+    return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One run of a list."""
+
+    scene: Scene
+    time: float  # s
+    expected_steps: int  # of all runs together, to decide whether compiling pays
+    is_compiled: bool
+
+    @property
+    def start(self) -> Row:
+        """The fields with which its rows begin."""
+        numbers = {_column(name): value for name, value in self.scene.numbers.items()}
+        return {"model": self.scene.model, **numbers, "time": self.time}
+
+    def rows(self) -> list[Row]:
+        lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
+        with limited():  # in a worker, too
+            for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
+                last = sample
+        return [self.start | row for row in rows_of(self.scene, last, lockstep, is_whole=True)]
+
+
+def _column(name: str) -> str:
+    return f"start_{name}" if name in ("theta", "omega") else name
+
+
+def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
+    """Yield the runs of a list, in order."""
+    steps = 0  # compiled loops cannot be shared by runs with other parameters
+    if scenes.axes.keys() <= {"theta", "omega", "h"}:
+        corners = scenes.corners()
+        total = sum(steps_for(scene, options.time) for scene in corners)
+        steps = total * len(scenes) // len(corners)
+    for scene in scenes:
+        yield Task(scene, options.time, steps, not options.no_compiled)
+
+
+def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+    """Run every combination and print the rows; an interrupt keeps those that are there."""
+    if options.record:
+        raise UserError("--record is for one run; leave it out, or give each number one value.")
+    if is_figure:
+        raise UserError("a figure shows one run; write a .csv, or give each number one value.")
+    runs = len(scenes)
+    kept: list[Row] = []
+    checks: list[Check] = []
+    ended = None
+    done = 0
+    try:
+        with workers_of(options) as run, progress(f"{runs:,} runs") as show:
+            for rows in run(Task.rows, _tasks(scenes, options)):
+                kept += rows
+                done += 1
+                show(done, runs)
+                checks.append(check_of(_place(scenes, rows[0]), rows, gate))
+    except (KeyboardInterrupt, UserError, OwnMethodError) as error:
+        if not done:
+            raise
+        ended = explained(error)
+        keep_older(options.output)
+    publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
+    if ended is None:
+        return conclude(options.fail_if, checks)
+    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done and kept.")
+    return ended.code
+
+
+def _place(scenes: SceneList, row: Row) -> str:
+    return ", ".join(f"{name} {row[_column(name)]:g}" for name in scenes.axes)
+
+
+def _list_report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:
+    starts = [_column(name) for name, axis in scenes.axes.items() if len(axis) > 1]
+    return Report(
+        name="runs",
+        columns=[*(Column(name, name, ".6g") for name in starts), *columns_of(scenes.base)],
+        rows=rows,
+        fields={"time": time, "runs": for_json(rows), "interrupted": not is_whole},
+        records=for_csv(rows),
+    )

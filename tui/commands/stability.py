@@ -1,21 +1,50 @@
 """Find the step size at which each method becomes unstable, in theory and as measured."""
 
 import argparse
+import math
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from typing import Any
 
-from pendu_tui.tui.cli.errors import Exit
+import numpy as np
+
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.measure import linear_limit
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.scenes import Z_LIMITS, Scene
+from pendu_tui.engine.stability import BAND, LOST
+from pendu_tui.engine.stability.grid import Grid, Part
+from pendu_tui.engine.stability.linear import amplification
+from pendu_tui.engine.stability.outcomes import FATES, UNKNOWN, Cells
+from pendu_tui.engine.stability.study import Row, amplitude, ladder_of, map_of, table
+from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import keep_older
-from pendu_tui.tui.cli.report import form_of, publish, warn
+from pendu_tui.tui.cli.report import (
+    Column,
+    Report,
+    Table,
+    finite,
+    form_of,
+    method_column,
+    progress,
+    publish,
+    warn,
+)
 from pendu_tui.tui.cli.scene import general_scene_of
-from pendu_tui.tui.commands.studies import figures
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands import figures
+from pendu_tui.tui.drawing.loglog import Series
+
+MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
+LINEAR = """\
+This scene is the linear oscillator itself, and these limits hold at every amplitude.
+A pendulum's depend on the amplitude: pendu-tui stability drift"""
 
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
     is_figure = figures.check_output(options)
-    is_map = is_figure or form_of(options) == "csv"
-    from pendu_tui.engine.stability.study import table
-    from pendu_tui.tui.commands.studies.stability import compute, grid_of, map_report, report
-
+    is_map = form_of(options) == "csv" and not is_figure
     grid = grid_of(scene, options, is_map)
     if grid is None:
         publish(report(scene, options.steps, []), options)
@@ -23,16 +52,188 @@ def run(options: argparse.Namespace) -> int:
     cells, ended = compute(grid, options)
     if ended:
         keep_older(options.output)
-    if is_figure:
-        figures.draw_map(options, grid, cells)
-    elif is_map:
+    if is_map:
         publish(map_report(grid, cells), options)
     else:
         rows = table(scene, grid, cells)
         if ended:  # the others may fail at a z not yet computed
             rows = [row for row in rows if row.failure]
-        publish(report(scene, options.steps, rows, is_whole=ended is None), options)
+        if is_figure:
+            axes = ("amplitude / °", "z = h ω₀ from which a swing is lost")
+            figures.draw(options, scene.cast, _series(scene, rows), axes, log="y")
+        else:
+            publish(report(scene, options.steps, rows, is_whole=ended is None), options)
     if ended is None:
         return Exit.FINE
     warn(str(ended))
     return ended.code
+
+
+def grid_of(scene: Scene, options: Namespace, is_map: bool) -> Grid | None:
+    """Return the grid of the map or of the table; None for the linear oscillator's table.
+
+    Raises UserError for options that do not suit the scene or are out of range.
+    """
+    if not scene.equations.turns:
+        if options.output or options.csv or options.theta_values or options.z_values:
+            raise UserError(
+                "limits of the linear oscillator hold at every amplitude; leave out --theta-values,"
+                " --z-values, --csv and -o."
+            )
+        return None
+    _check("amplitude", options.theta_values or (), (0, math.pi))
+    _check("z", options.z_values or (), Z_LIMITS)
+    _check("number of steps", [options.steps], (0, 2**31))
+    axes = map_of if is_map else ladder_of
+    grid = axes(scene, options.theta_values, options.z_values, options.steps)
+    swings = math.prod(grid.shape)
+    if swings > MAX_SWINGS:
+        raise UserError(f"{swings} swings are too many; use at most {MAX_SWINGS}.")
+    return grid
+
+
+def _check(what: str, numbers: Sequence[float], limits: tuple[float, float]) -> None:
+    low, high = limits
+    for value in numbers:
+        if not low < value < high:  # also refuses nan
+            raise UserError(
+                f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}."
+            )
+
+
+def compute(grid: Grid, options: Namespace) -> tuple[Cells, UserError | None]:
+    """Return the grid's cells, and what interrupted the computation, if anything.
+
+    Raises the interruption if no cells were computed.
+    """
+    cells = grid.unknown()
+    parts = grid.parts()
+    done = 0
+    try:
+        with workers_of(options) as run, progress("stability") as show:
+            for computed in run(Part.cells, parts):
+                part = parts[done]
+                cells[part.z, part.method] = computed
+                done += 1
+                show(done, len(parts))
+    except (KeyboardInterrupt, UserError) as error:
+        if not done:
+            raise
+        ended = explained(error)
+        kept = f"{100 * done / len(parts):.0f} % of the swings are computed and kept"
+        return cells, UserError(f"{str(ended).rstrip('.')}; {kept}.", ended.code)
+    return cells, None
+
+
+def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True) -> Report:
+    """Return the report on the linear limits and, with rows, on the pendulum's."""
+    linear = [_linear(scene, method) for method in scene.cast]
+    notes: list[Any] = [LINEAR]
+    if scene.equations.turns:
+        pendulum = [_row_fields(row) for row in rows]
+        notes = [*_words(scene), Table(_columns(scene, steps), pendulum)]
+    return Report(
+        name="stability",
+        title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
+        columns=(
+            method_column(scene.cast),
+            Column("measured", "limit_z", _limit),
+            Column("theory", "theory_z", _limit),
+            Column(f"radius at z = {scene.z:.4g}", "amplification", ".9f"),
+        ),
+        rows=linear,
+        notes=notes,
+        fields={
+            "scene": scene.fields(),
+            "z": scene.z,
+            "steps": steps,
+            "band": BAND,
+            "linear": [finite(row) for row in linear],
+            "pendulum": [_row_fields(row) | {"at_scene": _cell_fields(row.here)} for row in rows],
+            "interrupted": not is_whole,
+        },
+    )
+
+
+def _series(scene: Scene, rows: Sequence[Row]) -> list[Series]:
+    """Return each method's limit over the amplitude [°]."""
+    points: dict[str, list[tuple[float, float]]] = {method.letter: [] for method in scene.cast}
+    for row in rows:
+        if row.failure:
+            points[row.method.letter].append((math.degrees(row.theta), row.failure.z))
+    return [
+        Series(0, letter, x=[x for x, _ in line], y=[y for _, y in line])
+        for letter, line in points.items()
+    ]
+
+
+def map_report(grid: Grid, cells: Cells) -> Report:
+    """Return the report of a map: a line of CSV for each swing that is known."""
+    return Report(name="map", fields={}, records=_swings(grid, cells))
+
+
+def _linear(scene: Scene, method: Method) -> dict[str, Any]:
+    theory = method.linear_limit
+    if isinstance(method, OwnMethod):
+        theory = None
+    fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
+    return fields | {"amplification": amplification(method, scene.z)}
+
+
+def _limit(z: float) -> str:
+    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.9f}"
+
+
+def _row_fields(row: Row) -> dict[str, Any]:
+    failure = row.failure
+    return {
+        "method": row.method.key,
+        "theta": row.theta,
+        "first_failure_z": failure and failure.z,
+        "reason": failure and failure.reason,
+        "steps_survived": failure and failure.steps,
+    }
+
+
+def _cell_fields(cell: Any) -> dict[str, Any] | None:
+    """Return the fields of a swing, None if it is unknown."""
+    if cell["fate"] == UNKNOWN:
+        return None
+    return {
+        "fate": FATES[cell["fate"]],
+        "steps_survived": int(cell["steps"]),
+        "max_energy_error": float(cell["error"]),
+    }
+
+
+def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
+    for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
+        if fields := _cell_fields(cells[z, m, t]):
+            place = {"z": float(grid.z[z]), "theta": float(grid.theta[t])}
+            yield {"method": grid.methods[m].key, **place, **fields}
+
+
+def _words(scene: Scene) -> Iterator[str]:
+    yield "\nPendulum: the z from which a swing is lost within so many steps; more steps lower it."
+    yield LOST.replace("\n", " ")
+    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
+    swing = amplitude(scene)
+    if swing is None:
+        yield "The scene's own start does not swing, so it has no row."
+    elif not math.isclose(swing, scene.theta):
+        start = f"{math.degrees(scene.theta):.4g} deg"
+        if scene.omega:
+            start += f" with {scene.omega:g} rad/s"
+        degrees = f"{math.degrees(swing):.4g} deg"
+        yield f"The start at {start} swings as far as one from rest at {degrees}."
+
+
+def _columns(scene: Scene, steps: int) -> list[Column]:
+    return [
+        method_column(scene.cast),
+        Column("from", "theta", lambda theta: f"{math.degrees(theta):.4g}°"),
+        Column(f"in {steps:,}", "first_failure_z", ".4g"),
+        Column("h [s]", "first_failure_z", lambda z: f"{z / scene.w0:.3g}"),
+        Column("failure", "reason"),
+        Column("margin", "first_failure_z", lambda z: f"{z / scene.z:.3g}"),
+    ]

@@ -185,7 +185,7 @@ def test_an_interrupt_and_lost_workers_keep_the_rows_that_are_done(monkeypatch, 
         yield function(next(tasks))
         raise error
 
-    workers = "pendu_tui.tui.commands.studies.run.workers_of"
+    workers = "pendu_tui.tui.commands.run.workers_of"
     monkeypatch.setattr(workers, lambda options: nullcontext(run))
     outcome = pendu(*LIST, "--csv")
     assert (outcome.code, outcome.out.count("\n")) == (code, 1 + 2)

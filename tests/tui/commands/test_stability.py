@@ -24,7 +24,7 @@ def stops_after_a_part(monkeypatch, error):
         yield function(tasks[0])
         raise error
 
-    workers = "pendu_tui.tui.commands.studies.stability.workers_of"
+    workers = "pendu_tui.tui.commands.stability.workers_of"
     monkeypatch.setattr(workers, lambda options: nullcontext(run))
 
 

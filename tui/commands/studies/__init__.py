@@ -1,1 +1,0 @@
-"""Computations, reports and figures of the larger commands."""
