@@ -17,12 +17,19 @@ Stage = Literal["watching", "told", "asked", "answered"]
 class Lesson:
     """The pages of a lesson, and where it stands: before the moment, there, or at the answer."""
 
-    def __init__(self, name: str, pages: Iterable[Scene], index: int = 0) -> None:
+    def __init__(self, name: str, pages: Iterable[Scene]) -> None:
         self.name = name
         self.pages = tuple(pages)
-        self.index = index
+        self.index = 0
         self.stage: Stage = "watching"
         self.choice: int | None = None  # the number of the chosen answer
+
+    def look_up(self, name: str) -> None:
+        """Stand at the page of a scene or, without one, before the first."""
+        names = [page.name for page in self.pages]
+        self.index = -1
+        if name in names:
+            self.index = names.index(name)
 
     @property
     def page(self) -> Scene:

@@ -1,6 +1,7 @@
 """Shown: the settings of the screen, which change no number."""
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.quantities import ENERGY_ERROR, SHADOW_ERROR
@@ -22,6 +23,10 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
     has_shadow = not model.without_force and any(m.modified_energy for m in scene.cast)
     known = (each.name for each in model.charted())
     return tuple(name for name in known if has_shadow or name != SHADOW_ERROR.name)
+
+
+SEEN = ("theta", "quantity", "log", "seconds", "line", "ring")
+"""The settings that are fields of a shot, too."""
 
 
 class Stretch(NamedTuple):
@@ -52,18 +57,22 @@ class Shown(NamedTuple):
             shot = known.shot if known == scene else scene.shot
         cast = {method.key for method in scene.cast}
         front = cast.intersection(shot.front) or cast
+        seen: dict[str, Any] = {name: getattr(shot, name) for name in SEEN}
         return self._replace(
             hidden=frozenset(cast - front),
             stretch=None,
             overview=False,
-            quantity=shot.quantity,
-            log=shot.log,
             log_time=scene.speed >= FAST,
-            seconds=shot.seconds,
-            theta=shot.theta,
-            ring=shot.ring,
-            line=shot.line,
+            **seen,
         )
+
+    def shot(self, scene: Scene, view: str, equal_cost: bool) -> Shot:
+        """Return the shot that shows the scene like this, with its moment, sentence and question."""
+        front: tuple[str, ...] = ()
+        if self.hidden:
+            front = tuple(scene.cast[place].key for place in self.places(scene.cast))
+        own: dict[str, Any] = {name: getattr(self, name) for name in SEEN}
+        return replace(scene.shot, view=view, front=front, equal_cost=equal_cost, **own)
 
     def places(self, cast: Cast) -> list[int]:
         return [place for place, method in enumerate(cast) if method.key not in self.hidden]

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any, ClassVar, NamedTuple, cast
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.content import Content
 from textual.reactive import var
 from textual.screen import ModalScreen
@@ -19,7 +19,7 @@ from textual.widget import Widget
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import SCENES, Scene, SceneError
 from pendu_tui.recordings import library
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.tui.cli.errors import UserError, explained
@@ -29,6 +29,7 @@ from pendu_tui.tui.playback.live import Live, has_own
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import RunState, Source, doubled
+from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lines import (
     InsightLine,
     KeyLine,
@@ -56,16 +57,6 @@ from pendu_tui.tui.words.plain_text import description
 
 STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
 
-_H = Binding.Group("larger, smaller step h")
-_SECONDS = Binding.Group("back, forward 1 s")
-_TENTHS = Binding.Group("back, forward 10 %")
-_ENDS = Binding.Group("to the start, to the end")
-_SPEED = Binding.Group("half, double speed")
-_STEPS = Binding.Group("one step back, forward")
-_EVENTS = Binding.Group("previous, next event")
-_METHODS = Binding.Group("show or hide a method")
-_VIEWS = Binding.Group("view: lab, phase, …")
-
 
 class State(NamedTuple):
     """Everything that undo restores."""
@@ -84,63 +75,7 @@ class LabScreen(SizedScreen[None]):
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     BINDING_GROUP_TITLE = "Lab"
     HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(
-            "plus,equals_sign", "next_h(1)", "Step", True, "+", False, "larger step h", group=_H
-        ),
-        Binding("minus", "next_h(-1)", "Step", True, "-", False, "smaller step h", group=_H),
-        Binding("p", "next_scene", "Scene", tooltip="next scene"),
-        Binding("P,shift+p", "scenes", "choose a scene", show=False),
-        Binding("i", "start_values", "Edit", tooltip="edit start values"),
-        Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
-        Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
-        Binding("b", "reverse", "Back", tooltip="run back in time"),
-        Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
-        Binding("f", "live", "Live", tooltip="continue a replay live"),
-        Binding("m", "mark", "mark this moment", show=False),
-        Binding("T,shift+t", "lesson", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
-        Binding("enter", "lesson_forward"),  # the lesson's panel shows these two
-        Binding("backspace", "lesson_back"),
-        Binding("space", "pause", "Pause", tooltip="pause, go on"),
-        Binding("less_than_sign", "speed(-1)", "half speed", False, "<", group=_SPEED),
-        Binding("greater_than_sign", "speed(1)", "double speed", False, ">", group=_SPEED),
-        Binding("comma", "step(-1)", "one step back", False, ",", group=_STEPS),
-        Binding("full_stop", "step(1)", "one step forward", False, ".", group=_STEPS),
-        Binding("left_square_bracket", "event(-1)", "previous event", False, "[", group=_EVENTS),
-        Binding("right_square_bracket", "event(1)", "next event", False, "]", group=_EVENTS),
-        Binding("left", "seek(-1)", "-1 s", True, "left", tooltip="back 1 s", group=_SECONDS),
-        Binding("right", "seek(1)", "+1 s", True, "right", tooltip="forward 1 s", group=_SECONDS),
-        Binding("home", "part(-1)", "go to the start", False, group=_ENDS),
-        Binding("end", "part(1)", "go to the end", False, group=_ENDS),
-        Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
-        Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
-        *(
-            Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
-            for n in range(1, MAX_METHODS + 1)
-        ),
-        Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
-        Binding("e", "quantity", "chart: next quantity", show=False),
-        Binding("y", "axes", "chart: log, log time, …", show=False),
-        Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
-        Binding("o", "switch('overview')", "overview: all angles", show=False),
-        Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
-        Binding("escape", "back", "chart: back from the zoom", False, "esc"),
-        Binding("v", "view", "View", tooltip="next view"),
-        *(
-            Binding(f"f{n}", f"view({name!r})", f"view: {view.title}", False, f"F{n}", group=_VIEWS)
-            for n, (name, view) in enumerate(VIEWS.items(), 2)
-        ),
-        Binding("E,shift+e", "events", "list all events", show=False),
-        Binding("d", "describe", "describe it in words", show=False),
-        Binding("s", "screenshot", "save a screenshot", show=False),
-        Binding("u", "undo", "Undo", tooltip="undo the last change"),
-        Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
-        Binding(
-            "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
-        ),
-        Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
-        Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = KEYS
 
     shown: var[Shown] = var(Shown())
     fps = FPS
@@ -167,9 +102,8 @@ class LabScreen(SizedScreen[None]):
         self.clock = clock
         self.view = source.scene.shot.view
         self._view_in_front = create(self.view, source, shown)
-        names = list(SCENES)
-        place = names.index(source.scene.name) if source.scene.name in names else -1
-        self.lesson = Lesson("Scene", SCENES.values(), place)
+        self.lesson = Lesson("Scene", SCENES.values())
+        self.lesson.look_up(source.scene.name)
         self._before_lesson: tuple[State, str, Lesson] | None = None
         self._lines: list[Pane] = []
         self._frames = 0
@@ -698,17 +632,6 @@ class LabScreen(SizedScreen[None]):
     def _seen(self) -> Scene:
         """Return the scene with the current step, and a shot of what is shown."""
         scene = self.source.scene
-        front = [scene.cast[place].key for place in self.shown.places(scene.cast)]
-        shot = replace(
-            scene.shot,
-            view=self.view,
-            theta=self.shown.theta,
-            quantity=self.shown.quantity,
-            log=self.shown.log,
-            seconds=self.shown.seconds,
-            line=self.shown.line,
-            front=tuple(front) if self.shown.hidden else (),
-            ring=self.shown.ring,
-            equal_cost=self.source.stepping.equal_cost,
-        )
-        return replace(scene, h=self.source.stepping.smallest, shot=shot)
+        stepping = self.source.stepping
+        shot = self.shown.shot(scene, self.view, stepping.equal_cost)
+        return replace(scene, h=stepping.smallest, shot=shot)
