@@ -13,22 +13,24 @@ from collections.abc import Mapping, Sequence
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from pendu_tui.engine import library
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
+from pendu_tui.tui.cli.choice import Wanted, find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import did_you_mean
-from pendu_tui.tui.cli.report import Report, fields_of, form_of, publish
+from pendu_tui.tui.cli.reader import read_sheets, unreadable
+from pendu_tui.tui.cli.report import Report, fields_of, finite, form_of, publish
+from pendu_tui.tui.cli.tables import REASONS, Series
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from pendu_tui.engine.run.verdicts import Judgement
-    from pendu_tui.tui.cli.tables import Series
-
-MAX_ERROR = 1e300  # JSON has no infinity
 MAX_LISTED = 30
 MIN_CHART = 10  # rows
 MAX_CHART = 20
@@ -83,6 +85,7 @@ def run(options: argparse.Namespace) -> int:
     return code
 
 
+@np.errstate(over="ignore", invalid="ignore")  # energies may be as large as a number can be
 def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one file; - is stdin.  Raises UserError."""
     shown = "stdin" if name == "-" else printable(name)
@@ -104,11 +107,8 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     return fields
 
 
-def read(name: str, options: argparse.Namespace) -> "list[Series]":
+def read(name: str, options: argparse.Namespace) -> list[Series]:
     """Return all tables of a file.  Raises UserError if there is none."""
-    from pendu_tui.tui.cli.choice import Wanted
-    from pendu_tui.tui.cli.reader import read_sheets, unreadable
-
     kinetic = None
     if str(options.scale).startswith("kinetic:"):
         kinetic = options.scale.partition(":")[2]
@@ -125,10 +125,8 @@ def read(name: str, options: argparse.Namespace) -> "list[Series]":
     return found
 
 
-def choose(seen: "Sequence[Series]", options: argparse.Namespace) -> "Series | None":
+def choose(seen: Sequence[Series], options: argparse.Namespace) -> Series | None:
     """Return the table to judge, None if that is not certain.  Raises UserError."""
-    from pendu_tui.tui.cli.reader import unreadable
-
     if options.table and options.table > len(seen):
         raise unreadable(f"there is no table {options.table}; the input has {len(seen)}.")
     some = seen
@@ -141,11 +139,8 @@ def choose(seen: "Sequence[Series]", options: argparse.Namespace) -> "Series | N
     return certain[-1] if certain else None
 
 
-def _missing(seen: "Sequence[Series]", wanted: Sequence[str | None]) -> UserError:
+def _missing(seen: Sequence[Series], wanted: Sequence[str | None]) -> UserError:
     """Return the error that a wanted column is missing."""
-    from pendu_tui.tui.cli.choice import find
-    from pendu_tui.tui.cli.reader import unreadable
-
     names = [name for name in seen[-1].sheet.names if name]
     parts = [part.strip() for each in wanted if each for part in each.split("+")]
     lost = [each for each in parts if not each.isdecimal() and not find(names, each)]
@@ -158,7 +153,7 @@ def _missing(seen: "Sequence[Series]", wanted: Sequence[str | None]) -> UserErro
     return UserError(f"there is no column {printable(lost[0], 40)!r}{advice}")
 
 
-def _seen(series: "Series") -> dict[str, Any]:
+def _seen(series: Series) -> dict[str, Any]:
     """Return a table as it is listed."""
     names = zip(series.sheet.names, series.sheet.units, strict=True)
     times = series.times[[0, -1]] if series.rows else ()
@@ -172,48 +167,60 @@ def _seen(series: "Series") -> dict[str, Any]:
     }
 
 
-def _judged(series: "Series", options: argparse.Namespace) -> dict[str, Any]:
+def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one table.  Raises UserError."""
-    import numpy as np
-
-    from pendu_tui.engine.run.record import judge_record
-
     _finish(series, options)
     times = series.times
     energies = series.energies
-    judgement = judge_record(times, energies, failed=series.failed_at is not None)
-    size = _size(series, energies, options.scale)
-    with np.errstate(over="ignore"):
-        errors = np.clip((energies - energies[0]) / size, -MAX_ERROR, MAX_ERROR)
+    scale = options.scale or "first"
+    if options.scale is None and series.holds_errors:
+        scale = 1.0
+    elif str(scale).startswith("kinetic:"):
+        scale = abs(float(series.kinetic.mean()))
+    if series.failed_at is not None:
+        times = np.append(times, series.failed_at)
+        energies = np.append(energies, np.nan)
+    try:
+        judged = library.judge(times, energies, scale)
+    except ValueError as error:
+        why = f"{str(error).removesuffix('.')}; give a typical energy with --scale."
+        raise UserError(why) from None
+    size = judged.scale
+    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields = {
         "table": series.number,
         "tables": series.count,
         "time": printable(series.named(series.choice.time)),
         "energy": printable(series.named(series.choice.energy)),
-        **fields_of(judgement, "verdict", "reason", "rests", "share", "fluctuation"),
-        **_trend(series, judgement, size),
-        "independent_samples": judgement.independent,
-        "max_energy_error": float(np.abs(errors).max()),
-        "energy_error": float(errors[-1]),
-        "first_energy": float(energies[0]),
-        "lowest_energy": float(energies.min()),
-        "highest_energy": float(energies.max()),
-        "scale": size,
-        "samples": len(times),
-        "first_time": float(times[0]),
-        "last_time": float(times[-1]),
+        **fields_of(judged, "verdict", "reason", "rests", "share", "scale"),
+        **fields_of(judged, "slope", "uncertainty", "bound"),
+        "trend": judged.slope,
+        "trend_unit": time_unit and f"1/{time_unit}",
+        "time_unit": time_unit,
+        "energy_unit": energy_unit,
+        "absolute_trend": judged.slope and judged.slope * size,
+        "absolute_uncertainty": judged.uncertainty and judged.uncertainty * size,
+        "fluctuation": judged.fluctuation and judged.fluctuation * size,
+        "independent_samples": judged.independent,
+        "max_energy_error": judged.max_error,
+        "energy_error": judged.error,
+        "first_energy": float(series.energies[0]),
+        "lowest_energy": float(series.energies.min()),
+        "highest_energy": float(series.energies.max()),
+        "samples": len(series.times),
+        "first_time": float(series.times[0]),
+        "last_time": float(series.times[-1]),
         "diverged_at": series.failed_at,
         "skipped": series.skipped,
     }
     if options.atoms is not None:
         fields |= _per_atom(fields, options.atoms, options.temperature)
-    return fields
+    return finite(fields)
 
 
-def _finish(series: "Series", options: argparse.Namespace) -> None:
+def _finish(series: Series, options: argparse.Namespace) -> None:
     """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
     from pendu_tui.tui.cli.choice import Wanted
-    from pendu_tui.tui.cli.reader import unreadable
 
     wanted = Wanted(units=options.units, step=options.step)
     series.finish(wanted, options.start, options.end)
@@ -233,54 +240,7 @@ def _finish(series: "Series", options: argparse.Namespace) -> None:
 
 
 def _skipped(skipped: dict[str, int]) -> list[str]:
-    from pendu_tui.tui.cli.tables import REASONS
-
     return [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
-
-
-def _size(series: "Series", energies: Any, scale: float | str | None) -> float:
-    """Return the energy by which errors are divided.  Raises UserError if it is 0."""
-    if isinstance(scale, float):
-        return scale
-    if scale is None and series.holds_errors:
-        return 1.0
-    if scale in (None, "first"):
-        what = "first energy"
-        size = abs(float(energies[0]))
-    elif scale == "std":
-        what = "deviation"
-        largest = abs(energies).max() or 1.0
-        size = float((energies / largest).std() * largest)  # squares must not overflow
-    else:
-        what = "mean kinetic energy"
-        size = abs(float(series.kinetic.mean()))
-    if not 0 < size < math.inf:
-        raise UserError(
-            f"the {what} is 0, and errors are relative to it; give a typical one with --scale."
-        )
-    return size
-
-
-def _trend(series: "Series", judgement: "Judgement", size: float) -> dict[str, Any]:
-    """Return the trend, absolute and relative to a size, with units; `slope` is its other name."""
-    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
-    fields: dict[str, Any] = {
-        "time_unit": time_unit,
-        "energy_unit": energy_unit,
-        "trend": None,
-        "slope": None,
-        "uncertainty": None,
-        "bound": None,
-        "trend_unit": time_unit and f"1/{time_unit}",
-        "absolute_trend": None,
-        "absolute_uncertainty": None,
-    }
-    relative = judgement.scaled(1 / size)
-    if relative.slope is not None and abs(relative.slope) + (relative.bound or 0) < MAX_ERROR:
-        fields |= fields_of(relative, "slope", "uncertainty", "bound")
-        fields |= {"trend": relative.slope, "absolute_trend": judgement.slope}
-        fields["absolute_uncertainty"] = judgement.uncertainty
-    return fields
 
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
@@ -333,7 +293,7 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
     if fields["reason"]:
         verdict += f": {fields['reason']}"
     if fields["diverged_at"] is not None:
-        verdict += f": the energy is nan or inf at {fields['diverged_at']:g}{time_unit}"
+        verdict += f": its numbers end at {fields['diverged_at']:g}{time_unit}"
     lines = [_title(fields), *_listed(fields), _line("verdict", verdict)]
     if fields["trend"] is not None:
         per = f"per {fields['time_unit'] or 'unit of time'}"
@@ -347,6 +307,8 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
         if "temperature" in fields:
             text += f", {fields['kt_per_ns_per_atom']:+.2e} kT per ns"
         lines.append(_line("per atom", text))
+    if fields["max_energy_error"] is None:
+        return [*lines, _line("energy error", "too large for a number")]
     error = f"{fields['energy_error']:+.2e} at the end, {fields['max_energy_error']:.2e} at most"
     lines.append(_line("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
