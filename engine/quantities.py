@@ -1,7 +1,7 @@
 """Quantities: what is measured of a method in a run, named once.
 
-Recorded fields, JSON, CSV, the gate, heads of tables, titles of charts and the glossary are read off
-these rows.  A model adds its own variables, and may say what its energy error is.
+Recorded fields, JSON, CSV, the gate, heads of tables, titles of charts and the glossary are read
+off these rows.  A model adds its own variables, and may say what its energy error is.
 """
 
 from typing import Literal, NamedTuple

@@ -63,8 +63,9 @@ class Field(NamedTuple):
     @property
     def member(self) -> tuple[Any, ...]:
         """Its name, type and, unless it is required, the default None, for a struct of msgspec."""
-        member = (self.name, TYPES[self.type])
-        return member if self.required else (*member, None)
+        if self.required:
+            return self.name, TYPES[self.type]
+        return self.name, TYPES[self.type], None
 
     @property
     def schema(self) -> dict[str, Any]:

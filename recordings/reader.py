@@ -254,7 +254,8 @@ def _search(
     for offset, channels, groups in _intact_chunks(stream, size):
         for channel in channels:
             contents.add(channel)
-        first, last = groups[0], groups[-1]
+        first = groups[0]
+        last = groups[-1]
         missing = (first.sequence - sequence) % (1 << 32)
         sequence = last.sequence + 1
         if missing:

@@ -211,7 +211,9 @@ class Recording:
             for clock, sample in entries:
                 if isinstance(sample, Sample):
                     run = self._runs[sample.run]
-                    run.end, run.steps, run.t = clock, sample.step, sample.t
+                    run.end = clock
+                    run.steps = sample.step
+                    run.t = sample.t
 
     def _entries(self, chunk: int, only_events: bool = False) -> list[Entry]:
         """Return a chunk's entries, with a gap where those before it, or all of them, are lost."""

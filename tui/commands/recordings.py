@@ -10,6 +10,7 @@ from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.cli.report import (
     Column,
+    Form,
     Report,
     Table,
     fields_of,
@@ -37,7 +38,10 @@ def run(options: argparse.Namespace) -> int:
     if options.verb in OPTIONS["file"] and options.file is None:
         raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
     reports = {"list": _list, "show": _show, "recover": _recover}
-    reports[options.verb](options).show("json" if options.json else "table")
+    form: Form = "table"  # -o names a recording
+    if options.json:
+        form = "json"
+    reports[options.verb](options).show(form)
     return Exit.FINE
 
 
