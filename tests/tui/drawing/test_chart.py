@@ -6,12 +6,13 @@ from hypothesis.extra.numpy import arrays
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
+from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.loglog import Series, loglog_chart
 from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
 from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
-from tests.tui.drawing.test_canvas import dots, dots_of
+from tests.tui.drawing.test_canvas import dots_of
 from tests.tui.drawn import cells, inks, size
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
@@ -28,25 +29,14 @@ def window(x, low, high=None, repeats=0.0, turned=False):
     return Window(x, t, {"energy_error": low}, {"energy_error": high}, repeats)
 
 
-def plot(data, width=60, height=14, places=range(COUNT), ghost=None, changes=(), **options):
+def plot(
+    data, width=60, height=14, places=range(COUNT), ghost=None, changes=(), names=(), **options
+):
     """The chart of the methods at these places."""
     hidden = {method.key for place, method in enumerate(USUAL_CAST) if place not in places}
     shown = Shown(hidden=frozenset(hidden), **options)
-    return time_chart(data, USUAL_CAST, shown, width, height, ghost=ghost, changes=changes)
-
-
-@pytest.mark.parametrize("log", [False, True])
-@given(st.integers(0, 399), st.integers(2, 6))
-def test_no_extreme_is_lost_in_a_column(log, row, power):
-    t = np.arange(1, 401) / 20
-    errors = np.full(400, 1.0)
-    errors[row] = 10.0**power
-    spike = plot(window(t, errors), places=[0], log=log, seconds=20)
-    at = min(int(t[row] / 20 * len(spike.times) + 1e-9), len(spike.times) - 1)
-    assert spike.values[at] == pytest.approx([10.0**power])
-    top = min(y for x, y in dots(spike.picture) if x // 2 == spike.left + at)
-    assert top // 4 == next(
-        y for y, line in enumerate(spike.picture.text.splitlines()) if "┤" in line
+    return time_chart(
+        data, USUAL_CAST, shown, width, height, names=names, ghost=ghost, changes=changes
     )
 
 
@@ -160,14 +150,54 @@ def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     assert "A chart needs 20×5" in " ".join(text.split())
 
 
+def crosses(chart):
+    return [column for (_, column), (sign, _) in cells(chart.picture).items() if sign == CROSSING]
+
+
 def test_where_one_error_passes_another_for_good_there_is_a_cross():
     t = np.linspace(0, 20, 400)
     errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
     crossing = plot(window(t, errors), places=[0, 1], seconds=20)
-    (column,) = (at for (_, at), (sign, _) in cells(crossing.picture).items() if sign == CROSSING)
+    (column,) = crosses(crossing)
     assert crossing.at(column).t == pytest.approx(10, abs=0.6)
     assert crossing.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert crossing.at(crossing.left - 1) is None
+
+
+def test_lines_that_lie_on_each_other_have_no_cross_nor_has_a_pass_beside_a_clearer_one():
+    t = np.linspace(0, 20, 400)
+    near = 0.01 * (1 + 0.02 * np.sin(np.pi * t / 10))
+    clear = 10.0 ** (-5 + t / 3)
+    errors = np.stack([near, np.full(400, 0.01), clear, 0.01 * 10.0 ** ((10 - t) / 20)], axis=1)
+    assert not crosses(plot(window(t, errors), places=[0, 1], seconds=20))
+    assert len(crosses(plot(window(t, errors), places=[1, 3], seconds=20))) == 1
+    assert len(set(crosses(plot(window(t, errors), places=[1, 2, 3], seconds=20)))) == 1
+
+
+@given(st.lists(st.floats(-2, 25), max_size=8), st.integers(1, 20))
+def test_letters_have_rows_of_their_own_in_the_order_of_their_lines(wanted, room):
+    wanted = sorted(wanted)
+    rows = spread(wanted, room)
+    assert rows == sorted(rows)
+    assert all(0 <= row < room for row in rows)
+    if len(wanted) <= room:
+        assert len(set(rows)) == len(rows)
+    own = [round(each) for each in wanted]
+    if len(set(own)) == len(own) and all(0 <= row < room for row in own):
+        assert rows == own  # moved only where they must
+
+
+def test_names_stand_beside_their_lines_where_there_is_room():
+    names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
+    errors = 10.0 ** -np.array([0.0, 2.0, 2.1, 6.0]) * np.ones((len(TIMES), 4))
+    data = window(TIMES, errors)
+    lines = plot(data, 70, 16, names=names).picture.text.splitlines()
+    rows = [next(row for row, line in enumerate(lines) if name in line) for name in names]
+    letters = [next(row for row, line in enumerate(lines) if line[66:] == x) for x in "esvr"]
+    assert rows == sorted(rows)  # never beyond a neighbour's
+    assert all(abs(row - letter) <= 2 for row, letter in zip(rows, letters, strict=True))
+    for room in ((59, 16), (70, 9)):
+        assert "RK4" not in plot(data, *room, names=names).picture.text
 
 
 @pytest.mark.parametrize(("times", "seen"), [(1, {0}), (10, {0, FAINT})])
