@@ -46,7 +46,16 @@ class Canvas:
         self.width = 2 * columns  # dots
         self.height = 4 * rows
         self._layers: dict[int, bytearray] = {}  # the dots of each cell, by ink
+        self._ground = bytes(columns * rows), bytes(columns * rows)  # dots and inks, below all
         self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
+
+    def settled(self) -> Self:
+        """Return a copy as one ground, below all that is drawn on it: a quick one to show."""
+        copied = self.copy()
+        dots, inks = self._shown()
+        copied._ground = bytes(dots), bytes(inks)
+        copied._layers = {}
+        return copied
 
     def copy(self) -> Self:
         copied = copy.copy(self)
@@ -171,7 +180,8 @@ class Canvas:
             first = row * self.columns + column
             is_free = all(self.is_free(column + at, row) for at in range(len(text)))
             end = first + len(text)
-            if is_free and not any(any(layer[first:end]) for layer in self._layers.values()):
+            layers = self._ground[0], *self._layers.values()
+            if is_free and not any(any(layer[first:end]) for layer in layers):
                 self.label(column, row, text, ink)
                 return True
         return False
@@ -218,6 +228,8 @@ class Canvas:
             if shared := shared & ~taken:
                 disputed.append((rank, shared))
             taken |= seen
+        dots |= _number(self._ground[0]) & ~taken
+        colours |= _number(self._ground[1]) & ~taken
         size = self.columns * self.rows
         all_dots = bytearray(dots.to_bytes(size, "little"))
         all_colours = bytearray(colours.to_bytes(size, "little"))

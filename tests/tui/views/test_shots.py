@@ -11,7 +11,7 @@ from pendu_tui.tui.drawing.palette import FAINT, inks
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.phase.portrait import Portrait, method_points, phase_picture
+from pendu_tui.tui.views.phase.portrait import Portrait, method_points, phase_ground, phase_picture
 from pendu_tui.tui.views.phase.viewport import Viewport
 from tests.tui.drawn import cells
 from tests.tui.drawn import places as cells_in
@@ -146,7 +146,8 @@ def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name, size)
     viewport = Viewport.portrait(*PORTRAITS[size], scene, math.pi, shown.line.value)
     points = method_points(seen.live, seen.live.sample, shown, None)
     assert [point.letter for point in points] == ["s", "v"]
-    picture = phase_picture(Portrait.of(viewport, scene.equations), points, line=shown.line)
+    portrait = Portrait.of(viewport, scene.equations)
+    picture = phase_picture(portrait, points, phase_ground(portrait, points, line=shown.line))
     top, bottom = (at for at, text in enumerate(picture.text.splitlines()) if "pi/h" in text)
     own = {inks(scene.cast)[place] for place in shown.places(scene.cast)}
     rows = [row for (row, _), (_, ink) in cells(picture).items() if ink >= 0 and ink % FAINT in own]

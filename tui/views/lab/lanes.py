@@ -112,7 +112,7 @@ def _backdrop(columns: int, rows: int, places: Lanes, angle: float) -> Canvas:
         right = places.arc(radius, 0.0, angle)[2::4]
         left = [(2 * places.x - x, y) for x, y in right]
         canvas.points([*left, *right], FRAME)
-    return canvas
+    return canvas.settled()
 
 
 def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> Picture:
@@ -134,9 +134,10 @@ def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> P
 
 
 def _draw(canvas: Canvas, places: Lanes, radius: float, bob: Bob, look: Look) -> None:
-    for begin, end in _stretches(bob.trail, look.joins):
+    recent = TRAIL // 3
+    for begin, end in _stretches(bob.trail[: 1 - recent], look.joins):
         canvas.points(places.arc(radius, begin, end), faint(bob.ink))
-    for begin, end in _stretches(bob.trail[-TRAIL // 3 :], look.joins):
+    for begin, end in _stretches(bob.trail[-recent:], look.joins):
         canvas.points(places.arc(radius, begin, end), bob.ink)
         canvas.points(places.arc(radius - 1, begin, end), bob.ink)
     size = places.bob

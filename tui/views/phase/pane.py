@@ -20,7 +20,9 @@ from pendu_tui.tui.views.view import Chooser
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
+    from pendu_tui.tui.drawing.canvas import Canvas
 
+TRAIL_SECONDS = 0.09  # of the clock, for which trails stay as they are: three frames
 DOTS = 4  # an arrow key moves the crosshair so far
 
 
@@ -42,6 +44,9 @@ class PhasePane(Chooser[State]):
         self.ring: Neighbourhood | None = None
         self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
+        self._ground: Canvas | None = None  # with trails, and what it shows
+        self._ground_key: object = None
+        self._ground_t = 0.0  # s, simulated
 
     @property
     def settled(self) -> bool:
@@ -79,6 +84,7 @@ class PhasePane(Chooser[State]):
             Portrait,
             caption,
             method_points,
+            phase_ground,
             phase_picture,
             ring_text,
         )
@@ -90,7 +96,15 @@ class PhasePane(Chooser[State]):
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
-        plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
+        line = self.shown.line
+        key = portrait.viewport, source.scene, self.cursor, self.aim, self.shown, sample.run
+        seconds = abs(sample.t - self._ground_t) / abs(source.playhead.speed)
+        is_late = seconds >= TRAIL_SECONDS or source.playhead.paused
+        if is_late or key != self._ground_key:
+            self._ground_key = key
+            self._ground_t = sample.t
+            self._ground = phase_ground(portrait, points, self.cursor, self.aim, line)
+        plot = phase_picture(portrait, points, self._ground)
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:

@@ -87,14 +87,14 @@ class PhasePoint(NamedTuple):
 
 # a diverging method may be too far out to count in dots
 @np.errstate(over="ignore", invalid="ignore")
-def phase_picture(
+def phase_ground(
     portrait: Portrait,
     points: Sequence[PhasePoint],
     crosshair: State | None = None,
     orbit: State | None = None,
     line: Line | None = None,
-) -> Picture:
-    """Draw trails, rings and points, and a crosshair, an orbit or a line if given."""
+) -> Canvas:
+    """Draw trails, and a crosshair, an orbit or a line if given."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
     if line is not None and line.quantity == "omega":
@@ -113,6 +113,17 @@ def phase_picture(
         if point.trail is not None and point.chords:
             joined = [each[-point.chords :] for each in point.trail]
             canvas.path(*on_screen(viewport, *joined), faint(point.ink))
+    return canvas.settled()
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def phase_picture(
+    portrait: Portrait, points: Sequence[PhasePoint], ground: Canvas | None = None
+) -> Picture:
+    """Draw rings and points, on a ground with their trails."""
+    viewport = portrait.viewport
+    canvas = (ground or phase_ground(portrait, points)).copy()
+    for point in points:
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*on_screen(viewport, *closed), point.ink)
