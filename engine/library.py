@@ -391,9 +391,9 @@ def _number(name: str, value: Any) -> float:
     try:
         if not isinstance(value, str | bool) and math.isfinite(value):
             return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         pass
-    raise ValueError(f"{name} = {value!r} is not a finite number.")
+    raise ValueError(f"{name} = {value!r:.60} is not a finite number.")
 
 
 def _array(name: str, values: Any) -> "Floats":
@@ -401,7 +401,7 @@ def _array(name: str, values: Any) -> "Floats":
 
     try:
         array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be a list of numbers, or an array.") from None
     if not array.size:
         raise ValueError(f"{name} is empty; give one for each sample.")

@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
-from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
 from pendu_tui.tui.cli.files import (
     keep_results_apart,
     refuse_to_replace_inputs,
@@ -76,8 +76,6 @@ def _main(arguments: Sequence[str] | None) -> int:
         return Exit.PIPE_CLOSED
     except (KeyboardInterrupt, Exception) as error:
         refusal = explained(error)
-        from pendu_tui.tui.cli.report import warn
-
         warn(str(refusal))
         try:
             sys.stdout.flush()

@@ -1,7 +1,18 @@
-"""Errors: one sentence for the user, and an exit code."""
+"""Errors: one sentence for the user, and an exit code; and how sentences are printed."""
 
 import errno
+import shutil
+import sys
+import textwrap
 from enum import IntEnum
+from functools import partial
+from pathlib import Path
+from traceback import extract_tb
+from typing import TextIO
+
+from pendu_tui.recordings.errors import printable
+
+MAX_CELL = 1000  # characters of a line
 
 
 class Exit(IntEnum):
@@ -33,6 +44,8 @@ def explained(error: BaseException) -> UserError:
         return UserError(
             "interrupted.", Exit.INTERRUPTED
         )  # or a library's error about the interrupt
+    if place := _entry(error):
+        return UserError(f"{place}: {type(error).__name__}: {error}")
     # imported here: --help and --version do not need them
     from pendu_tui.engine.methods.own import OwnMethodError
     from pendu_tui.engine.scenes import SceneError
@@ -52,6 +65,21 @@ def explained(error: BaseException) -> UserError:
     raise error
 
 
+def _entry(error: BaseException) -> str:
+    """Return the line of the method, model or scene that cannot be made, "" if it is no such."""
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}, line {error.lineno}"
+    for frame in reversed(extract_tb(error.__traceback__)):
+        folder = Path(frame.filename).parent
+        is_listed = folder.parent.name == "engine" and folder.name in LISTED
+        if frame.name == "<module>" and is_listed:
+            return f"{frame.filename}, line {frame.lineno}"
+    return ""
+
+
+LISTED = ("methods", "models", "scenes")
+"""The folders whose modules make entries of lists when they are imported."""
+
 ADVICE = {
     errno.ENOENT: "; choose a folder that exists",
     errno.ENOSPC: "; free some space or write elsewhere",
@@ -59,3 +87,22 @@ ADVICE = {
     errno.EROFS: "; choose a writable location",
 }
 """What to do about errors of files."""
+
+
+def warn(sentence: str) -> None:
+    """Print a sentence on stderr."""
+    say(printable(f"pendu-tui: {sentence}", MAX_CELL), sys.stderr)
+
+
+def say(text: str, stream: TextIO | None = None) -> None:
+    """Print a text on stdout or another stream, without what would steer the terminal.
+
+    If that is a terminal, the text is wrapped without breaking words or paths.
+    """
+    out = stream or sys.stdout
+    lines = [printable(line, MAX_CELL) for line in text.split("\n")]
+    if out.isatty():
+        columns = shutil.get_terminal_size().columns
+        fill = partial(textwrap.fill, break_long_words=False, break_on_hyphens=False)
+        lines = [fill(line, columns) for line in lines]
+    print("\n".join(lines), file=out)

@@ -4,13 +4,10 @@ import argparse
 import csv
 import json
 import math
-import shutil
 import sys
-import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from time import monotonic
@@ -21,6 +18,9 @@ from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.library import is_stream
+from pendu_tui.tui.cli.errors import MAX_CELL
+from pendu_tui.tui.cli.errors import say as say
+from pendu_tui.tui.cli.errors import warn as warn
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import add_file
 
@@ -30,26 +30,6 @@ if TYPE_CHECKING:
 
 Form = Literal["table", "json", "csv"]
 FIGURES = (".svg", ".pdf", ".png")  # the suffixes of figures
-MAX_CELL = 1000  # characters
-
-
-def warn(sentence: str) -> None:
-    """Print a sentence on stderr."""
-    say(printable(f"pendu-tui: {sentence}", MAX_CELL), sys.stderr)
-
-
-def say(text: str, stream: TextIO | None = None) -> None:
-    """Print a text on stdout or another stream, without what would steer the terminal.
-
-    If that is a terminal, the text is wrapped without breaking words or paths.
-    """
-    out = stream or sys.stdout
-    lines = [printable(line, MAX_CELL) for line in text.split("\n")]
-    if out.isatty():
-        columns = shutil.get_terminal_size().columns
-        fill = partial(textwrap.fill, break_long_words=False, break_on_hyphens=False)
-        lines = [fill(line, columns) for line in lines]
-    print("\n".join(lines), file=out)
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:

@@ -81,6 +81,24 @@ def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
         pendu("scenes")
 
 
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("from pendu_tui.engine.scenes import Scene\nScene(h=-1)", "h = -1 s is not a usable step"),
+        ("from pendu_tui.engine.methods import Method\nMethod(key='x')", "missing"),
+        ("import nothing_like_it", "nothing_like_it"),
+    ],
+)
+def test_a_mistake_in_an_entry_of_a_list_is_one_sentence_with_its_line(monkeypatch, entry, words):
+    def listed(_: object) -> int:
+        exec(compile(entry, "engine/scenes/listed.py", "exec"))
+        raise AssertionError
+
+    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", listed)
+    line = f"engine/scenes/listed.py, line {entry.count(chr(10)) + 1}: "
+    assert pendu("scenes").refused(2, line, words)
+
+
 @pytest.mark.parametrize("becomes", [KeyboardInterrupt, ImportError])
 def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_it(
     monkeypatch, becomes
