@@ -139,7 +139,7 @@ LAYOUTS = (
 
 ROLES = (
     ("time", r"time|t|sim(ulat(ion|ed))?time|mdtime|currenttime"),
-    ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle"),
+    ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle|row"),
     ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
     ("conserved", r"conserved(en(ergy)?)?"),
     ("conserved", r"econs"),

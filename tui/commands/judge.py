@@ -22,6 +22,7 @@ from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
 from pendu_tui.tui.cli.choice import Wanted, find
 from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.options import did_you_mean
 from pendu_tui.tui.cli.reader import read_sheets, unreadable
 from pendu_tui.tui.cli.report import Report, fields_of, finite, form_of, publish
@@ -296,12 +297,17 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
         verdict += f": its numbers end at {fields['diverged_at']:g}{time_unit}"
     lines = [_title(fields), *_listed(fields), _line("verdict", verdict)]
     if fields["trend"] is not None:
-        per = f"per {fields['time_unit'] or 'unit of time'}"
+        unit = "unit of time"
+        if role(fields["time"])[0] == "step":
+            unit = fields["time"].casefold()
+        per = f"per {fields['time_unit'] or unit}"
         relative = f"relative {fields['trend']:+.2e} ± {fields['uncertainty']:.0e} {per}"
         absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}"
         lines.append(_line("trend", f"{relative}, absolute {absolute}{energy_unit} {per}"))
-        share = f"{100 * fields['share']:+.2g} % of the band over this record"
-        lines.append(_line("bound", f"relative {fields['bound']:.1e} {per} at 99 %; {share}"))
+        share = fields["share"]
+        text = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
+        bound = f"relative {fields['bound']:.1e} {per} at 99 %"
+        lines.append(_line("bound", f"{bound}; over this record {text} the band"))
     if fields.get("energy_per_ns_per_atom") is not None:
         text = f"{fields['energy_per_ns_per_atom']:+.2e}{energy_unit} per ns"
         if "temperature" in fields:
