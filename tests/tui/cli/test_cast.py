@@ -191,7 +191,7 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
 
 def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
     screens = []
-    monkeypatch.setattr("pendu_tui.tui.terminal.check.check_terminal", lambda: None)
+    monkeypatch.setattr("pendu_tui.tui.screens.launch.check_terminal", lambda: None)
     monkeypatch.setattr(
         "pendu_tui.tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0
     )
