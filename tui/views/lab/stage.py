@@ -17,6 +17,7 @@ from pendu_tui.tui.views.view import Held, Pane
 
 TITLES = ("One pendulum, a lane for each method", "Pendulum, in lanes", "In lanes")
 SPRINGS = ("One bob on a spring for each method", "Bobs on springs", "Springs")
+HARDEST = 5.0  # w0 of a throw: 6 times the energy that takes a pendulum over the top
 MAGNIFIED = (0.4, 0.8)  # rad, between which the widest of small swings is enlarged
 
 
@@ -166,7 +167,10 @@ class Stage(Pane):
         seconds = (last_time - first_time) * abs(self.source.playhead.speed)
         omega = 0.0
         if seconds > 0:
-            omega = round(remainder(last_theta - first_theta, tau) / seconds, 2)
+            omega = remainder(last_theta - first_theta, tau) / seconds
+        # moves that came late come at once, as if the pointer had been fast
+        fastest = HARDEST * self.source.scene.w0
+        omega = round(min(max(omega, -fastest), fastest), 2)
         self.start_at(last_theta, omega)
 
     def _let_go(self) -> None:

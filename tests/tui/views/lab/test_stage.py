@@ -225,6 +225,10 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
         await theatre.pilot.pause()
         scene = theatre.source.scene
         assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
+        theatre.stage.query_one(Stage)._throw([(0.0, 0.0), (1e-4, -1.0)], 0.01)
+        await theatre.pilot.pause()
+        scene = theatre.source.scene
+        assert scene.omega == pytest.approx(-5 * scene.w0, abs=0.01)  # the terminal was late
 
 
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
