@@ -180,11 +180,14 @@ class Recorder:
         """Leave what was flushed in NAME.mcap.part, or delete the file if that is nothing."""
         if self._file.closed:
             return
+        is_left = True
         with suppress(OSError):
-            if self._is_ours() and (delete or self._is_empty):
+            is_left = not (self._is_ours() and (delete or self._is_empty))
+        with suppress(OSError):
+            self._file.close()  # Windows removes no open file
+        with suppress(OSError):
+            if not is_left:
                 self.part.unlink()
-        with suppress(OSError):
-            self._file.close()
 
     def _is_ours(self) -> bool:
         return os.path.samestat(self.part.stat(), os.fstat(self._file.fileno()))

@@ -1,5 +1,6 @@
 """The pytest plugin, in a project that has folders of its own with the names of ours."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -45,6 +46,8 @@ COMMANDS = ([Path(sys.executable).with_name("pytest")], [sys.executable, "-m", "
 
 @pytest.mark.parametrize("command", COMMANDS, ids=["pytest", "python -m pytest"])
 def test_installed_is_enough_and_nothing_of_the_project_is_hidden(tmp_path, command):
+    if not shutil.which(command[0]):
+        pytest.skip("scripts are not installed")
     for name in ("engine", "recordings", "tui"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "__init__.py").write_text(f"x = {name!r}\n")

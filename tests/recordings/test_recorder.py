@@ -1,6 +1,7 @@
 """The recorder: valid files, written in time; the lab goes on if the disk fails."""
 
 import json
+import os
 import random
 import subprocess
 import sys
@@ -24,6 +25,7 @@ from pendu_tui.recordings.recorder import FLUSH_EVERY, LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
+from tests.tui.command_line import IS_WINDOWS
 
 FRAME = 1 / 30
 
@@ -211,7 +213,7 @@ def test_a_recording_is_overwritten_only_on_request(tmp_path):
         assert path.read_bytes() == before  # until the new one is finished
     assert path.read_bytes() != before
     with pytest.raises(DiskError, match="a recording needs a file"):
-        Recorder(Path("/dev/null"), overwrite=True)
+        Recorder(Path(os.devnull), overwrite=True)
 
 
 def test_two_labs_never_write_to_the_same_file(recorder):
@@ -219,6 +221,7 @@ def test_two_labs_never_write_to_the_same_file(recorder):
         Recorder(recorder.path)
 
 
+@pytest.mark.skipif(IS_WINDOWS, reason="an open file cannot be removed")
 def test_the_recorder_notices_a_removed_or_replaced_file_when_it_flushes(recorder):
     play(recorder, 1.0)
     recorder.part.unlink()
@@ -262,6 +265,7 @@ print(len(samples), recorder.failed)
 
 
 def test_a_real_file_size_limit_is_survived(tmp_path):
+    pytest.importorskip("resource", reason="no limit of the size of files")
     command = [sys.executable, "-B", "-c", LIMITED, str(tmp_path / "lab.mcap")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.startswith("81 ")

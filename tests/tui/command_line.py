@@ -19,6 +19,7 @@ PENDU = [
     "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
 ]
 ROOT = Path(__file__).parents[2]
+IS_WINDOWS = sys.platform == "win32"
 needs_signals = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="needs POSIX signals")
 
 

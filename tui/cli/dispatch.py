@@ -3,6 +3,7 @@
 Only what the command needs is imported.
 """
 
+import errno
 import io
 import os
 import sys
@@ -61,10 +62,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            encoding = "utf-8"  # in files and pipes, also on Windows
-            if stream.isatty() or "PYTHONIOENCODING" in os.environ:
-                encoding = stream.encoding
-            stream.reconfigure(encoding=encoding, errors="replace")  # terminals without θ show a ?
+            if not stream.isatty():  # the same bytes on every system
+                encoding = os.environ.get("PYTHONIOENCODING", "utf-8").partition(":")[0]
+                stream.reconfigure(encoding=encoding, newline="\n")
+            stream.reconfigure(errors="replace")  # terminals without θ show a ?
     if arguments is None:
         repeat_swallowed_interrupts()
     try:
@@ -72,9 +73,10 @@ def _main(arguments: Sequence[str] | None) -> int:
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        _drop_output()
-        return Exit.PIPE_CLOSED
+        return _drop_output()
     except (KeyboardInterrupt, Exception) as error:
+        if isinstance(error, OSError) and error.errno == errno.EINVAL and not error.filename:
+            return _drop_output()  # a closed pipe on Windows
         refusal = explained(error)
         warn(str(refusal))
         try:
@@ -84,9 +86,10 @@ def _main(arguments: Sequence[str] | None) -> int:
         return refusal.code
 
 
-def _drop_output() -> None:
+def _drop_output() -> Exit:
     """Discard the rest of stdout, which the interpreter would try to write at its exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return Exit.PIPE_CLOSED
 
 
 def _dispatch(arguments: list[str]) -> int:

@@ -1,6 +1,7 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
 import ctypes
+import os
 import signal
 import sys
 import time
@@ -81,8 +82,8 @@ def test_force_does_not_replace_a_folder(tmp_path):
 
 
 def test_a_device_is_written_to_and_not_replaced():
-    with whole_file(Path("/dev/null")) as meanwhile:
-        assert str(meanwhile) == "/dev/null"
+    with whole_file(Path(os.devnull)) as meanwhile:
+        assert str(meanwhile) == os.devnull
 
 
 @pytest.mark.parametrize("command", WRITERS.values(), ids=WRITERS)

@@ -2,6 +2,7 @@
 
 import io
 import math
+import shutil
 import subprocess
 import sys
 from itertools import pairwise
@@ -248,6 +249,7 @@ def test_what_cannot_be_judged_is_one_sentence(text, names, code, words):
     assert judge(text, time=times, energy=energies).refused(code, words)
 
 
+@pytest.mark.skipif(not shutil.which("bash"), reason="needs bash")
 @pytest.mark.parametrize(
     ("end", "code", "word"), [("< energies.csv", 0, "bounded"), ("<&-", 3, "Bad file descr")]
 )

@@ -101,7 +101,7 @@ def test_what_cannot_be_read_does_not_keep_the_others_from_being_verified(whole,
     assert first_words(outcome) == ["identical", "3"]
     rows = pendu("verify", tmp_path, "no/such.mcap", "--json").json["files"]
     assert [row["identical"] for row in rows] == [False, True, False]
-    assert "there is no recording 'no/such.mcap'" in rows[2]["error"]
+    assert "there is no recording 'no" in rows[2]["error"]
 
 
 def test_only_the_methods_asked_for_are_compared(other, tmp_path):
