@@ -62,9 +62,9 @@ class SceneList:
 
 
 def scenes_of(
-    options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
+    options: argparse.Namespace, default: Scene | None = None, lesson: bool = False
 ) -> SceneList:
-    """Return the scenes that the options describe; of a file with a `lecture`, the first.
+    """Return the scenes that the options describe; of a file with a `lesson`, the first.
 
     Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
     bad numbers in any combination, and OwnMethodError for a bad function.
@@ -74,7 +74,7 @@ def scenes_of(
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
-    scene = scene_named(name, lecture) if name else default or DEFAULT_SCENE
+    scene = scene_named(name, lesson) if name else default or DEFAULT_SCENE
     axes: dict[str, Sequence[float]] = {}
     for each in NUMBERS:
         given = getattr(options, each)
@@ -86,18 +86,18 @@ def scenes_of(
 
 
 def scene_of(
-    options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
+    options: argparse.Namespace, default: Scene | None = None, lesson: bool = False
 ) -> Scene:
     """Return the scene that options without lists describe, as `scenes_of` does."""
-    (scene,) = scenes_of(options, default, lecture)
+    (scene,) = scenes_of(options, default, lesson)
     return scene
 
 
-def scene_named(name: str, lecture: bool = False) -> Scene:
-    """Return a listed scene or that of a file, of a `lecture` the first.  Raises UserError."""
+def scene_named(name: str, lesson: bool = False) -> Scene:
+    """Return a listed scene or that of a file, of a `lesson` the first.  Raises UserError."""
     if name.endswith(".toml"):
         first, *others = read_scenes(Path(name)).values()
-        if others and not lecture:
+        if others and not lesson:
             raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")
         return first
     if name not in SCENES:

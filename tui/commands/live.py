@@ -27,7 +27,7 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 def run(options: argparse.Namespace) -> int:
     from pendu_tui.tui.screens import launch
 
-    scene = scene_of(options, lecture=True)
+    scene = scene_of(options, lesson=True)
     check_fits(scene.cast)
     launch.check(options)
     live = lab_of(scene, options)
