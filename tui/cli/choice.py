@@ -119,14 +119,16 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         return ()
     steps = np.diff(samples[rising[0]])
     is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
-    return (rising[0],) if len(rising) == 1 and (is_even or not names[rising[0]]) else None
+    if len(rising) == 1 and (is_even or not names[rising[0]]):
+        return (rising[0],)
+    return None
 
 
 def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Group:
     """Return the columns whose sum is the conserved energy, () if that is not certain."""
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
-        return tuple(places) if len(places) == 1 else ()
+        return _only(places)
     roles: dict[tuple[str, int], list[int]] = {}
     for place in places:
         unit = units[place]
@@ -138,7 +140,7 @@ def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Grou
     ranked = [roles[each] for each in sorted(roles, key=lambda each: each[1])]
     best = [found for found in ranked if role(names[found[0]])[0] in ("conserved", "total")]
     if best:
-        return tuple(best[0]) if len(best[0]) == 1 else ()
+        return _only(best[0])
     parts = [
         place
         for (name, _), found in sorted(roles.items())
@@ -146,9 +148,18 @@ def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Grou
         if name in ("kinetic", "potential")
     ]
     if [role(names[place])[0] for place in parts] == ["kinetic", "potential"]:
-        return tuple(parts) if len({units[place] for place in parts}) == 1 else ()
+        if units[parts[0]] != units[parts[1]]:
+            return ()
+        return tuple(parts)
     errors = [place for place in places if role(names[place])[0] == "error"]
-    return tuple(errors) if len(errors) == 1 else ()
+    return _only(errors)
+
+
+def _only(places: Sequence[int]) -> Group:
+    """Return the only one of some columns, () if there are more."""
+    if len(places) > 1:
+        return ()
+    return tuple(places)
 
 
 def known_names(names: Sequence[str]) -> int:

@@ -21,10 +21,11 @@ class Layout:
     """The look of a program's lines, for each that is not a plain row of the table before it.
 
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
-    columns below, or only of the first `columns`; a `row`, which may begin with words; a `name` and its `value`, perhaps with a
-    `unit`; `over`, names above a line of numbers; the `place` of a column, from 1, or the `set` of
-    xmgrace, from 0, and its `label`; the name of the `first` column, `units` of the others; the beginning of a new run (`part`); the `end` of the data,
-    until they begin `again`.  A group of any other name is a value of that name.
+    columns below, or only of the first `columns`; a `row`, which may begin with words; a `name`
+    and its `value`, perhaps with a `unit`; `over`, names above a line of numbers; the `place` of a
+    column, from 1, or the `set` of xmgrace, from 0, and its `label`; the name of the `first`
+    column, `units` of the others; the beginning of a new run (`part`); the `end` of the data, until
+    they begin `again`.  A group of any other name is a value of that name.
     """
 
     programs: str
@@ -107,7 +108,8 @@ LAYOUTS = (
     ),
     Layout(
         programs="i-PI, heads of a line for each column",
-        line=r"^# *(?:col(?:umn|s)?\.?)? *(?P<place>\d+)[-\d]* *(?:-->|[:=]) *(?P<label>.+?) *(?: : .*)?$",
+        line=r"^# *(?:col(?:umn|s)?\.?)? *(?P<place>\d+)[-\d]* *(?:-->|[:=])"
+        r" *(?P<label>.+?) *(?: : .*)?$",
     ),
     Layout(
         programs="ASE with stresses",
@@ -125,14 +127,15 @@ LAYOUTS = (
     ),
     Layout(
         programs="prints of name value",
-        line=rf"(?<!\S)(?P<name>[A-Z]\w{{,40}}) +{VALUE},?(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
+        line=rf"(?<!\S)(?P<name>[A-Z]\w{{,40}}) +{VALUE},?"
+        rf"(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
         line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{{,40}}"
         rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
         rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])){VALUE}"
-        rf" *[\[(]?(?P<unit>pico-seconds|[fpn]s|s|Ry|H|Ha|[mk]?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
+        r" *[\[(]?(?P<unit>pico-seconds|[fpn]?s|Ry|Ha?|m?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

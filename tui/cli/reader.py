@@ -109,9 +109,9 @@ def number(text: str) -> float | None:
     match = _WITH_UNIT.fullmatch(text)
     if match and is_unit(match[2]):
         text = match[1]
-    thousands = min(".,", key=text.find) if "." in text and "," in text else ""
+    if "." in text and "," in text:
+        text = text.replace(min(".,", key=text.find), "")  # it parts thousands
     with suppress(ValueError):
-        text = text.replace(thousands, "") if thousands else text
         return float(_FORTRAN_POWER.sub("e", text.replace(",", ".")))
     return None
 
@@ -162,7 +162,11 @@ class _Text:
 
     def _read(self, lines: list[str], are_alike: bool) -> None:
         """Read rows like the last one at once, other lines by their shapes."""
-        for at, line in enumerate(lines if are_alike else ()):
+        if not are_alike:
+            for shape, group in groupby(lines, _shape):
+                self._read_shape(shape, list(group))
+            return
+        for at, line in enumerate(lines):
             sheet = self._sheet
             is_row = not (self._heads or self._over or self._is_over or self._begins)
             if is_row and sheet and len(sheet) >= SAMPLE:
@@ -174,16 +178,17 @@ class _Text:
                     self._line += len(block)
                     return
             self._take(line)
-        for shape, group in groupby(() if are_alike else lines, _shape):
-            some = list(group)
-            for at, line in enumerate(some):
-                holds = self._shapes.get(shape)
-                is_known = holds is not None and not self._over and not self._is_over
-                if is_known and self._extend(holds or [], some[at:]):
-                    break
-                found = self._take(line)
-                if found is not None and len(self._shapes) < MAX_SHAPES:
-                    self._shapes[shape] = found
+
+    def _read_shape(self, shape: str, lines: list[str]) -> None:
+        """Read lines of one shape, which the layouts need to see only once."""
+        for at, line in enumerate(lines):
+            holds = self._shapes.get(shape)
+            is_known = holds is not None and not self._over and not self._is_over
+            if is_known and self._extend(holds or [], lines[at:]):
+                return
+            found = self._take(line)
+            if found is not None and len(self._shapes) < MAX_SHAPES:
+                self._shapes[shape] = found
 
     def _extend(self, holds: list[tuple[str, int]], lines: list[str]) -> bool:
         """Read lines of a shape that is known.  Return whether all hold the same."""
@@ -227,18 +232,20 @@ class _Text:
         names with the places of their numbers, behind the count of all numbers in the line.
         """
         self._line += 1
-        names = self._over
-        self._over = []
-        values = [number(field) for field in line.split()] if names else []
-        if names and len(values) == len(names) and None not in values:
-            for name, value in zip(names, values, strict=True):
-                self._print(name, value)
-            return None
+        if self._over:
+            names = self._over
+            self._over = []
+            values = [number(field) for field in line.split()]
+            if len(values) == len(names) and None not in values:
+                for name, value in zip(names, values, strict=True):
+                    self._print(name, value)
+                return None
         begins: dict[str, int] = {}  # of the numbers
         is_data = False
         for layout in LAYOUTS:
             for match in layout.pattern.finditer(line):
-                self._units = layout.units if any(layout.units) else self._units
+                if any(layout.units):
+                    self._units = layout.units
                 groups = {
                     name: text for name, text in match.groupdict().items() if text is not None
                 }
@@ -251,8 +258,9 @@ class _Text:
             if is_data:
                 break
         if not is_data:
-            is_noise = not self._is_over and self._words_or_row(line)
-            return [] if is_noise else None
+            if not self._is_over and self._words_or_row(line):
+                return []
+            return None
         places = [match.start() for match in _NUMBER.finditer(line)]
         if begins and set(begins.values()) <= set(places):
             return [("", len(places)), *((name, places.index(at)) for name, at in begins.items())]
@@ -282,7 +290,10 @@ class _Text:
                 self._over = [name.strip() for name in re.findall(layout.cells, text)]
             case {"row": text}:
                 fields, delimiter = _fields(text, glued=True)
-                self._row(fields, delimiter, opening=fields[0] if number(fields[0]) is None else "")
+                opening = fields[0]
+                if number(opening) is not None:
+                    opening = ""
+                self._row(fields, delimiter, opening)
             case {"set": place, "label": label}:
                 self._labels[int(place) + 1] = label
             case {"place": place, "label": label}:
@@ -301,7 +312,7 @@ class _Text:
             sheet.put(sheet.place(name, unit or self._unit(name)), self._line, value)
 
     def _unit(self, name: str) -> str:
-        """Return the unit of a column by its name, or by what the layout says of times, energies."""
+        """Return the unit of a column by its name, or that of its layout's times or energies."""
         kind = role(name)[0]
         default = {"time": self._units[0], "step": "", "other": "", "error": "", "": ""}
         return split_unit(name)[1] or default.get(kind, self._units[1])
@@ -318,7 +329,8 @@ class _Text:
             return True
         if delimiter is None and len(fields) != self._width:
             divided = _fields(bare, glued=True)[0]
-            fields = divided if len(divided) == self._width else fields
+            if len(divided) == self._width:
+                fields = divided
         has_number = any(number(each) is not None for each in fields)
         if has_number and not is_comment and self._row(fields, delimiter):
             return False
@@ -358,21 +370,22 @@ class _Text:
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
             names = [""] * len(fields)
-            rest = numbers[1:] if opening else numbers
+            rest = numbers[bool(opening) :]
             is_bare = delimiter and not self._heads  # rows that were cut out of a table
             is_row = None not in rest or self._worth(names, numbers) > 0
             is_row |= bool(is_bare) and len(rest) > rest.count(None) + 1
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
-                self._heads = self._heads if not is_like else []
+                if is_like:
+                    self._heads = []
                 return False
             names = self._labelled(len(fields))
         units = self._units_of(names, fields)
         has_text = len(self._heads) > 1  # between this head and the rows above
         self._heads = []
         if before and before.names == names and not self._begins:
-            time = before.last_time() if has_text else None
-            if time is None or time not in numbers:  # a page of the same table, or a restart
+            repeats = has_text and before.last_time() in numbers  # as at the start of a run
+            if not repeats:  # a page of the same table, or a restart
                 return True
         self._begins = False
         self._sheet = Sheet(self._wanted, self._line)
@@ -387,8 +400,8 @@ class _Text:
         most = 0
         width = len(fields)
         above = (names for ways in reversed(self._heads) for names in ways)
-        labels = self._labelled(width)
-        for names in chain([labels] if any(labels) else [], above, [self._columns]):
+        labels = [names for names in (self._labelled(width),) if any(names)]
+        for names in chain(labels, above, [self._columns]):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
             elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
@@ -469,7 +482,9 @@ def _ways(text: str, cells: str = "") -> list[list[str]]:
 
 def _without_bars(text: str) -> str:
     """Return a row without the bars at its ends, as Markdown has them."""
-    return text[1:-1] if len(text) > 1 and text[0] == text[-1] == "|" else text
+    if len(text) > 1 and text[0] == text[-1] == "|":
+        return text[1:-1]
+    return text
 
 
 def _split(text: str, delimiter: str) -> list[str]:
@@ -483,11 +498,13 @@ def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
     """Return the fields of a row and what separates them, None for blanks."""
     text = _without_bars(text.strip())
     bare = re.sub(r'"[^"]*"', "", text)
-    for sign in "\t;,|":
-        fields = _split(text, sign) if sign in bare else []
+    for sign in [sign for sign in "\t;,|" if sign in bare]:
+        fields = _split(text, sign)
         if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
             return fields, sign
-    return _split(_GLUED.sub(" ", text) if glued else text, " ") or [""], None
+    if glued:
+        text = _GLUED.sub(" ", text)
+    return _split(text, " ") or [""], None
 
 
 def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
@@ -568,12 +585,12 @@ def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> Sheet:
     """Read an .npz of columns, or an .npy of a column, of columns or of records."""
     try:
         loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
-        names: Any = getattr(loaded, "files", None) or loaded.dtype.names
+        names: Any = getattr(loaded, "files", None) or loaded.dtype.names or [""]
         if hasattr(loaded, "zip") and not all(
             name.endswith(".npy") for name in loaded.zip.namelist()
         ):
             raise unreadable("this is a workbook or another archive; save the table as CSV.")
-        arrays = [(name, loaded[name]) for name in names] if names else [("", loaded)]
+        arrays = [(name, loaded[name or ...]) for name in names]
         columns = [
             (name, column.astype(float))
             for name, each in arrays

@@ -100,7 +100,7 @@ class Sheet:
                 for columns in (self.names, self.units, self._lines, self._values):
                     del columns[place]
         self.choice = choose(self.names, self.units, samples, self._wanted)
-        self.kept = self.choice.columns if self.choice else ()
+        self.kept = (self.choice or Choice()).columns
         if not self.kept and len(self):
             self.kept = [0]  # to count rows
 
@@ -108,8 +108,10 @@ class Sheet:
         """Return the time of the last row; None if it is not known which column that is."""
         if self.choice is None:
             self.choose()
-        time = self.choice.time if self.choice else ()
-        return self._values[time[0]][-1] if len(time) == 1 and len(self._values[time[0]]) else None
+        time = (self.choice or Choice()).time
+        if len(time) != 1 or not self._values[time[0]]:
+            return None
+        return self._values[time[0]][-1]
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""

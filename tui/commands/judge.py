@@ -171,21 +171,7 @@ def _seen(series: Series) -> dict[str, Any]:
 def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one table.  Raises UserError."""
     _finish(series, options)
-    times = series.times
-    energies = series.energies
-    scale = options.scale or "first"
-    if options.scale is None and series.holds_errors:
-        scale = 1.0
-    elif str(scale).startswith("kinetic:"):
-        scale = abs(float(series.kinetic.mean()))
-    if series.failed_at is not None:
-        times = np.append(times, series.failed_at)
-        energies = np.append(energies, np.nan)
-    try:
-        judged = library.judge(times, energies, scale)
-    except ValueError as error:
-        why = f"{str(error).removesuffix('.')}; give a typical energy with --scale."
-        raise UserError(why) from None
+    judged = _judgement(series, options.scale)
     size = judged.scale
     time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields = {
@@ -217,6 +203,26 @@ def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
     if options.atoms is not None:
         fields |= _per_atom(fields, options.atoms, options.temperature)
     return finite(fields)
+
+
+def _judgement(series: Series, scale: float | str | None) -> library.Judged:
+    """Return what the library says of a table.  Raises UserError if the scale is 0."""
+    if scale is None:
+        scale = "first"
+        if series.holds_errors:
+            scale = 1.0
+    elif str(scale).startswith("kinetic:"):
+        scale = abs(float(series.kinetic.mean()))
+    times = series.times
+    energies = series.energies
+    if series.failed_at is not None:
+        times = np.append(times, series.failed_at)
+        energies = np.append(energies, np.nan)
+    try:
+        return library.judge(times, energies, scale)
+    except ValueError as error:
+        why = f"{str(error).removesuffix('.')}; give a typical energy with --scale."
+        raise UserError(why) from None
 
 
 def _finish(series: Series, options: argparse.Namespace) -> None:

@@ -195,6 +195,8 @@ def test_with_a_scale_of_std_nothing_depends_on_the_zero_of_the_energies():
 def test_scales():
     zero = "t,E,K\n" + "".join(f"{n},{n},-4\n" for n in range(100))
     assert judge(zero).refused(2, "first' is 0", "--scale")
+    still = zero.replace(",-4", ",0")
+    assert judge(still, "--scale", "kinetic:K").refused(2, "is 0", "--scale")
     for scale, size in (("50", 50), ("kinetic:K", 4)):
         assert judge(zero, "--json", "--scale", scale).json["max_energy_error"] == 99 / size
 
