@@ -121,7 +121,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     """Multiply the steps until the target is reached, then bisect, then confirm."""
     most_steps = _affordable(study, method, most)
     fastest = max(study.scene.w0, abs(study.scene.omega))  # rad/s
-    too_few = 0
+    too_few = math.ceil(study.time * fastest / math.pi) - 1  # a step of more than half a swing
     steps = min(most_steps, math.ceil(study.time * fastest))
     if not steps:
         return Attempt(method, None, _no_h(most))

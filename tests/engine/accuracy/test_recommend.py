@@ -115,3 +115,10 @@ def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
         while method.evaluations(steps) * 1.03 < cost:
             assert not reaches(method, steps), (method.key, method.evaluations(steps), cost)
             steps = math.ceil(1.02 * steps)
+
+
+@pytest.mark.parametrize("kind", ["theta", "energy", "final"])
+def test_no_recommended_step_is_longer_than_half_a_swing(kind):
+    scene = DRIFT.altered(theta=0.02)
+    for attempt in least_cost(Study(scene, 100.0, LOOPS), kind, 1e-3).attempts:
+        assert not attempt.succeeded or attempt.point.z <= math.pi
