@@ -12,6 +12,7 @@ import numpy as np
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run.levels import CHAOTIC_SEPARATION
 from pendu_tui.engine.run.tangent import tangent_map
 
 GREENE_Z = math.sqrt(0.971635)  # Greene's K
@@ -45,6 +46,6 @@ def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
     e^28 within some thousand.  The exact swing from theta separates them by 1/cos²(theta/2), which
     does not count.
     """
-    return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(
-        np.cos(theta / 2)
-    )
+    return parting(method, theta, 0.0 * theta, z, steps) > CHAOTIC_SEPARATION + math.log(
+        steps
+    ) - 2 * np.log(np.cos(theta / 2))

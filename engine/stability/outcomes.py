@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run import verdicts
 from pendu_tui.engine.run.ensemble import Floats as Floats
 from pendu_tui.engine.run.ensemble import Watched, compiled, plain
 from pendu_tui.engine.stability import BAND
@@ -21,15 +22,18 @@ from pendu_tui.engine.stability.linear import wobble
 
 PARKED = 1 / 8  # share of an ensemble's swings: when so many are lost, it goes on without them
 
-FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
+FATES = (
+    *("holds", "over the top", verdicts.GROWS, verdicts.LOSES),
+    *("holds, wobbling", "holds elsewhere", verdicts.CHAOTIC),
+)
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
 band upwards or downwards; it stays, but swings wider; it stays beyond a symplectic method's linear
 limit, as around the two places between which velocity Verlet then jumps; neighbouring swings
 separate exponentially.
 """
 
-HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
-HELD = (HOLDS, WOBBLES, CAUGHT)
+HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, ELSEWHERE, CHAOTIC = range(len(FATES))
+HELD = (HOLDS, WOBBLES, ELSEWHERE)
 UNKNOWN = 255  # not computed
 
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
@@ -106,7 +110,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
 def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
     """Return the fates of held swings that are too wide or beyond the linear limit."""
     chaotic = is_chaotic(method, theta, z, min(steps, 2000))
-    steady = np.where(z > method.linear_limit, CAUGHT, WOBBLES)
+    steady = np.where(z > method.linear_limit, ELSEWHERE, WOBBLES)
     return np.where(chaotic, CHAOTIC, steady)
 
 

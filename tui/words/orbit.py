@@ -4,6 +4,7 @@ import math
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.phase_space.section import OrbitKind, least_lyapunov
+from pendu_tui.engine.run.verdicts import CHAOTIC, UNDECIDED
 from pendu_tui.tui.words.numbers import counted
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
@@ -15,13 +16,13 @@ def name(method: Method, kind: OrbitKind) -> str:
     if not kind.moves:
         return "at rest"
     if kind.chaotic:
-        return "chaotic"
+        return CHAOTIC
     if kind.island:
         return f"islands {fraction(kind)}"
     if not method.symplectic and abs(kind.drift) > MAX_DRIFT:
         return "spirals outwards" if kind.drift > 0 else "spirals inwards"
     if kind.rotation is None:
-        return "undecided"
+        return UNDECIDED
     if not method.symplectic:
         return "slow spiral"
     if kind.spins:

@@ -28,7 +28,7 @@ def _grid(cast: Cast) -> Grid:
 
 def _outcome(cell: Any) -> str:
     fate = FATES[cell["fate"]]
-    return {"holds": "held", "holds, wobbling": "held, larger wobble"}.get(fate, fate)
+    return fate.replace("holds, wobbling", "held, larger wobble").replace("holds", "held")
 
 
 def note(cell: Any) -> str:

@@ -52,7 +52,7 @@ def test_a_verdict_tells_the_outcome_and_the_nearest_cliff(outcomes, z, sentence
     ("cell", "text"),
     [
         ((300, 2.34e-3, fates.HOLDS), "held, 2e-03"),
-        ((300, 2.34e-3, fates.CAUGHT), "caught, 2e-03"),
+        ((300, 2.34e-3, fates.ELSEWHERE), "held elsewhere, 2e-03"),
         ((80, 0.5, fates.LOSES), "loses, step 81"),
         ((0, 0.0, fates.UNKNOWN), "…"),
     ],
