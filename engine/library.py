@@ -174,7 +174,7 @@ class Judged:
         if self.slope is not None:
             text += (
                 f", slope {self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time, "
-                f"{100 * (self.share or 0):+.2g} % of its band, below {self.bound:.1e} at 99 %"
+                f"{self.share:+.2g} widths of its band, below {self.bound:.1e} at 99 %"
             )
         return f"{text}, errors up to {self.max_error:.2e}, relative to {self.scale:g}"
 

@@ -120,8 +120,9 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     other_names=("learned Hamiltonian",),
     formula="RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
-    note="Its field is as inexact as the learned field, but it conserves its H: the true energy is "
-    "off by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
+    note="Its field is as inexact as the learned field, but it conserves its H, of which RK4 loses "
+    "2.5e-7 a second from 1.5 rad at w0 h = 0.1: the true energy is off by 1.2 % from 1 rad, 0.3 % "
+    "from 2 rad, 12 % from 0.2 rad.",
     used="learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian "
     "Neural Network]",
 )

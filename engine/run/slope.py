@@ -138,7 +138,7 @@ def slope_of(times: Any, values: Any, rounding: float, white: float = 0.0) -> Sl
     x = (models.cosines * values).sum(axis=1)
     squares = (models.inverse * v * v).sum(axis=1)
     slopes = (models.inverse * v * x).sum(axis=1) / squares
-    rest = (x - slopes[:, None] * v) ** 2 + rounding**2 / 12
+    rest = (x - slopes[:, None] * v) ** 2 + max(rounding, 1e-150) ** 2 / 12
     residual = (models.inverse * rest).sum(axis=1)
     sums = (models.octaves * rest[:, None, :]).sum(axis=2)
     sizes = models.octaves.sum(axis=2)

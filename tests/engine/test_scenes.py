@@ -229,6 +229,13 @@ def test_spin_symplectic_euler_and_verlet_have_the_same_angle():
     assert abs(euler.omega - verlet.omega) > 1e-3
 
 
+def test_step_doubling_gains_less_in_the_second_minute():
+    scene = SCENES["halving"]
+    lockstep = Lockstep(scene)
+    lockstep.advance(round(120 / scene.h))
+    assert lockstep.sample().readings[0].energy_error == pytest.approx(0.296, abs=0.002)
+
+
 def test_euler_caught_is_held_near_110_times_its_energy_by_half_a_turn_a_step():
     scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"], judged=True)
     turns, energies = [], []

@@ -104,6 +104,15 @@ def test_newtons_iteration_solves_the_equation_of_the_step(method, theta, omega,
     assert theta_end == pytest.approx(theta + h * middle, abs=1e-11)
 
 
+def test_a_step_without_a_solution_fails_and_others_of_an_array_do_not():
+    far, near = np.array([3.0, 0.1]), np.zeros(2)
+    step = IMPLICIT_MIDPOINT.step
+    theta, omega = step(PENDULUM.force(np.sin), (far, near), 2.2 / PENDULUM.w0)
+    assert np.isnan([theta[0], omega[0]]).all()
+    assert math.isnan(step(PENDULUM.force(), (3.0, 0.0), 2.2 / PENDULUM.w0)[0])
+    assert np.isfinite([theta[1], omega[1]]).all()
+
+
 @pytest.mark.parametrize("h", [0.01, 0.3])
 @pytest.mark.parametrize(
     ("method", "sign"), [(BACKWARD_EULER, -1), (HEUN, 1), (EXPLICIT_MIDPOINT, 1)]

@@ -78,6 +78,25 @@ def test_energy_errors_are_those_of_the_cards_and_bounded_by_structure(start, fi
         assert late > 1.1 * early
 
 
+def test_rk4_loses_little_of_the_learned_hamiltonian():
+    rows = [
+        (float(a), float(b), float(c), float(size))
+        for (a, b, c), (size,) in (
+            (feature.split(","), size.split(","))
+            for feature, size in zip(FEATURES.split(), HAMILTONIAN.split(), strict=True)
+        )
+    ]
+
+    def energy(phase):  # over w0²
+        theta, omega = phase
+        return sum(k * math.tanh(a * theta + b / PENDULUM.w0 * omega + c) for a, b, c, k in rows)
+
+    start = energy((1.5, 0.0))
+    end = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).propagate((1.5, 0.0), 0.032, 3125)
+    share = (energy(end) - start) / (start - energy((0.0, 0.0)))
+    assert share / 100 == pytest.approx(-2.5e-7, rel=0.05)  # 1/s
+
+
 @each_way
 def test_what_was_learned_holds_for_any_length_and_gravity(method):
     """In units of w0 the motion is the same: here on the Moon."""
