@@ -71,6 +71,10 @@ class Part:
         return abs(self.move) >= max(levels.MATERIAL * self.fluctuation, self.bins.rounding)
 
     @property
+    def is_large(self) -> bool:
+        return abs(self.move) >= max(levels.LARGE * self.fluctuation, self.bins.rounding)
+
+    @property
     def widens(self) -> bool:
         """Whether the band is wider from quarter to quarter, and far wider at the end."""
         widths = self.bins.highs - self.bins.lows + 2 * self.bins.spreads
@@ -143,8 +147,8 @@ class _Core:
         middles = Part(bins, (bins.lows + bins.highs) / 2)
         # a sampled oscillation moves the means slowly, but not the band; noise moves the band more
         whole = min(means, middles, key=lambda part: part.slope.deviation)
-        waves = wave(bins.times, whole.values)
-        if waves is not None:
+        cycles, waves = wave(bins.times, whole.values)
+        if cycles >= levels.MIN_CYCLES:
             whole = Part(bins, whole.values - waves)
         self._whole = whole
 
@@ -209,7 +213,7 @@ class _Core:
         ahead = levels.AHEAD if steady else 1.0
         if slope.around(0.0, limit / ahead) < levels.CERTAIN:
             return self._open(part, (self._spread(part) * ahead / limit) ** 2)
-        if chance < levels.SUSPECT and part.is_material:
+        if part.is_large or (chance < levels.SUSPECT and part.is_material):
             if not _is_new(self._whole.values, part, part.move):
                 return levels.TURNED
             return self._open(part, 2.0)
@@ -282,8 +286,8 @@ def _is_new(values: Any, part: Part, move: float) -> bool:
     return is_new and beyond(values[: len(values) - count // 2]) >= levels.NEW / 2 * abs(move)
 
 
-def wave(times: Any, values: Any) -> Any:
-    """Return the wave of two cycles or more that explains what a line leaves, if there is one."""
+def wave(times: Any, values: Any) -> tuple[float, Any]:
+    """Return the cycles of the wave that explains what a line leaves, and it; 0 if there is none."""
     x = (times - times[0]) / (times[-1] - times[0])
     level = np.full_like(x, 1 / math.sqrt(len(x)))
     line = _unit(_without(x, (level,)))
@@ -298,10 +302,17 @@ def wave(times: Any, values: Any) -> Any:
         by_sines = (sines * rest).sum(axis=1)
         explained = by_cosines**2 + by_sines**2
         best = int(np.argmax(explained))
-        if cycles[best] < levels.MIN_CYCLES or explained[best] < enough * square:
-            return None
-        cycles = cycles[best] + step * np.arange(-25, 26) if step else cycles
-    return by_cosines[best] * cosines[best] + by_sines[best] * sines[best]
+        if explained[best] < enough * square:
+            return 0.0, None
+        found = float(cycles[best])
+        cycles = found + step * np.arange(-25, 26)
+    cosine = np.cos(angles[best])
+    sine = np.sin(angles[best])
+    # of the wave itself: what it has in common with a line is no part of the line
+    by_sine = by_sines[best] / float((sine * sines[best]).sum())
+    rest = by_cosines[best] - by_sine * float((sine * cosines[best]).sum())
+    by_cosine = rest / float((cosine * cosines[best]).sum())
+    return found, by_cosine * cosine + by_sine * sine
 
 
 def _without(rows: Any, basis: tuple[Any, ...]) -> Any:

@@ -16,6 +16,7 @@ UNLIKE_START = 1e-4
 CERTAIN = 0.99  # of a bound, and that a trend is smaller than the band
 ONE_SIGMA = 0.68
 # Sizes:
+LARGE = 1.0  # standard deviations: a move that is not bounded, however likely it is by chance
 MATERIAL = 0.5  # standard deviations of the fluctuation: what a person sees in a plot
 NEW = 0.5  # of its move: so far the end lies where the energy had not been
 GONE = 5.0  # widths of the present band: no walk goes so far from its start

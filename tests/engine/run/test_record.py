@@ -21,7 +21,7 @@ def noise_of(times: float, seed: int = 1, count: int = 2000) -> np.ndarray:
 
 MAKES = {
     "noise": (NOISE, "bounded"),
-    "correlated noise": (noise_of(100), "bounded"),
+    "correlated noise": (noise_of(100, seed=2), "bounded"),
     "a wobble": (SINE, "bounded"),
     "a wobble sampled less than twice a period": (np.sin(200 * T), "bounded"),
     "six slow beats": (np.sin(0.37 * T), "bounded"),
@@ -104,6 +104,17 @@ def sides_of(make, values, words):
 
 def test_a_trend_is_material_from_half_a_standard_deviation_on():
     sides_of(lambda move: SINE + move * T / 100, (0.4, 0.6), ("bounded", "grows"))
+
+
+def test_a_move_of_a_standard_deviation_is_not_bounded_however_likely_by_chance():
+    slow = noise_of(60, seed=3)
+    sides_of(lambda move: slow + move * T / 100, (0.0, 2.0), ("bounded", "undecided"))
+
+
+def test_a_wave_of_some_cycles_leaves_no_trend_behind():
+    for cycles in (2.1, 2.3, 2.6, 3.4):
+        found = judge_record(T, 1000 + np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE)
+        assert found.verdict == "bounded"
 
 
 def test_a_band_widens_from_threefold_on():
