@@ -168,9 +168,12 @@ class Judged:
     fluctuation: float | None  # standard deviation about a line, over the scale
     independent: float  # samples
     scale: float  # in the energies' unit
+    failed_at: float | None = None  # the time of the first energy that is nan or infinite
 
     def __str__(self) -> str:
         text = f"{self.verdict}{', rests now' * self.rests}{self.reason and f': {self.reason}'}"
+        if self.failed_at is not None:
+            text += f": the energy is nan or infinite at {self.failed_at:g}"
         if self.slope is not None:
             text += (
                 f", slope {self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time, "
@@ -194,7 +197,9 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     _same_length(t, e)
     finite = int(np.isfinite(e).cumprod().sum())
     failed = 0 < finite < len(e)
+    failed_at = None
     if failed:
+        failed_at = float(t[finite])
         t = t[:finite]
         e = e[:finite]
     e = _finite("energies", e)
@@ -215,6 +220,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
         fluctuation=scaled.fluctuation,
         independent=judgement.independent,
         scale=size,
+        failed_at=failed_at,
     )
 
 

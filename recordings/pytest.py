@@ -4,8 +4,7 @@ It is loaded by being installed (entry point `pytest11`), so it imports NumPy an
 when a test uses it.
 """
 
-import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,29 +31,43 @@ class EnergyDrift:
         self,
         times: "ArrayLike",
         energies: "ArrayLike",
-        verdict: str = "bounded",
+        verdict: str | Sequence[str] = "bounded",
         max_drift: float | None = None,
+        max_error: float | None = None,
+        max_fluctuation: float | None = None,
         scale: float | str = "first",
     ) -> "Judged":
-        """Fail unless `pendu_tui.engine.judge` returns this verdict and a trend up to `max_drift`.
+        """Fail unless `pendu_tui.engine.judge` returns one of these verdicts, and each limit holds.
 
-        The trend is that of the energies over the scale, per unit of time.
+        Limits are those of energies over the scale: `max_drift` of the magnitude of the slope, per
+        unit of time, `max_error` of the distance from the first energy, and `max_fluctuation` of
+        the standard deviation about a line.  A slope is within its limit only if its bound is.
         """
         __tracebackhide__ = True
         from pendu_tui.engine import judge
-        from pendu_tui.engine.run.verdicts import VERDICTS
+        from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
 
-        if verdict not in VERDICTS:
-            pytest.fail(f"there is no verdict {verdict!r}; choose from {', '.join(VERDICTS)}")
+        wanted = (verdict,) if isinstance(verdict, str) else tuple(verdict)
+        for word in wanted:
+            if word not in VERDICTS:
+                pytest.fail(f"there is no verdict {word!r}; choose from {', '.join(VERDICTS)}")
         try:
             judged = judge(times, energies, scale)
         except ValueError as error:
             raise pytest.fail.Exception(str(error)) from None
         self._properties += [("verdict", judged.verdict), ("slope", judged.slope)]
-        if judged.verdict != verdict:
-            pytest.fail(f"the verdict is not {verdict}: {judged}")
-        if max_drift is not None and (judged.slope is None or abs(judged.slope) > max_drift):
-            pytest.fail(f"the energies drift by more than {max_drift:g}: {judged}")
+        flaws = [_drift_flaw(judged, max_drift)]
+        for name, value, limit in (
+            ("error", judged.max_error, max_error),
+            ("fluctuation", judged.fluctuation, max_fluctuation),
+        ):
+            if limit is not None and not (value is not None and value <= limit):
+                flaws.append(f"the {name} is {value}, more than {limit:g}")
+        if judged.verdict not in wanted:
+            told = "cannot tell: " if judged.verdict == UNDECIDED else ""
+            flaws.insert(0, f"{told}the verdict is not {' or '.join(wanted)}")
+        if found := "; ".join(filter(None, flaws)):
+            pytest.fail(f"{found}: {judged}")
         return judged
 
     def check_order(
@@ -63,7 +76,7 @@ class EnergyDrift:
         """Fail unless the energy of runs (h, times, energies) fluctuates as h^`at_least` or better.
 
         It fails if the order and twice its uncertainty are below the limit, and if the runs are so
-        short that not even an order of 0 would be.
+        short that they do not tell one order from the next.
         """
         __tracebackhide__ = True
         from pendu_tui.engine import fluctuation_order
@@ -73,18 +86,32 @@ class EnergyDrift:
         except ValueError as error:
             raise pytest.fail.Exception(str(error)) from None
         self._properties += [("order", order.power), ("order_uncertainty", order.uncertainty)]
-        if order.power + 2 * order.uncertainty < at_least:
+        if order.highest is None:
+            pytest.fail(f"cannot tell: the energy fluctuates as {order}; {order.advice}")
+        if order.highest < at_least:
             pytest.fail(
                 f"the energy fluctuates as {order}, not as h^{at_least:g}: "
                 "the runs do not solve the same equation better with smaller steps"
             )
-        if 2 * order.uncertainty >= at_least:
-            longer = math.ceil((4 * order.uncertainty / at_least) ** 2)
-            pytest.fail(
-                f"cannot tell: the energy fluctuates as {order}, and even order 0 would pass; "
-                f"make the runs {longer} times as long"
-            )
         return order
+
+
+def _drift_flaw(judged: "Judged", limit: float | None) -> str:
+    """Return why a slope is not known to be within its limit, else ""."""
+    from pendu_tui.engine.run.limit import advice, outcome
+
+    if limit is None:
+        return ""
+    slope = None if judged.slope is None else abs(judged.slope)
+    found = outcome(slope, judged.bound, limit)
+    if found == "below":
+        return ""
+    if found == "above":
+        return f"the energy drifts by {judged.slope:.3g}, more than {limit:g}"
+    if slope is None or judged.bound is None:
+        return f"cannot tell whether the energy drifts by more than {limit:g}"
+    sees = f"this record sees drifts above {judged.bound:.2g}, not {limit:g}"
+    return f"cannot tell: {sees}; {advice(slope, judged.bound, limit)}"
 
 
 class MethodProperties:

@@ -1,30 +1,34 @@
-"""A limit on a drift has three outcomes: below it, above it, or the record cannot tell."""
+"""A limit on a measured number has three outcomes: below it, above it, or the record cannot tell."""
 
 import math
+from typing import Literal
 
-LONGEST = 1e4  # records of this many times the length are no advice
+Outcome = Literal["below", "above", "cannot tell"]
+LONGEST = 1e4  # a record of this many times the length is no advice
 
 
-def drift_flaw(slope: float | None, bound: float | None, limit: float) -> str:
-    """Return why a drift is not known to be at most `limit`, a clause; "" if it is.
+def outcome(value: float | None, bound: float | None, limit: float) -> Outcome:
+    """Return where a number is that is below `bound` at 99 %, and above its mirror image.
 
-    |slope| is below `bound` at 99 %.  All three are in one unit.
+    What is not known cannot be told.
     """
-    if slope is None or bound is None or not (math.isfinite(slope) and math.isfinite(bound)):
-        return f"cannot tell whether the energy drifts by more than {limit:.3g}: no line fits it"
-    size = abs(slope)
+    if value is None or bound is None or not (math.isfinite(value) and math.isfinite(bound)):
+        return "cannot tell"
     if bound <= limit:
-        return ""
-    if 2 * size - bound > limit:
-        return f"the energy drifts by {slope:+.3g}, more than {limit:.3g}"
-    # The uncertainty of a slope in white noise falls like length**-1.5.
-    longer = math.inf
-    if size != limit:
-        longer = math.ceil(((bound - size) / abs(limit - size)) ** (2 / 3))
-    advice = "a longer record may not help"
-    if longer <= LONGEST:
-        advice = f"that takes a record about {longer} times as long"
-    return (
-        f"cannot tell whether the energy drifts by more than {limit:.3g}: this record sees drifts "
-        f"above {bound:.2g}; {advice}"
-    )
+        return "below"
+    if 2 * value - bound > limit:
+        return "above"
+    return "cannot tell"
+
+
+def advice(value: float, bound: float, limit: float) -> str:
+    """Return how long a record would tell on which side of the limit a slope is, a clause.
+
+    The uncertainty of a slope in white noise falls like length**-1.5.
+    """
+    missing = abs(limit - value)
+    if missing > 0:
+        longer = math.ceil(((bound - value) / missing) ** (2 / 3))
+        if longer <= LONGEST:
+            return f"a record about {longer} times as long would tell"
+    return "a longer record may not tell"

@@ -31,6 +31,19 @@ class Order(NamedTuple):
     power: float
     uncertainty: float
 
+    @property
+    def highest(self) -> float | None:
+        """The highest power that the runs allow; None if they do not tell one order from the next."""
+        if 2 * self.uncertainty >= 1:
+            return None
+        return self.power + 2 * self.uncertainty
+
+    @property
+    def advice(self) -> str:
+        """How long runs tell one order from the next, a clause."""
+        longer = math.ceil((2 * self.uncertainty) ** 2 + 1)
+        return f"runs about {longer} times as long would tell one order from the next"
+
     def __str__(self) -> str:
         return f"h^{self.power:.2f} ± {self.uncertainty:.2f}"
 

@@ -4,7 +4,7 @@ An expression, `velocity_verlet.FIELD > 1e-2 or rk4.verdict == grows`, joins com
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
 (None, missing, not finite, or another verdict than undecided asked of what cannot be judged).
-Hence there is no `not`.  Only `diverged_at` is compared as it is;
+Hence there is no `not`.  A slope keeps a limit only if its bound does.  Only `diverged_at` is compared as it is;
 None means that the method never failed.  A field that is a word, such as `verdict`, is compared by
 == or !=, so `!= bounded` is strict.
 
@@ -24,6 +24,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
+from pendu_tui.engine.run.limit import advice, outcome
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -57,6 +58,14 @@ _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.NotEq: operator.ne,
 }
 
+
+BOUNDS = {
+    "slope": "bound",
+    "trend": "bound",
+    "drift_per_second": "bound",
+    "absolute_trend": "absolute_bound",
+}
+"""The fields that are slopes, and where their bounds stand."""
 
 Words = Mapping[str, Sequence[str]]  # field -> its words
 VERDICT: Words = {"verdict": tuple(VERDICTS)}
@@ -177,6 +186,8 @@ def _found(
         return f"{method or 'the energy'} failed at {diverged_at:g}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return f"{name} is not known"
+    if field in BOUNDS and compare in (operator.gt, operator.ge, operator.lt, operator.le):
+        return _drifting(name, reading, field, compare, float(limit))
     unknown = ours == UNDECIDED != limit
     if not (unknown or compare(ours, limit)):
         return ""
@@ -184,6 +195,27 @@ def _found(
         reason = reading.get("reason")
         return f"{name} is {ours}: {reason}" if reason else f"{name} is {ours}"
     return f"{name} is {ours:.3g}"
+
+
+def _drifting(
+    name: str,
+    reading: Mapping[str, Any],
+    field: str,
+    compare: Callable[[Any, Any], bool],
+    limit: float,
+) -> str:
+    """Return why a slope, within its bound, is not known to keep a limit, else ""."""
+    sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
+    slope = sign * reading[field]
+    bound = reading.get(BOUNDS[field])
+    margin = math.inf if bound is None else bound - abs(slope)
+    found = outcome(slope, slope + margin, sign * limit)
+    if found == "below":
+        return ""
+    if found == "above" or not math.isfinite(margin):
+        return f"{name} is {sign * slope:.3g}"
+    longer = advice(slope, slope + margin, sign * limit)
+    return f"cannot tell: {name} is {sign * slope:.2g} ± {margin:.1g} at 99 %; {longer}"
 
 
 def _quoted(text: str) -> str:

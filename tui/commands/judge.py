@@ -63,9 +63,8 @@ def run(options: argparse.Namespace) -> int:
     if options.steps:
         orders = orders_of(options.steps, results)
         fields = {"steps": options.steps, "files": results, **orders}
-        for name, order in orders.items():
-            text = "no clear power of h" if order is None else f"goes as h^{order:.2f}"
-            lines.append(_line(name.removesuffix("_order"), text))
+        for name in ("fluctuation_order", "drift_order"):
+            lines.append(_line(name.removesuffix("_order"), _goes_as(name, orders)))
     charts = []
     if form_of(options) == "table" and sys.stdout.isatty():
         columns = shutil.get_terminal_size().columns
@@ -78,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
     if gate:
         for result in results:
             skipped = sum(result["skipped"].values())  # rows, for whatever reason
-            failures.append(gate({"": result | orders | {"skipped": skipped}}))
+            failures.append(gate({"": result | _gated(orders) | {"skipped": skipped}}))
     failure = "; ".join(filter(None, dict.fromkeys(failures)))
     code = conclude(options.fail_if, [Check("", failure)])
     if any(result["verdict"] == FAILED for result in results):
@@ -187,6 +186,7 @@ def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
         "energy_unit": energy_unit,
         "absolute_trend": judged.slope and judged.slope * size,
         "absolute_uncertainty": judged.uncertainty and judged.uncertainty * size,
+        "absolute_bound": judged.bound and judged.bound * size,
         "fluctuation": judged.fluctuation and judged.fluctuation * size,
         "independent_samples": judged.independent,
         "max_energy_error": judged.max_error,
@@ -272,14 +272,50 @@ def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> 
     return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
 
 
+def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
+    """Return a sentence's end on the power of h with which something goes."""
+    power = orders[name]
+    uncertainty = orders.get(f"{name}_uncertainty")
+    if power is None:
+        return "no clear power of h"
+    if uncertainty is None:
+        return f"goes as h^{power:.2f}"
+    return f"goes as h^{power:.2f} ± {uncertainty:.2f}"
+
+
+def _gated(orders: Mapping[str, float | None]) -> dict[str, float | None]:
+    """Return the orders as --fail-if compares them: as high as they may be, or not known."""
+    from pendu_tui.engine.run.order import Order
+
+    power = orders.get("fluctuation_order")
+    uncertainty = orders.get("fluctuation_order_uncertainty")
+    if power is None or uncertainty is None:
+        return dict(orders)
+    return {**orders, "fluctuation_order": Order(power, uncertainty).highest}
+
+
 def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
     """Return the powers of the step size with which fluctuation and drift scale.
 
     The drift has no order unless it is significant at each step size.
     """
-    fluctuations = [fields["fluctuation"] for fields in results]
+    from pendu_tui.engine.run.order import fluctuation, order_of
+
     drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
-    return {"fluctuation_order": _power(steps, fluctuations), "drift_order": _power(steps, drifts)}
+    orders = {
+        "fluctuation_order": None,
+        "fluctuation_order_uncertainty": None,
+        "drift_order": _power(steps, drifts),
+    }
+    if all(fields["verdict"] != FAILED for fields in results):
+        series = [fields["series"] for fields in results]
+        try:
+            order = order_of(steps, [fluctuation(each.times, each.energies) for each in series])
+        except ValueError:  # too few samples, or an energy that never changes
+            return orders
+        orders["fluctuation_order"] = order.power
+        orders["fluctuation_order_uncertainty"] = order.uncertainty
+    return orders
 
 
 def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.engine.run.order import MIN_SAMPLES, Fluctuation, fluctuation, order_of
+from pendu_tui.engine.run.order import MIN_SAMPLES, Fluctuation, Order, fluctuation, order_of
 
 TIMES = np.arange(4000.0)
 
@@ -71,3 +71,9 @@ def test_too_few_samples_are_refused():
     assert fluctuation(TIMES[:MIN_SAMPLES], noise(1)[:MIN_SAMPLES]).size > 0
     with pytest.raises(ValueError, match="too few"):
         fluctuation(TIMES[: MIN_SAMPLES - 1], noise(1)[: MIN_SAMPLES - 1])
+
+
+@pytest.mark.parametrize(("uncertainty", "highest"), [(0.49, 2.98), (0.5, None)])
+def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest):
+    assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
+    assert "about 2 times as long" in Order(2.0, uncertainty).advice

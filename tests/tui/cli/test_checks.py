@@ -151,3 +151,30 @@ def test_long_gates_are_refused_at_once(text):
     with pytest.raises(UserError):
         parse(text)
     assert time.process_time() - began < 1
+
+
+@pytest.mark.parametrize(
+    ("expression", "slope", "bound", "outcome"),
+    [
+        ("trend > 1e-5", 1e-6, 1e-5, ""),
+        ("trend > 1e-5", 1e-6, 1.1e-5, "cannot tell"),
+        ("trend > 1e-5", 2e-5, 2.9e-5, "trend is 2e-05"),
+        ("trend > 1e-5", 2e-5, 3.1e-5, "cannot tell"),
+        ("trend > 1e-5", -2e-5, 3e-5, ""),
+        ("trend < -1e-5", -1e-6, 1e-5, ""),
+        ("trend < -1e-5", -1e-6, 1.1e-5, "cannot tell"),
+        ("trend < -1e-5", -2e-5, 2.9e-5, "trend is -2e-05"),
+        ("trend > 1e-5", 1e-6, None, "trend is 1e-06"),
+        ("trend == 1e-5", 1e-6, 1.0, ""),
+    ],
+)
+def test_a_limit_on_a_slope_is_compared_with_its_bound(expression, slope, bound, outcome):
+    gate = parse(expression, ["trend"])
+    failure = gate({"": {"trend": slope, "bound": bound}})
+    assert failure.startswith(outcome)
+    assert bool(failure) == bool(outcome)
+
+
+def test_a_slope_that_cannot_be_told_says_how_long_a_record_would():
+    gate = parse("trend > 1e-5", ["trend"])
+    assert "4 times as long" in gate({"": {"trend": 0.0, "bound": 8e-5}})
