@@ -33,7 +33,7 @@ def letters(drawn):
 
 @given(
     st.integers(SMALL[0], 80),
-    st.integers(SMALL[1], 50),
+    st.integers(4, 50),  # six methods leave four rows of the smallest screen
     st.lists(st.tuples(ANGLES, st.floats(0.0, 1e9)), min_size=1, max_size=MAX_METHODS),
     st.floats(0.1, math.pi),
     st.booleans(),
