@@ -1,10 +1,7 @@
 """What one operating system has and another lacks; only this module asks for it."""
 
 import os
-import shlex
-import shutil
 import signal
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -73,6 +70,8 @@ def rename(source: Path, target: Path) -> None:
         except FileExistsError:
             raise
         except OSError:  # the file system has no links
+            import shutil
+
             with source.open("rb") as old, target.open("xb") as new:
                 shutil.copyfileobj(old, new)
         source.unlink()
@@ -80,6 +79,9 @@ def rename(source: Path, target: Path) -> None:
 
 def shell_command(arguments: list[str]) -> str:
     """Return a command for the system's shell, which it replaces where it can."""
+    import shlex  # these are slow to load, and --help needs none
+    import subprocess
+
     if sys.platform == "win32":
         command = subprocess.list2cmdline(arguments)
     else:
@@ -123,6 +125,8 @@ def is_stopped(process: int) -> bool:
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2]
     except OSError:  # macOS
+        import subprocess
+
         state = subprocess.getoutput(f"ps -o state= -p {process}")
     return state.strip().startswith("T")
 

@@ -1,13 +1,10 @@
 """Errors: one sentence for the user, and an exit code; and how sentences are printed."""
 
 import errno
-import shutil
 import sys
-import textwrap
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
-from traceback import extract_tb
 from typing import TextIO
 
 from pendu_tui.recordings.errors import printable
@@ -67,6 +64,8 @@ def explained(error: BaseException) -> UserError:
 
 def _entry(error: BaseException) -> str:
     """Return the line of the method, model or scene that cannot be made, "" if it is no such."""
+    from traceback import extract_tb  # slow, and few commands fail
+
     if isinstance(error, SyntaxError):
         return f"{error.filename}, line {error.lineno}"
     for frame in reversed(extract_tb(error.__traceback__)):
@@ -102,6 +101,9 @@ def say(text: str, stream: TextIO | None = None) -> None:
     out = stream or sys.stdout
     lines = [printable(line, MAX_CELL) for line in text.split("\n")]
     if out.isatty():
+        import shutil  # slow, and pipes need none
+        import textwrap
+
         columns = shutil.get_terminal_size().columns
         fill = partial(textwrap.fill, break_long_words=False, break_on_hyphens=False)
         lines = [fill(line, columns) for line in lines]

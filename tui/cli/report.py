@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
 from time import monotonic
@@ -18,10 +19,10 @@ from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.library import is_stream
-from pendu_tui.tui.cli.errors import MAX_CELL
+from pendu_tui.tui.cli.errors import MAX_CELL, UserError
 from pendu_tui.tui.cli.errors import say as say
 from pendu_tui.tui.cli.errors import warn as warn
-from pendu_tui.tui.cli.files import text_file
+from pendu_tui.tui.cli.files import check_free, text_file
 from pendu_tui.tui.cli.options import add_file
 
 if TYPE_CHECKING:
@@ -243,3 +244,18 @@ def publish(report: Report, options: argparse.Namespace) -> None:
         return
     with text_file(path, options.force) as out:
         report.show(form_of(options), out)
+
+
+def check_output(options: argparse.Namespace) -> bool:
+    """Return whether the output is a figure.
+
+    Raises DiskError if the name is taken, UserError without Matplotlib.
+    """
+    path = options.output
+    if path is None:
+        return False
+    check_free(path, options.force)
+    is_figure = path.suffix.lower() in FIGURES
+    if is_figure and find_spec("matplotlib") is None:
+        raise UserError(f"{path.suffix} files need an extra: pip install 'pendu-tui[plot]'.")
+    return is_figure

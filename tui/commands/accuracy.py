@@ -35,6 +35,7 @@ from pendu_tui.tui.cli.report import (
     Column,
     Report,
     Table,
+    check_output,
     console,
     fields_of,
     method_column,
@@ -45,9 +46,8 @@ from pendu_tui.tui.cli.report import (
 )
 from pendu_tui.tui.cli.scene import general_scene_of
 from pendu_tui.tui.cli.workers import workers_of
-from pendu_tui.tui.commands import figures
-from pendu_tui.tui.commands.figures import lines_of
 from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.drawing.picture import lines_of
 from pendu_tui.tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from pendu_tui.tui.words.accuracy import COSTS, factor_words, few, front_words, length
 
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     if options.cost == "seconds" and (options.workers > 1 or options.dask):
         raise UserError("seconds are measured in this process; use workers for evaluations only.")
-    is_figure = figures.check_output(options)
+    is_figure = check_output(options)
     scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:
         raise UserError(
@@ -79,6 +79,8 @@ def run(options: argparse.Namespace) -> int:
         interrupted = True
         keep_older(options.output)
     if is_figure:
+        from pendu_tui.tui.commands import figures
+
         kind = options.error
         cast = results.scene.cast
         series = accuracy_series(results.points, kind, options.cost, cast)

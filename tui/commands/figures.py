@@ -1,21 +1,23 @@
 """Figures by Matplotlib, one column wide; the same input gives the same bytes."""
 
+import math
 from argparse import Namespace
 from collections.abc import Sequence
-from importlib.util import find_spec
 from itertools import cycle
 
-from rich.text import Text
+import numpy as np
+from matplotlib import style
+from matplotlib.figure import Figure
 
 from pendu_tui.engine.methods import Cast
-from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.files import check_free, whole_file
-from pendu_tui.tui.cli.report import FIGURES
-from pendu_tui.tui.drawing.loglog import Series
-from pendu_tui.tui.drawing.palette import PALETTES, Palette, inks
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.drawing.loglog import Series as Series
+from pendu_tui.tui.drawing.palette import PALETTES, inks
 
 CM = 1 / 2.54  # inches
+MAX_PARTS = 400  # of a run, each drawn as its largest error
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
 STYLE = {
     "font.size": 7,
@@ -35,36 +37,6 @@ STYLE = {
 NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
 
-def lines_of(picture: Picture, palette: Palette | None) -> list[Text]:
-    """Return a picture's lines for the terminal; without a palette, inks have no colour."""
-    lines = []
-    for row in picture.rows:
-        line = Text()
-        for text, ink in row:
-            if isinstance(ink, int):
-                line.append(text, palette and palette.colour(ink))
-            else:
-                line.append(text, ink)
-        line.rstrip()
-        lines.append(line)
-    return lines
-
-
-def check_output(options: Namespace) -> bool:
-    """Return whether the output is a figure.
-
-    Raises DiskError if the name is taken, UserError without Matplotlib.
-    """
-    path = options.output
-    if path is None:
-        return False
-    check_free(path, options.force)
-    is_figure = path.suffix.lower() in FIGURES
-    if is_figure and find_spec("matplotlib") is None:
-        raise UserError(f"{path.suffix} files need an extra: pip install 'pendu-tui[plot]'.")
-    return is_figure
-
-
 def draw(
     options: Namespace, cast: Cast, series: Sequence[Series], labels: tuple[str, str], log: str
 ) -> None:
@@ -73,9 +45,6 @@ def draw(
     `labels` are those of x and y, `log` names the logarithmic axes: "xy", "y" or "".  Methods
     differ in colour and in line style; references are dotted.
     """
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
     colours = map(PALETTES["light"].colour, inks(cast))
     looks = {
         method.letter: {"color": colour, "linestyle": line, "label": method.label, "marker": "."}
@@ -94,3 +63,18 @@ def draw(
             axes.plot(each.x, each.y, **looks.get(each.mark, reference))
         figure.legend(loc="outside upper center", ncols=2)
         figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
+
+
+def draw_run(options: Namespace, scene: Scene, samples: Sequence[Sample]) -> None:
+    """Draw the largest energy error of each half swing, or of longer parts of a long run."""
+    t = np.array([sample.t for sample in samples])
+    error = scene.equations.error.name
+    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
+    swing = scene.exact().period or math.tau / scene.w0
+    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
+    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
+    series = [
+        Series(0, method.letter, t[first], np.fmax.reduceat(np.abs(row), first))
+        for method, row in zip(scene.cast, errors, strict=True)
+    ]
+    draw(options, scene.cast, series, ("time / s", "largest |ΔE / E₀| of a half swing"), log="y")

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
@@ -28,6 +26,7 @@ from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
 from pendu_tui.tui.cli.report import (
     Column,
     Report,
+    check_output,
     fields_of,
     method_column,
     progress,
@@ -38,15 +37,12 @@ from pendu_tui.tui.cli.report import (
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
 from pendu_tui.tui.cli.time_limit import limited
 from pendu_tui.tui.cli.workers import workers_of
-from pendu_tui.tui.commands import figures
-from pendu_tui.tui.drawing.loglog import Series
 from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
 from pendu_tui.tui.words.numbers import counted, file_size, z_text
 
 MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # samples for a figure
-MAX_PARTS = 400  # of a figure, each drawn as its largest error
 
 Row = dict[str, Any]
 ALWAYS = [each.name for each in quantities.RECORDED if each.recorded == "always"]
@@ -62,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
         gate = parse(options.fail_if, cast=scenes.base.cast)
     for scene in scenes.corners():
         _check_time(scene, options.time)
-    is_figure = figures.check_output(options)
+    is_figure = check_output(options)
     if len(scenes) > 1:
         return run_list(scenes, options, gate, is_figure)
     (scene,) = scenes
@@ -96,8 +92,9 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
     if not is_whole:
         keep_older(options.output)
     if is_figure:
-        axes = ("time / s", "largest |ΔE / E₀| of a half swing")
-        figures.draw(options, scene.cast, _series(scene, samples[1:] or samples), axes, log="y")
+        from pendu_tui.tui.commands import figures
+
+        figures.draw_run(options, scene, samples[1:] or samples)
     else:
         publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
     if not is_whole:
@@ -140,20 +137,6 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
                     options.record = recording.path
                 break
     return samples
-
-
-def _series(scene: Scene, samples: Sequence[Sample]) -> list[Series]:
-    """Return the largest energy error of each half swing, or of longer parts of a long run."""
-    t = np.array([sample.t for sample in samples])
-    error = scene.equations.error.name
-    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
-    swing = scene.exact().period or math.tau / scene.w0
-    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
-    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
-    return [
-        Series(0, method.letter, t[first], np.fmax.reduceat(np.abs(row), first))
-        for method, row in zip(scene.cast, errors, strict=True)
-    ]
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:

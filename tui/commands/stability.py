@@ -23,6 +23,7 @@ from pendu_tui.tui.cli.report import (
     Column,
     Report,
     Table,
+    check_output,
     finite,
     form_of,
     method_column,
@@ -32,8 +33,6 @@ from pendu_tui.tui.cli.report import (
 )
 from pendu_tui.tui.cli.scene import general_scene_of
 from pendu_tui.tui.cli.workers import workers_of
-from pendu_tui.tui.commands import figures
-from pendu_tui.tui.drawing.loglog import Series
 
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
 LINEAR = """\
@@ -43,7 +42,7 @@ A pendulum's depend on the amplitude: pendu-tui stability drift"""
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
-    is_figure = figures.check_output(options)
+    is_figure = check_output(options)
     is_map = form_of(options) == "csv" and not is_figure
     grid = grid_of(scene, options, is_map)
     if grid is None:
@@ -59,8 +58,11 @@ def run(options: argparse.Namespace) -> int:
         if ended:  # the others may fail at a z not yet computed
             rows = [row for row in rows if row.failure]
         if is_figure:
+            from pendu_tui.tui.commands import figures
+
             axes = ("amplitude / °", "z = h ω₀ from which a swing is lost")
-            figures.draw(options, scene.cast, _series(scene, rows), axes, log="y")
+            series = [figures.Series(0, *line) for line in _lines(scene, rows)]
+            figures.draw(options, scene.cast, series, axes, log="y")
         else:
             publish(report(scene, options.steps, rows, is_whole=ended is None), options)
     if ended is None:
@@ -155,16 +157,12 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
     )
 
 
-def _series(scene: Scene, rows: Sequence[Row]) -> list[Series]:
-    """Return each method's limit over the amplitude [°]."""
-    points: dict[str, list[tuple[float, float]]] = {method.letter: [] for method in scene.cast}
-    for row in rows:
-        if row.failure:
-            points[row.method.letter].append((math.degrees(row.theta), row.failure.z))
-    return [
-        Series(0, letter, x=[x for x, _ in line], y=[y for _, y in line])
-        for letter, line in points.items()
-    ]
+def _lines(scene: Scene, rows: Sequence[Row]) -> Iterator[tuple[str, list[float], list[float]]]:
+    """Yield each method's letter, amplitudes [°] and limits."""
+    for method in scene.cast:
+        lost = [row for row in rows if row.method == method and row.failure]
+        limits = [row.failure.z for row in lost if row.failure]
+        yield method.letter, [math.degrees(row.theta) for row in lost], limits
 
 
 def map_report(grid: Grid, cells: Cells) -> Report:

@@ -7,6 +7,9 @@ from itertools import zip_longest
 from typing import Self
 
 from rich.style import Style
+from rich.text import Text
+
+from pendu_tui.tui.drawing.palette import Palette
 
 Ink = int | Style
 """The colour of a character: a number for the theme's palette, or a style of its own."""
@@ -57,3 +60,18 @@ def _equal(old: Row, new: Row) -> int:
             break
         length += len(one[0])
     return length
+
+
+def lines_of(picture: Picture, palette: Palette | None) -> list[Text]:
+    """Return a picture's lines for the terminal; without a palette, inks have no colour."""
+    lines = []
+    for row in picture.rows:
+        line = Text()
+        for text, ink in row:
+            if isinstance(ink, int):
+                line.append(text, palette and palette.colour(ink))
+            else:
+                line.append(text, ink)
+        line.rstrip()
+        lines.append(line)
+    return lines
