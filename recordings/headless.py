@@ -1,12 +1,15 @@
 """Headless runs, whose clock is the simulated time: the same run gives the same bytes."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import Event, noticed
-from pendu_tui.recordings.recorder import Recorder
+
+if TYPE_CHECKING:  # mcap and msgspec are slow to load, and most runs are not recorded
+    from pendu_tui.recordings.recorder import Recorder
 
 SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
 
@@ -19,7 +22,7 @@ def steps_for(scene: Scene, time: float) -> int:
 def simulate(
     scene: Scene,
     time: float,
-    recorder: Recorder | None = None,
+    recorder: "Recorder | None" = None,
     sample_every: int | None = None,
     loops: LoopsOf = PlainLoops,
     lockstep: Lockstep | None = None,

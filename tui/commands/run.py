@@ -18,7 +18,6 @@ from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
-from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
@@ -119,6 +118,8 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
     if options.method:  # a method of the user's own may be slow, and Ctrl+C waits for a batch
         every = 16
     if options.record:
+        from pendu_tui.recordings.recorder import Recorder  # slow to load
+
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
         every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
     every = options.sample_every or every
