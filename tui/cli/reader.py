@@ -25,7 +25,7 @@ from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
-MAX_ROWS = 20_000_000  # half a minute; the input may be endless
+MAX_LINES = 10_000_000  # half a minute, 320 MB; the input may be endless
 MAX_DOCUMENT = 1 << 28  # characters of JSON
 MAX_COLUMNS = 5000
 MAX_NAMES = 500  # of values that are printed with their names
@@ -89,6 +89,12 @@ def unreadable(sentence: str) -> UserError:
     return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
+def check_lines(count: int) -> None:
+    """Raise UserError if there are too many lines; the input may be endless."""
+    if count > MAX_LINES:
+        raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
+
+
 def _lines(text: io.TextIOBase) -> Iterator[str]:
     while line := text.readline(MAX_LINE):
         if len(line) == MAX_LINE:
@@ -145,7 +151,7 @@ class _Text:
         while block := list(islice(lines, BLOCK)):
             for is_alike, group in groupby(block, self._is_like_a_row):
                 self._read(list(group), is_alike)
-            check_size(*self._sheets[-1:], self._prints[-1])
+            check_lines(self._line)
             if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0]:
                 raise unreadable(f"{self._line:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
@@ -462,12 +468,6 @@ def _shape(line: str) -> str:
     return line.translate(_NO_NUMBERS)
 
 
-def check_size(*sheets: Sheet) -> None:
-    """Raise UserError if there are too many rows; the input may be endless."""
-    if any(len(sheet) > MAX_ROWS for sheet in sheets):
-        raise unreadable(f"more than {MAX_ROWS:,} rows; leave some out.")
-
-
 def _ways(text: str, cells: str = "") -> list[list[str]]:
     """Return the names in a head, divided in each way that there may be."""
     text = _without_bars(text.strip().rstrip(",; "))
@@ -529,8 +529,7 @@ def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
             value = number(str(text))
             if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
                 sheet.put(sheet.place(name, split_unit(name)[1]), line, value)
-        if line % BLOCK == 0:
-            check_size(sheet)
+        check_lines(line)
     return [sheet]
 
 

@@ -287,7 +287,7 @@ def test_a_file_or_a_gate_that_cannot_be_read_is_one_sentence():
 )
 def test_what_is_no_table_is_refused_within_bounds(data, words, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.cli.reader.MAX_LINES_BEFORE", 1000)
-    monkeypatch.setattr("pendu_tui.tui.cli.reader.MAX_ROWS", 2000)
+    monkeypatch.setattr("pendu_tui.tui.cli.reader.MAX_LINES", 2000)
     assert judge(data, time="1", energy="2").refused(3, words)
 
 
