@@ -170,3 +170,15 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         assert theatre.source.sample.step > here.step
     assert path.read_bytes() == before
     assert verify(path.with_name("new.mcap")).identical
+
+
+async def test_after_a_lesson_begun_in_a_replay_undo_never_leads_into_the_run_that_was_left(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        for key in ("T", "plus", "escape", "u", "u", "u"):
+            await theatre.press(key)
+            await theatre.pilot.pause()
+        assert theatre.source is replay
+        here = replay.sample.step
+        await theatre.press("full_stop")
+        assert replay.sample.step > here  # it is still open
