@@ -55,6 +55,10 @@ def test_each_letter_stands_once_on_the_stage_wherever_the_bobs_are(
     assert size(drawn) == (columns, rows)
 
 
+def test_even_where_letters_must_touch_none_is_left_out():
+    assert letters(picture(3, 2, *[1.0] * 6)) == sorted(LETTERS)
+
+
 @pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22), (73, 38)])
 @pytest.mark.parametrize("count", range(2, MAX_METHODS + 1))
 def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pane, count):
