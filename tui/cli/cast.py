@@ -167,11 +167,11 @@ def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
     from pendu_tui.engine.methods.examine import examined
     from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.tui.cli.time_limit import limited
+    from pendu_tui.tui.cli.time_limit import watch
 
+    watch()
     results.send(None)
     try:
-        with limited():
-            results.send(examined(source, key, file))
+        results.send(examined(source, key, file))
     except OwnMethodError as error:
         results.send(error)

@@ -117,10 +117,10 @@ def _dispatch(arguments: list[str]) -> int:
     refuse_to_replace_inputs(options)
     if not getattr(options, "method", None):
         return int(command.run(options))
-    from pendu_tui.tui.cli.time_limit import limited, watched
+    from pendu_tui.tui.cli.time_limit import watched
 
     keep_results_apart()
-    with watched(), limited():
+    with watched():
         return int(command.run(options))
 
 

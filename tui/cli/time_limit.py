@@ -1,62 +1,53 @@
-"""Time limits for a user's own methods: a thread interrupts them, or another process this one."""
+"""The watch on a user's own methods: a thread interrupts them, another process ends this one."""
 
 import ctypes
 import os
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
+from itertools import count
+from threading import Thread, main_thread
 
 from pendu_tui.engine.methods.own import USER_CODE, OwnMethodError, TooLongError
-from pendu_tui.tui.cli.errors import Exit
 
-MAX_TIME = 3.0  # s
+MAX_TIME = 3.0  # s, for a step
 LOOK_INTERVAL = 0.2  # s
-STEP = "a step"
+_blocks = count(-1, -1)  # no numbers of steps
 
 
-class Watch(threading.Thread):
-    """Looks from time to time whether a user's code is still in the same step, or in the block."""
+def _end(sentence: str) -> None:
+    print(f"pendu-tui: {sentence}", file=sys.__stderr__, flush=True)
+    os._exit(2)
 
-    @staticmethod
-    def end(sentence: str, code: Exit) -> None:
-        """End the program, whose user's code cannot be interrupted."""
-        print(f"pendu-tui: {sentence}", file=sys.__stderr__, flush=True)
-        os._exit(code)
+
+class Watch(Thread):
+    """Looks five times a second whether a user's code is still in the same step."""
 
     def __init__(self) -> None:
-        super().__init__(name="time limit", daemon=True)
-        self.guard = threading.Lock()
-        self.what = STEP  # what must not take long
-        self.pulse = -1  # the descriptor of the watcher's stdin
-        self.looks = 0  # counted, since the clock goes on while the program is stopped
-
-    def begin(self, what: str) -> None:
-        with self.guard:
-            self.what = what
-            self.looks = 0
-            _raise_in_main(None)
+        super().__init__(name="watch", daemon=True)
+        self.block = 0  # the number of a block that counts as one step
+        self.pulse = -1  # the descriptor that shows the watcher that this process lives
+        self.look: Callable[[], object] = bool  # what else to look at
+        self.end: Callable[[str], object] = _end
 
     def run(self) -> None:
-        steps = 0
+        step = looks = 0  # counted, since the clock goes on while the program is stopped
         while True:
             time.sleep(LOOK_INTERVAL)
-            if self.pulse >= 0:
-                with suppress(OSError):  # somebody killed it
-                    os.write(self.pulse, b".")
-            with self.guard:
-                self.looks += 1
-                if self.what == STEP and (steps != USER_CODE.steps or not USER_CODE.is_running):
-                    self.looks = 0
-                steps = USER_CODE.steps
-                if self.looks * LOOK_INTERVAL >= MAX_TIME and USER_CODE.is_running:
-                    TooLongError.why = f"takes more than {MAX_TIME:g} s for {self.what}"
-                    _raise_in_main(TooLongError)
-            if self.looks * LOOK_INTERVAL >= 2 * MAX_TIME and USER_CODE.is_running:
-                Watch.end(f"ended, for your method {TooLongError.why}.", Exit.USAGE)
+            now = self.block or USER_CODE.steps
+            looks = looks + 1 if now == step and (USER_CODE.is_running or self.block) else 0
+            step = now
+            if looks * LOOK_INTERVAL >= MAX_TIME and USER_CODE.is_running:
+                TooLongError.why = f"takes more than {MAX_TIME:g} s"
+                _raise_in_main(TooLongError)
+            if looks * LOOK_INTERVAL >= 2 * MAX_TIME and USER_CODE.is_running:
+                self.end(f"ended, for your method {TooLongError.why}.")
+            self.look()
+            with suppress(OSError):  # there is no watcher
+                os.write(self.pulse, b".")
 
 
 @cache
@@ -68,28 +59,22 @@ def watch() -> Watch:
 
 
 def _raise_in_main(error: type[BaseException] | None) -> None:
-    """Raise an error in the main thread's next line of Python, or drop one not yet raised."""
-    thread = ctypes.c_ulong(threading.main_thread().ident or 0)
+    """Raise an error at the main thread's next line of Python, or drop one not yet raised."""
+    thread = ctypes.c_ulong(main_thread().ident or 0)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error and ctypes.py_object(error))
 
 
 @contextmanager
-def limited(what: str = STEP) -> Iterator[None]:
-    """Interrupt a user's methods if the block takes too long, by default if a step does.
-
-    Raises OwnMethodError then.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = watch().what
-    watch().begin(what)
+def limited() -> Iterator[None]:
+    """Limit the time of a block as that of a step.  Raises OwnMethodError."""
+    watch().block = next(_blocks)
     try:
         yield
-    except TooLongError as error:  # raised just after the step
+    except TooLongError as error:  # raised just after the user's code
         raise OwnMethodError(f"A method of your own {error}.") from None
     finally:
-        watch().begin(before)
+        watch().block = 0
+        _raise_in_main(None)
 
 
 @contextmanager
@@ -99,7 +84,5 @@ def watched() -> Iterator[None]:
     with subprocess.Popen(watcher, stdin=subprocess.PIPE, start_new_session=True) as process:
         assert process.stdin
         watch().pulse = process.stdin.fileno()
-        try:
-            yield
-        finally:
-            watch().pulse = -1
+        yield
+        watch().pulse = -1

@@ -34,7 +34,7 @@ from pendu_tui.tui.cli.report import (
     warn,
 )
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
-from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.time_limit import watch
 from pendu_tui.tui.cli.workers import workers_of
 from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
 from pendu_tui.tui.words.numbers import counted, file_size, z_text
@@ -279,9 +279,9 @@ class Task:
 
     def rows(self) -> list[Row]:
         lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
-        with limited():  # in a worker, too
-            for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
-                last = sample
+        watch()  # in a worker, too
+        for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
+            last = sample
         return [self.start | row for row in rows_of(self.scene, last, lockstep, is_whole=True)]
 
 

@@ -342,7 +342,7 @@ def _limited(scene: Scene, run: RewindableRun | None = None) -> Iterator[None]:
         yield
         return
     unchanged = run.unchanged_by_errors() if run else nullcontext()
-    with limited("the way there"), unchanged:
+    with limited(), unchanged:
         yield
 
 

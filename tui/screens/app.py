@@ -14,7 +14,6 @@ from textual.theme import BUILTIN_THEMES, Theme
 from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.time_limit import Watch
 from pendu_tui.tui.drawing.palette import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.palette_faults import ForgivingApp, is_of_palette
@@ -57,7 +56,7 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
         self.character_filter = CharacterSetFilter(terminal.character_set)
         self.lab = screen
         self._last_notice = ""
-        self._watchdog = Watchdog(self, self.finish)
+        self._watchdog = Watchdog(self, self.action_interrupt, self.finish)
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
@@ -72,8 +71,7 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
         """Handle signals from now on, and repaint after a stop."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         if not self.is_headless:
-            self._watchdog.begin(self.action_interrupt)
-            Watch.end = self._watchdog.end  # type: ignore[method-assign]
+            self._watchdog.begin()
 
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from pendu_tui.recordings.system import give_way
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.time_limit import watch
 from pendu_tui.tui.cli.workers import received
 
 
@@ -53,10 +53,10 @@ def _send_all(
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream)  # nothing may write across the screen
     give_way()
     Thread(target=_end_with_parent, daemon=True).start()
+    watch()
     try:
-        with limited():
-            for item in function(*arguments):
-                results.send(item)
+        for item in function(*arguments):
+            results.send(item)
         results.send(None)
     except Exception as error:
         results.send(error)

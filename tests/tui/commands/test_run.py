@@ -225,4 +225,4 @@ def test_a_step_that_does_not_end_ends_a_list_in_other_processes(tmp_path):
     (tmp_path / "mine.py").write_text(ENDLESS)
     own = ("--method", f"{tmp_path}/mine.py:endless", "--methods", "endless")
     outcome = pendu("run", *own, "--h", "0.001,0.002", "--time", 200, "--csv", "--workers", 2)
-    assert outcome.refused(2, "line 7", "takes more than 3 s for a step")
+    assert outcome.refused(2, "line 7", "takes more than 3 s")

@@ -122,7 +122,7 @@ class PhasePane(Chooser[State]):
         if has_own(scene):
             steps = 1
         try:
-            with limited("the ring"):
+            with limited():
                 self.ring = self.neighbours.follow(
                     scene, sample.run, sample.step, source.changes, steps
                 )
