@@ -127,8 +127,7 @@ def phase_picture(
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*on_screen(viewport, *closed), point.ink)
-    for point in points:
-        draw_point(canvas, viewport, point)
+    draw_points(canvas, viewport, points)
     write_words(canvas, portrait.words)
     return canvas.picture()
 
@@ -160,22 +159,31 @@ def on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> Points:
     return x, y
 
 
-def draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
-    """Draw a disc with its letter beside it, at the nearest edge if it is outside."""
-    x = float(viewport.x(np.float64(point.theta)))
-    y = float(viewport.y(np.float64(point.omega)))
-    canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
-    if not (math.isfinite(x) and math.isfinite(y)):
-        return
-    places = BESIDE
-    if not (0 <= x < canvas.width and 0 <= y < canvas.height):
-        places = (0, 0), *BESIDE
+def draw_points(canvas: Canvas, viewport: Viewport, points: Sequence[PhasePoint]) -> None:
+    """Draw discs, and their letters beside all discs where there is room.
+
+    Those outside are at the nearest edge.
+    """
+    x = viewport.x(np.array([point.theta for point in points]))
+    y = viewport.y(np.array([point.omega for point in points]))
+    places = list(zip(points, x.tolist(), y.tolist(), strict=True))
+    for point, right, down in places:
+        canvas.disc(right, down, 1.6, point.ink, hollow=point.ink == EXACT)
+    for point, right, down in places:
+        if math.isfinite(right) and math.isfinite(down):
+            _write_letter(canvas, right, down, point)
+
+
+def _write_letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     column = int(min(max(x, 0), canvas.width - 1)) // 2
     row = int(min(max(y, 0), canvas.height - 1)) // 4
-    for right, down in places:
-        if canvas.is_free(column + right, row + down):
-            canvas.label(column + right, row + down, point.letter, point.ink)
-            return
+    near = [(column + right, row + down) for right, down in BESIDE]
+    if not (0 <= x < canvas.width and 0 <= y < canvas.height):
+        near.insert(0, (column, row))
+    free = [place for place in near if canvas.is_free(*place)]
+    blank = [place for place in free if not any(0 <= i < FAINT for i in canvas.inks_at(*place))]
+    for place in (blank or free)[:1]:
+        canvas.label(*place, point.letter, point.ink)
 
 
 def method_points(

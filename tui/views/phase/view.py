@@ -28,7 +28,7 @@ from pendu_tui.tui.views.phase.portrait import (
     axes,
     draw_crosshair,
     draw_dots,
-    draw_point,
+    draw_points,
     on_screen,
     write_words,
 )
@@ -87,7 +87,7 @@ class Section:
             canvas.path(*on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
         if crosshair is not None:
             draw_crosshair(canvas, viewport, crosshair)
-        draw_point(canvas, viewport, PhasePoint(*start, self._ink, self._method.letter))
+        draw_points(canvas, viewport, [PhasePoint(*start, self._ink, self._method.letter)])
         write_words(canvas, axes(viewport))
         return canvas.picture()
 
