@@ -10,22 +10,30 @@ w0, so it holds for any w0.  These methods take w0 from the model, and never the
 import math
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import Any
 
-from pendu_tui.engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
 from pendu_tui.engine.methods.method import Method
 from pendu_tui.engine.methods.runge_kutta import rk4_on_rates
 from pendu_tui.engine.models.model import Model, Phase, Rates
 
 
-def _numbers(text: str) -> list[tuple[float, ...]]:
-    return [tuple(map(float, row.split(","))) for row in text.split()]
+@cache
+def stored() -> dict[str, str]:
+    """Return the learned numbers by name, as tests/bench/learn.py wrote them."""
+    import tomllib  # slow to load, and few scenes need it
+
+    return tomllib.loads(Path(__file__).with_name("learned.toml").read_text("utf-8"))
+
+
+def _numbers(name: str) -> list[tuple[float, ...]]:
+    return [tuple(map(float, row.split(","))) for row in stored()[name].split()]
 
 
 @cache
 def _rows(coefficients: str) -> list[tuple[float, ...]]:
     """Return the three numbers of each feature with its coefficients."""
-    pairs = zip(_numbers(FEATURES), _numbers(coefficients), strict=True)
+    pairs = zip(_numbers("FEATURES"), _numbers(coefficients), strict=True)
     return [(*feature, *each) for feature, each in pairs]
 
 
@@ -48,7 +56,7 @@ def _two_sums(coefficients: str, w0: float) -> Callable[[float, float], tuple[fl
 def learned_field(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (theta', omega') with a sum for each."""
     w0 = math.sqrt(w0_squared)
-    sums = _two_sums(FIELD, w0)
+    sums = _two_sums("FIELD", w0)
 
     def field(phase: Phase) -> Phase:
         drift, kick = sums(*phase)
@@ -61,7 +69,7 @@ def learned_field(w0_squared: float) -> Rates:
 def learned_hamiltonian(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (dH/d omega, -dH/d theta) of one sum H(theta, omega)."""
     w0 = math.sqrt(w0_squared)
-    rows = _rows(HAMILTONIAN)
+    rows = _rows("HAMILTONIAN")
 
     def field(phase: Phase) -> Phase:
         theta, omega = phase
@@ -132,7 +140,7 @@ def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
     """The learned map, for w0 h = 0.1; at other h its increment is taken as proportional to h."""
     w0 = model.w0
     tau = w0 * h
-    sums = _two_sums(MAP, w0)
+    sums = _two_sums("MAP", w0)
     theta, omega = phase
     while True:
         drift, kick = sums(theta, omega)
@@ -159,8 +167,8 @@ def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Pha
     """
     w0 = model.w0
     tau = w0 * h
-    push = _module(KICK)
-    carry = _module(DRIFT)
+    push = _module("KICK")
+    carry = _module("DRIFT")
     theta, omega = phase
     kick = push(theta)
     while True:

@@ -1,6 +1,6 @@
 """Learn a pendulum from noisy measurements: as a field, a Hamiltonian, a map, a symplectic map.
 
-python -m tests.bench.learn writes engine/methods/learned_numbers.py.
+python -m tests.bench.learn writes engine/methods/learned.toml.
 
 600 states of a pendulum with w0² = 9.81 s⁻², below 0.9 of the separatrix's energy, are measured with
 their derivatives, with noise of 2 % of each one's root mean square.  Field and Hamiltonian are sums
@@ -28,7 +28,7 @@ TAU = 0.1  # w0 t of a learned map
 UNITS = 20  # of each function of the symplectic map
 GAUSS_NEWTON_STEPS = 4
 RIDGE = 1e-3  # relative; keeps the coefficients small, so that few digits suffice
-NUMBERS = Path(__file__).parents[2] / "engine/methods/learned_numbers.py"
+NUMBERS = Path(__file__).parents[2] / "engine/methods/learned.toml"
 ABOUT = {
     "FEATURES": "a, b and c of each feature tanh(a theta + b omega/w0 + c).",
     "FIELD": "Its coefficients in theta'/w0 and in omega'/w0².",
@@ -128,11 +128,11 @@ def main():
         "DRIFT": [f"{b:g},{c:g},{k:.6g}" for b, c, k in drift.T],
     }
     parts = [
-        '"""Weights that tests/bench/learn.py learned from 600 noisy measurements, w0² = 9.81 s⁻²."""'
+        "# Weights that tests/bench/learn.py learned from 600 noisy measurements, w0² = 9.81 s⁻²."
     ]
     for name, numbers in columns.items():
         lines = textwrap.fill(" ".join(numbers), width=100, break_on_hyphens=False)
-        parts.append(f'\n{name} = """\n{lines}\n"""\n"""{ABOUT[name]}"""')
+        parts.append(f'\n# {ABOUT[name]}\n{name} = """\n{lines}\n"""')
     NUMBERS.write_text("\n".join(parts) + "\n", encoding="utf-8")
 
 

@@ -16,8 +16,8 @@ from pendu_tui.engine.methods.learned import (
     RK4_LEARNED_HAMILTONIAN,
     learned_field,
     learned_hamiltonian,
+    stored,
 )
-from pendu_tui.engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.loops import PlainLoops
 from tests.bench import learn
@@ -34,10 +34,9 @@ def test_the_numbers_are_those_that_the_script_learns():
     found = (np.column_stack((weights, biases)), np.column_stack((theta, omega)), energy[:, None])
     plain, (kick, drift) = learn.learned_maps(learn.SEED)
     found = (*found, plain, kick.T, drift.T)
-    stored_texts = (FEATURES, FIELD, HAMILTONIAN, MAP, KICK, DRIFT)
-    for numbers, expected in zip(stored_texts, found, strict=True):
-        stored = np.array([[float(number) for number in row.split(",")] for row in numbers.split()])
-        assert stored == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
+    for text, expected in zip(stored().values(), found, strict=True):
+        numbers = np.array([[float(number) for number in row.split(",")] for row in text.split()])
+        assert numbers == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
 
 
 def test_both_fields_are_about_as_far_from_the_true_one():
@@ -83,7 +82,9 @@ def test_rk4_loses_little_of_the_learned_hamiltonian():
         (float(a), float(b), float(c), float(size))
         for (a, b, c), (size,) in (
             (feature.split(","), size.split(","))
-            for feature, size in zip(FEATURES.split(), HAMILTONIAN.split(), strict=True)
+            for feature, size in zip(
+                stored()["FEATURES"].split(), stored()["HAMILTONIAN"].split(), strict=True
+            )
         )
     ]
 
