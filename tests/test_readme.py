@@ -86,10 +86,21 @@ def shell(tmp_path):
 
 @pytest.mark.slow
 def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
+    write_my_md(tmp_path)
     for line in "".join(blocks("sh")).splitlines():
         shell(line)
     for name in ("crossover.mcap", "crossover.csv", "saved.mcap"):
         assert (tmp_path / name).exists()
+
+
+def write_my_md(folder):
+    """Write the program that the README guards, and its energies with two steps."""
+    (folder / "my_md.py").write_text(MY_MD, encoding="utf-8")
+    exec(MY_MD, names := {})
+    for name, h in (("fine", 0.05), ("coarse", 0.1)):
+        rows = zip(*names["run"](h), strict=True)
+        text = "\n".join(f"{time!r},{energy!r}" for time, energy in rows)
+        (folder / f"{name}.csv").write_text(f"time,energy\n{text}\n", encoding="utf-8")
 
 
 @pytest.mark.slow
@@ -106,14 +117,23 @@ def without_seconds(text: str) -> list[str]:
 MY_MD = """
 import math
 
-def run(steps):
-    q, p, times, energies = 1.0, 0.0, [], []
-    for step in range(steps):
-        p -= 0.05 * math.sin(q)
-        q += 0.1 * p
-        p -= 0.05 * math.sin(q)
-        times.append(0.1 * step)
-        energies.append(p * p / 2 - math.cos(q))
+def step(force, phase, h):
+    q, p = phase
+    a = force(q)
+    while True:
+        p = p + h / 2 * a
+        q = q + h * p
+        a = force(q)
+        p = p + h / 2 * a
+        yield q, p
+
+def run(h, time=500):
+    times, energies = [], []
+    phases = step(lambda q: -math.sin(q), (1.0, 0.0), h)
+    for count in range(1, round(time / h) + 1):
+        q, p = next(phases)
+        times.append(h * count)
+        energies.append(2 + p * p / 2 - math.cos(q))
     return times, energies
 """
 IN_PYTEST = (
@@ -125,9 +145,9 @@ IN_PYTEST = (
 def project(tmp_path):
     """Make a project with a test file, and return what its pytest prints."""
 
-    def tested(test: str) -> str:
+    def tested(test: str, my_md: str = MY_MD) -> str:
         (tmp_path / "test_mine.py").write_text(test, encoding="utf-8")
-        (tmp_path / "my_md.py").write_text(MY_MD, encoding="utf-8")
+        (tmp_path / "my_md.py").write_text(my_md, encoding="utf-8")
         command = [sys.executable, "-m", "pytest", *IN_PYTEST.split()]
         done = ran(*command, folder=tmp_path)
         return done.stdout + done.stderr
@@ -136,37 +156,43 @@ def project(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_pytest_plugin_guards_energies_and_recordings(project, tmp_path):
+def test_the_three_gates_pass_on_right_code_and_fail_on_a_forgotten_half_kick(project, tmp_path):
     test = block_with("python", "import my_md")
-    told = project(test)
-    assert "1 failed, 1 passed" in told
-    assert f"there is no recording (*.mcap) in {tmp_path}" in told
+    assert "3 passed" in project(test)
     report = (tmp_path / "j.xml").read_text(encoding="utf-8")
     assert '<property name="verdict" value="bounded"' in report
+    told = project(test, MY_MD.replace("        p = p + h / 2 * a\n        yield", "        yield"))
+    assert "3 failed" in told
+    for reason in ("it solves another equation", "the energy fluctuates as h^", "the error is"):
+        assert reason in told
+
+
+RECORDINGS = """
+from pathlib import Path
+from pendu_tui.recordings.pytest import verify_recordings
+
+test_recordings = verify_recordings(Path(__file__).parent)
+"""
+
+
+@pytest.mark.slow
+def test_recordings_below_a_folder_are_tests(project, tmp_path):
+    assert f"there is no recording (*.mcap) in {tmp_path}" in project(RECORDINGS)
     data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
     (tmp_path / "damaged.mcap").write_bytes(data)
     (tmp_path / "odd.mcap").touch()
-    told = project(
-        f"{test}\n"
-        "def test_short(energy_drift):\n    energy_drift.check(*my_md.run(steps=50))\n"
-        "def test_exact(energy_drift):\n    energy_drift.check(*my_md.run(5000), max_drift=1e-15)\n"
-    )
-    assert "4 failed, 2 passed" in told
-    for reason in (
-        "damaged.mcap: ",
-        "odd.mcap: ",
-        "undecided, 50 of 64 samples",
-        "the energies drift by more than 1e-15: bounded, trend ",
-    ):
-        assert reason in told
+    told = project(RECORDINGS)
+    assert "2 failed, 1 passed" in told
+    assert "damaged.mcap: " in told
+    assert "odd.mcap: " in told
 
 
 @pytest.mark.slow
 def test_the_library_does_what_the_readme_shows(capsys):
     exec(block_with("python", "from pendu_tui.engine import"), names := {})
-    assert capsys.readouterr().out.startswith("bounded, trend ")
+    assert capsys.readouterr().out.startswith("bounded, slope ")
     assert names["run"]["rk4"].verdict == "loses"
     general = sum(method.general for method in names["METHODS"].values())
     assert f"\n{general} methods take any force" in README
@@ -236,7 +262,7 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     record = "run --time 60 --methods ruth,rk4 --record two.mcap"
     assert "Ruth 3  bounded" in pendu_there(record)
     assert "11 recordings, 11 identical" in pendu_there("verify two.mcap golden")
-    claims = str(ROOT / "tests" / "engine" / "methods" / "test_claims.py")
+    claims = shutil.copy(ROOT / "tests" / "engine" / "methods" / "test_claims.py", tmp_path)
     alone = ("-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider")
     told = run("-m", "pytest", *alone, claims, "-k", "ruth_3")
     assert re.search(r"= [5-9] passed, \d+ deselected", told)
