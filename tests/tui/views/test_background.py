@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from pendu_tui.recordings.system import kill
 from pendu_tui.tui.views.background import computed
 
 pytestmark = pytest.mark.slow
@@ -79,7 +80,7 @@ async def test_it_starts_where_stderr_has_no_file_number_and_is_deaf_to_ctrl_c(m
 
 async def test_a_computation_that_fails_or_is_killed_is_an_error_here():
     async with aclosing(computed(forever)) as found:
-        os.kill(await anext(found), signal.SIGKILL)
+        kill(await anext(found), 1)
         with pytest.raises(Exception, match="was ended"):
             await anext(found)
 

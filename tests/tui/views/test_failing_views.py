@@ -1,10 +1,10 @@
 """A view that cannot compute says so in its pane, can be tried again, and the lab goes on."""
 
 import os
-import signal
 
 import pytest
 
+from pendu_tui.recordings.system import kill
 from pendu_tui.tui.views import background
 from tests.tui.command_line import own_method, pendu
 from tests.tui.harness import key_of, lab, player, until
@@ -27,7 +27,7 @@ async def test_a_view_whose_process_is_killed_says_so_and_computes_when_it_is_sh
     async def killed_once(function, *arguments):
         monkeypatch.setattr("pendu_tui.tui.views.background.computed", real)
         async for process in real(os_pid):
-            os.kill(process, signal.SIGKILL)
+            kill(process, 1)
         yield  # never reached, but it makes this a generator
 
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", killed_once)
