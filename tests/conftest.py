@@ -38,3 +38,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="store snapshots as they are now",
     )
+
+
+@pytest.fixture(autouse=True)
+def _tests_are_importable(monkeypatch):
+    """Undo what trying a user's method sets, so that other processes can import `tests`."""
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)

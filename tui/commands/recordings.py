@@ -110,6 +110,9 @@ def _contents(recording: "Recording") -> Report:
         for run in recording.runs
     ]
     cast = list(dict.fromkeys(method.key for run in recording.runs for method in run.scene.cast))
+    more = []
+    if len(runs) > MAX_RUNS:
+        more = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
     health = recording.reason or "complete"
     facts = {
         "file": str(recording.path),
@@ -124,10 +127,11 @@ def _contents(recording: "Recording") -> Report:
         columns=(Column("", "name"), Column("", "value")),
         rows=[{"name": name, "value": value} for name, value in facts.items()],
         fields=fields | fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
-        notes=[Table(RUN_COLUMNS, [run["scene"] | run for run in runs])],
+        notes=[Table(RUN_COLUMNS, [run["scene"] | run for run in runs[:MAX_RUNS]]), *more],
     )
 
 
+MAX_RUNS = 500  # in the table, of which Rich draws a thousand rows a second
 RUN_COLUMNS = (
     Column("run", "run", "d"),
     Column("scene", "name"),

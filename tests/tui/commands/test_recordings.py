@@ -9,6 +9,7 @@ from mcap.writer import Writer
 
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
+from tests.recordings import hostile
 from tests.recordings.examples import record, start, two_runs
 from tests.tui.command_line import pendu
 
@@ -40,6 +41,13 @@ def test_show_shows_what_a_recording_contains(whole):
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)
     assert answer["reason"] in pendu("recordings", "show", whole).out
+
+
+def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path):
+    hostile.write_file(tmp_path / "runs.mcap", "many runs", 600)
+    out = pendu("recordings", "show", tmp_path / "runs.mcap").out
+    assert "and 100 runs more" in out
+    assert len(pendu("recordings", "show", tmp_path / "runs.mcap", "--json").json["runs"]) == 600
 
 
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whole, tmp_path):
