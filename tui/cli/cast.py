@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import signal
 import string
 from collections.abc import Sequence
 from multiprocessing import get_context
@@ -166,12 +167,19 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
     from pendu_tui.engine.methods.examine import examined
-    from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.engine.methods.own import OwnMethodError, TooLongError
     from pendu_tui.tui.cli.time_limit import watch
 
-    watch()
+    def refuse(why: object) -> None:
+        results.send(OwnMethodError(f"{file}: {key} {why}."))
+        os._exit(0)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    watch().end = lambda _: refuse(TooLongError.why)
     results.send(None)
     try:
         results.send(examined(source, key, file))
     except OwnMethodError as error:
         results.send(error)
+    except KeyboardInterrupt:
+        refuse("raises KeyboardInterrupt")
