@@ -102,7 +102,8 @@ def terminal_state() -> Any:
 def restore_terminal(state: Any) -> None:
     """Give the terminal on stderr back to the shell, if the lab has it."""
     if sys.platform == "win32":
-        os.write(2, PLAIN_SCREEN)
+        if os.isatty(2):
+            os.write(2, PLAIN_SCREEN)
     elif state is not None and state != terminal_state():
         termios.tcsetattr(2, termios.TCSANOW, state)
         os.write(2, PLAIN_SCREEN)
