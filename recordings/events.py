@@ -1,6 +1,5 @@
 """Events: actions in the lab, milestones that it noticed, and the arithmetic of a run."""
 
-import hashlib
 import math
 import struct
 from collections.abc import Iterable, Iterator
@@ -47,6 +46,8 @@ def fingerprint(function: str) -> str:
 
     Another libm, or the same one on another processor, rounds one sine in 1400 the other way.
     """
+    import hashlib  # slow
+
     places = [(-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096)]
     if function == "sqrt":
         places = list(map(abs, places))

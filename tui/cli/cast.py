@@ -5,7 +5,6 @@ import os
 import signal
 import string
 from collections.abc import Sequence
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -139,6 +138,8 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
+    from multiprocessing import get_context
+
     from pendu_tui.engine.methods.own import OwnMethodError
     from pendu_tui.tui.cli.workers import received
 

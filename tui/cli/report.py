@@ -1,8 +1,6 @@
 """What commands print: reports on stdout, warnings and progress on stderr."""
 
 import argparse
-import csv
-import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -153,6 +151,8 @@ class Report:
         Raises ValueError for JSON of nan or inf.
         """
         if form == "json":
+            import json  # the lab needs none
+
             schema = f"pendu.{self.name}/{self.version}"
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
             print(text, file=out)
@@ -194,6 +194,8 @@ def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
     """Write rows of CSV; every number reads back the same, and None is empty."""
+    import csv  # the lab needs none
+
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)

@@ -12,7 +12,6 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.cast import add_cast_options, cast_of
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import LIST, Suggestions, did_you_mean, values
-from pendu_tui.tui.cli.scene_file import read_scenes
 
 
 def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
@@ -96,6 +95,8 @@ def scene_of(
 def scene_named(name: str, lesson: bool = False) -> Scene:
     """Return a listed scene or that of a file, of a `lesson` the first.  Raises UserError."""
     if name.endswith(".toml"):
+        from pendu_tui.tui.cli.scene_file import read_scenes
+
         first, *others = read_scenes(Path(name)).values()
         if others and not lesson:
             raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")

@@ -1,6 +1,5 @@
 """The watch on a user's own methods: a thread interrupts them, another process ends this one."""
 
-import ctypes
 import os
 import subprocess
 import sys
@@ -60,6 +59,8 @@ def watch() -> Watch:
 
 def _raise_in_main(error: type[BaseException] | None) -> None:
     """Raise an error at the main thread's next line of Python, or drop one not yet raised."""
+    import ctypes  # the first paint needs none
+
     thread = ctypes.c_ulong(main_thread().ident or 0)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error and ctypes.py_object(error))
 

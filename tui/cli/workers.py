@@ -24,25 +24,9 @@ from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import interruptible
-from pendu_tui.tui.cli.options import count
 
 Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
-
-
-def add_worker_options(parser: argparse.ArgumentParser) -> None:
-    """Add --workers and --dask, for `workers_of`."""
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument(
-        "--workers",
-        metavar="N",
-        type=count,
-        default=1,
-        help="compute in N processes on this machine (%(default)s)",
-    )
-    where.add_argument(
-        "--dask", metavar="ADDRESS", help="on a Dask scheduler, such as tcp://10.0.0.1:8786"
-    )
 
 
 def received(results: Connection, process: BaseProcess, seconds: float | None = None) -> Any:

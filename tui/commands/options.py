@@ -38,10 +38,24 @@ from pendu_tui.tui.cli.options import (
 )
 from pendu_tui.tui.cli.report import FIGURES, add_report_options, file_type
 from pendu_tui.tui.cli.scene import add_scene_options
-from pendu_tui.tui.cli.workers import add_worker_options
 from pendu_tui.tui.terminal.options import add_picture_options, add_terminal_options, cells
 
 Add = Callable[[argparse.ArgumentParser], object]
+
+
+def add_worker_options(parser: argparse.ArgumentParser) -> None:
+    """Add --workers and --dask, for `tui.cli.workers.workers_of`."""
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers",
+        metavar="N",
+        type=count,
+        default=1,
+        help="compute in N processes on this machine (%(default)s)",
+    )
+    where.add_argument(
+        "--dask", metavar="ADDRESS", help="on a Dask scheduler, such as tcp://10.0.0.1:8786"
+    )
 
 
 def option(*names: str, **settings: Any) -> Add:

@@ -6,7 +6,6 @@ from typing import Literal
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene, Shot
-from pendu_tui.tui.cli.scene_file import TOUR, read_scenes
 from pendu_tui.tui.playback.live import Live
 
 ASTRAY = "This is your own run now. Enter begins the page again."
@@ -149,4 +148,6 @@ class Lesson:
 
 def tour() -> Lesson:
     """Return the lesson that comes with the program."""
+    from pendu_tui.tui.cli.scene_file import TOUR, read_scenes
+
     return Lesson("Tour", read_scenes(TOUR).values())

@@ -3,7 +3,6 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -24,7 +23,9 @@ from pendu_tui.tui.cli.time_limit import limited
 from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, RunState, Source
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # the first paint needs none
+    from concurrent.futures import Future, ThreadPoolExecutor
+
     from pendu_tui.recordings.recorder import LiveRecorder
 
 FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
@@ -357,7 +358,7 @@ def _ready(method: Method, model: Model) -> Loops | None:
 
 
 @cache
-def _compiling(method: Method, model: Model) -> Future[Loops]:
+def _compiling(method: Method, model: Model) -> "Future[Loops]":
     def compile_now() -> Loops:
         loops = compiled(method, model)
         loops.advance((0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
@@ -367,5 +368,7 @@ def _compiling(method: Method, model: Model) -> Future[Loops]:
 
 
 @cache
-def _thread() -> ThreadPoolExecutor:
+def _thread() -> "ThreadPoolExecutor":
+    from concurrent.futures import ThreadPoolExecutor
+
     return ThreadPoolExecutor(max_workers=1)

@@ -23,7 +23,6 @@ from pendu_tui.engine.scenes import SCENES, Scene, SceneError
 from pendu_tui.recordings import library
 from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.tui.cli.errors import UserError, explained
-from pendu_tui.tui.cli.scene_file import scene_text
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live, has_own
 from pendu_tui.tui.playback.replay import Replay
@@ -612,6 +611,7 @@ class LabScreen(SizedScreen[None]):
 
     def action_save_scene(self) -> None:
         """Save what is on the screen as a scene file, which a lesson may begin with."""
+        from pendu_tui.tui.cli.scene_file import scene_text
 
         def save(folder: Any) -> Any:
             path = library.free_path(folder / "scene.toml")
