@@ -80,7 +80,7 @@ async def test_it_starts_where_stderr_has_no_file_number_and_is_deaf_to_ctrl_c(m
 
 async def test_a_computation_that_fails_or_is_killed_is_an_error_here():
     async with aclosing(computed(forever)) as found:
-        kill(await anext(found), 1)
+        kill(await anext(found), 9)
         with pytest.raises(Exception, match="was ended"):
             await anext(found)
 

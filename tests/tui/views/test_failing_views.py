@@ -27,7 +27,7 @@ async def test_a_view_whose_process_is_killed_says_so_and_computes_when_it_is_sh
     async def killed_once(function, *arguments):
         monkeypatch.setattr("pendu_tui.tui.views.background.computed", real)
         async for process in real(os_pid):
-            kill(process, 1)
+            kill(process, 9)
         yield  # never reached, but it makes this a generator
 
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", killed_once)
