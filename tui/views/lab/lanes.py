@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import chain, islice, pairwise
 from math import ceil, cos, hypot, isfinite, nan, pi, sin, tau
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.palette import EXACT, FRAME, faint
@@ -16,6 +16,8 @@ from pendu_tui.tui.drawing.picture import Picture
 
 Dot = tuple[float, float]
 """A place on the canvas, in dots to the right and down."""
+
+Each = TypeVar("Each")
 
 TRAIL = 15  # samples: half a second
 GAP = 1.0  # rad between samples, beyond which nothing is known of the way
@@ -62,20 +64,23 @@ class Lanes(NamedTuple):
         """Return where a bob is on its lane, or on its spring."""
         return self.point(radius * min(bob.length, 4.0), bob.theta)
 
-    def arc(self, radius: float, begin: float, end: float) -> list[Dot]:
-        """Return the dots of a circle from one angle to a larger one [rad]."""
-        ring = _ring(self.x, self.y, radius)
-        count = len(ring) // 2
-        first = round(begin % tau / tau * count) % count
-        return ring[first : first + 1 + round(min((end - begin) / tau, 1.0) * (count - 1))]
+    def ring(self, radius: float) -> list[Dot]:
+        """Return the dots of a circle twice over, counter-clockwise from the bottom."""
+        count = max(ceil(1.2 * tau * radius), 1)
+        return 2 * [self.point(radius, tau * nth / count) for nth in range(count)]
 
 
 @lru_cache(maxsize=32)
-def _ring(x: float, y: float, radius: float) -> list[Dot]:
-    """Return the dots of a circle twice over, counter-clockwise from the bottom."""
-    count = max(ceil(1.2 * tau * radius), 1)
-    angles = [tau * nth / count for nth in range(count)]
-    return 2 * [(x + radius * sin(theta), y + radius * cos(theta)) for theta in angles]
+def _ring(columns: int, rows: int, places: Lanes, radius: float) -> list[tuple[int, int]]:
+    """Return the dots of a circle on a canvas of this size, as `Lanes.ring` does."""
+    return Canvas(columns, rows).dots_of(places.ring(radius))
+
+
+def arc(ring: list[Each], begin: float, end: float) -> list[Each]:
+    """Return the part of a ring from one angle to a larger one [rad]."""
+    count = len(ring) // 2
+    first = round(begin % tau / tau * count) % count
+    return ring[first : first + 1 + round(min((end - begin) / tau, 1.0) * (count - 1))]
 
 
 @lru_cache(maxsize=8)
@@ -109,7 +114,7 @@ def _backdrop(columns: int, rows: int, places: Lanes, angle: float) -> Canvas:
     """Draw each lane, dotted as far as the exact pendulum swings [rad]."""
     canvas = Canvas(columns, rows)
     for radius in places.radii:
-        right = places.arc(radius, 0.0, angle)[2::4]
+        right = arc(places.ring(radius), 0.0, angle)[2::4]
         left = [(2 * places.x - x, y) for x, y in right]
         canvas.points([*left, *right], FRAME)
     return canvas.settled()
@@ -135,11 +140,13 @@ def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> P
 
 def _draw(canvas: Canvas, places: Lanes, radius: float, bob: Bob, look: Look) -> None:
     recent = TRAIL // 3
+    ring = _ring(canvas.columns, canvas.rows, places, radius)
+    inside = _ring(canvas.columns, canvas.rows, places, radius - 1)
     for begin, end in _stretches(bob.trail[: 1 - recent], look.joins):
-        canvas.points(places.arc(radius, begin, end), faint(bob.ink))
+        canvas.dots(arc(ring, begin, end), faint(bob.ink))
     for begin, end in _stretches(bob.trail[-recent:], look.joins):
-        canvas.points(places.arc(radius, begin, end), bob.ink)
-        canvas.points(places.arc(radius - 1, begin, end), bob.ink)
+        canvas.dots(arc(ring, begin, end), bob.ink)
+        canvas.dots(arc(inside, begin, end), bob.ink)
     size = places.bob
     if isfinite(bob.ghost):
         canvas.disc(*places.point(radius, bob.ghost), size, faint(bob.ink), hollow=True)

@@ -11,7 +11,7 @@ from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from pendu_tui.tui.drawing.palette import EXACT, faint
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.error_table import ErrorTable
-from pendu_tui.tui.views.lab.lanes import Bob, Look, lanes, stage_picture
+from pendu_tui.tui.views.lab.lanes import Bob, Look, arc, lanes, stage_picture
 from pendu_tui.tui.views.lab.stage import Lens, Stage
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, places, size
@@ -103,7 +103,8 @@ def test_a_trail_covers_its_lane_from_sample_to_sample_and_is_bright_near_the_bo
     assert min(column for column, _ in bright) > 21 + 5  # the first third is faint
     assert {row for column, row in dim if column in (22, 23)} >= {20}
     found = lanes(43, 22, 1, math.pi, rigid=True)
-    assert len(found.arc(found.radii[0], 0.0, 0.75)) == pytest.approx(0.9 * found.radii[0], rel=0.1)
+    dots = arc(found.ring(found.radii[0]), 0.0, 0.75)
+    assert len(dots) == pytest.approx(0.9 * found.radii[0], rel=0.1)
 
 
 @pytest.mark.parametrize(("trail", "joins"), [([-1.5, 0.0, 1.5], True), ([-0.4, -0.2, 0.0], False)])
