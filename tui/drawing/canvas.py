@@ -207,10 +207,10 @@ class Canvas:
                 return True
         return False
 
-    def inks_at(self, column: int, row: int) -> set[int]:
-        """Return the inks that have dots in a cell, shown or not."""
+    def inks_at(self, column: int, row: int, columns: int = 1) -> set[int]:
+        """Return the inks that have dots in some cells of a row, shown or not."""
         cell = row * self.columns + column
-        return {ink for ink, layer in self._layers.items() if layer[cell]}
+        return {ink for ink, layer in self._layers.items() if any(layer[cell : cell + columns])}
 
     def picture(self) -> Picture:
         dots, inks = self._shown()

@@ -265,12 +265,12 @@ def place_text(model: Model, state: State, width: int) -> str:
 def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
     """Write words where they cover no point, ring or orbit; trails show between them."""
     for column, row, text, ink in words:
-        below = [canvas.inks_at(at, row) for at in range(column, column + len(text))]
-        if any(EXACT <= ink < FAINT for inks in below for ink in inks):
+        below = canvas.inks_at(column, row, len(text))
+        if any(EXACT <= each < FAINT for each in below):
             continue
-        for at, character in enumerate(text):
-            if character != " " or all(ink < EXACT for ink in below[at]):
-                canvas.label(column + at, row, character, ink)
+        for at, character in enumerate(text, column):
+            if character != " " or all(each < EXACT for each in canvas.inks_at(at, row)):
+                canvas.label(at, row, character, ink)
 
 
 def axes(viewport: Viewport) -> list[Word]:
