@@ -171,15 +171,20 @@ class Judged:
     failed_at: float | None = None  # the time of the first energy that is nan or infinite
 
     def __str__(self) -> str:
-        text = f"{self.verdict}{', rests now' * self.rests}{self.reason and f': {self.reason}'}"
+        verdict = f"{self.verdict}{', and rests now' * self.rests}"
+        if self.reason:
+            verdict += f": {self.reason}"
         if self.failed_at is not None:
-            text += f": the energy is nan or infinite at {self.failed_at:g}"
-        if self.slope is not None:
-            text += (
-                f", slope {self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time, "
-                f"{self.share:+.2g} widths of its band, below {self.bound:.1e} at 99 %"
-            )
-        return f"{text}, errors up to {self.max_error:.2e}, relative to {self.scale:g}"
+            verdict += f": its numbers end at {self.failed_at:g}"
+        lines = [f"verdict       {verdict}"]
+        if self.slope is not None and self.uncertainty is not None:
+            slope = f"{self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time"
+            share = f"{100 * (self.share or 0):+.2g} % of its band over this record"
+            lines.append(f"trend         {slope}, {share}")
+            lines.append(f"bound         {self.bound:.1e} per unit of time at 99 %")
+        error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most"
+        lines.append(f"energy error  {error}, relative to {self.scale:g}")
+        return "\n".join(lines)
 
 
 def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first") -> Judged:
@@ -207,6 +212,8 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     judgement = judge_record(t, e, failed=failed)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
+    if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
+        scaled = scaled._replace(slope=None, uncertainty=None, bound=None)
     return Judged(
         verdict=judgement.verdict,
         reason=judgement.reason,
@@ -444,14 +451,15 @@ def _increasing(times: "Floats") -> "Floats":
 
 def _size(energies: Any, scale: float | str) -> float:
     """Return the energy that errors are relative to."""
-    if scale == "std":
-        largest = float(abs(energies).max()) or 1.0
-        return float((energies / largest).std()) * largest or largest
-    if isinstance(scale, str) and scale != "first":
+    if isinstance(scale, str) and scale not in ("std", "first"):
         raise ValueError(f"scale = {scale!r} is none of std, first and a number.")
-    size = abs(float(energies[0]))
     if not isinstance(scale, str):
         size = _number("scale", scale)
+    elif scale == "first":
+        size = abs(float(energies[0]))
+    else:
+        largest = float(abs(energies).max()) or 1.0
+        return float((energies / largest).std()) * largest or largest
     if size <= 0:
         raise ValueError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size

@@ -67,7 +67,7 @@ class EnergyDrift:
             told = "cannot tell: " if judged.verdict == UNDECIDED else ""
             flaws.insert(0, f"{told}the verdict is not {' or '.join(wanted)}")
         if found := "; ".join(filter(None, flaws)):
-            pytest.fail(f"{found}: {judged}")
+            pytest.fail(f"{found}\n{judged}")
         return judged
 
     def check_order(

@@ -192,7 +192,7 @@ def test_recordings_below_a_folder_are_tests(project, tmp_path):
 @pytest.mark.slow
 def test_the_library_does_what_the_readme_shows(capsys):
     exec(block_with("python", "from pendu_tui.engine import"), names := {})
-    assert capsys.readouterr().out.startswith("bounded, slope ")
+    assert capsys.readouterr().out.startswith("verdict       bounded\ntrend ")
     assert names["run"]["rk4"].verdict == "loses"
     general = sum(method.general for method in names["METHODS"].values())
     assert f"\n{general} methods take any force" in README

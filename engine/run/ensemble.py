@@ -56,9 +56,9 @@ def plain(method: Method, model: Pendulum) -> Watch:
         phases = islice(method.phases(force, phase, h), n)  # type: ignore[arg-type]
         for done, phase in enumerate(phases, 1):
             np.subtract(energy(phase), start, out=off)
-            np.maximum(worst, np.abs(off, out=size), out=worst)
+            np.fmax(worst, np.abs(off, out=size), out=worst)
             outside = bounded and (size > band).any()
-            np.maximum(width, np.abs(phase[0], out=size), out=width)
+            np.fmax(width, np.abs(phase[0], out=size), out=width)
             if outside or done == n or (size > top).any():
                 yield done, phase
 
@@ -109,8 +109,8 @@ def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
             off[i] = energy((theta[i], omega[i])) - start[i]
             size = abs(off[i])
             wide = abs(theta[i])
-            worst[i] = max(size, worst[i])
-            width[i] = max(wide, width[i])
+            worst[i] = max(worst[i], size)  # of a step without solution, nan: as before
+            width[i] = max(width[i], wide)
             outside += (wide > top[i]) | (size > band[i])
         return outside
 

@@ -18,6 +18,14 @@ Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 class SceneError(ValueError):
     """A scene that cannot be run; its text is a sentence for the user."""
 
+    def __init__(self, sentence: str, models: tuple[str, ...] = ()) -> None:
+        super().__init__(sentence)
+        self.models = models  # scenes of these would do
+
+
+def _names(model: type[Model]) -> list[str]:
+    return [parameter.name for parameter in model.parameters]
+
 
 def check_h(h: float, w0: float, forwards: bool = False) -> None:
     """Raise SceneError unless |h|, or `forwards` h itself, is a usable step for this w0."""
@@ -109,7 +117,8 @@ class Scene:
         for method in self.cast:
             if known and self.model not in method.models:
                 why = f"{method.label} is not for the model {self.model}"
-                raise SceneError(f"{why}; it is for {' and '.join(method.models)}.")
+                why += f"; it is for {' and '.join(method.models)}."
+                raise SceneError(why, method.models)
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; unchanged without a model."""
@@ -118,7 +127,9 @@ class Scene:
         own = {each.name: each.default for each in MODELS[self.model].parameters}
         for name, value in given.items():
             if name not in own and value:
-                raise SceneError(f"the model {self.model} has no {name}; take a scene that has.")
+                why = f"the model {self.model} has no {name}; take a scene that has."
+                owners = [key for key, model in MODELS.items() if name in _names(model)]
+                raise SceneError(why, tuple(owners))
         return {name: given.get(name, default) for name, default in own.items()}
 
     @property

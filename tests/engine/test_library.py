@@ -101,6 +101,19 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale):
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
 
 
+def test_a_trend_is_never_beyond_doubles():
+    found = judge(TIMES, 1e300 * (WAVE + TIMES), scale=1e-300)
+    assert (found.slope, found.bound) == (None, None)
+
+
+def test_a_judged_series_prints_as_the_command_does():
+    lines = str(judge(TIMES, WAVE)).splitlines()
+    assert [line.split("  ")[0] for line in lines] == ["verdict", "trend", "bound", "energy error"]
+    assert lines[0].endswith("bounded")
+    assert "nan" not in str(judge(TIMES, [*WAVE[:-1], math.nan]))
+    assert "end at 1999" in str(judge(TIMES, [*WAVE[:-1], math.nan]))
+
+
 def test_an_energy_that_never_changes_is_bounded_on_every_scale():
     for scale in ("std", "first"):
         found = judge(range(100), [3.0] * 100, scale=scale)
@@ -128,6 +141,9 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: judge("t", "E"), "a list of numbers"),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="last"), "'last' is none of std"),
+        (lambda: judge(TIMES, WAVE, scale=np.array([1.0, 2.0])), "not a finite number"),
+        (lambda: judge(TIMES, WAVE, scale=math.nan), "not a finite number"),
+        (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
         (lambda: simulate(5, time=1), "neither a name nor a Scene"),
         (lambda: simulate(time=1, methods=3), "not a list of methods"),
         (lambda: simulate("swing", time=1), "no scene 'swing'; choose from drift"),

@@ -184,8 +184,11 @@ def _found(
         return f"{name} is {ours:g}"
     if diverged_at is not None:
         return f"{method or 'the energy'} failed at {diverged_at:g}"
+    if reading.get("verdict") == UNDECIDED and reading.get("slope", 0) is None:
+        why = reading.get("reason") or "it is too short"
+        return f"cannot tell: {method or 'the energy'} cannot be judged: {why}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
-        return f"{name} is not known"
+        return reading.get("unknown", {}).get(field) or f"{name} is not known"
     if field in BOUNDS and compare in (operator.gt, operator.ge, operator.lt, operator.le):
         return _drifting(name, reading, field, compare, float(limit))
     unknown = ours == UNDECIDED != limit
@@ -209,6 +212,8 @@ def _drifting(
     slope = sign * reading[field]
     bound = reading.get(BOUNDS[field])
     margin = math.inf if bound is None else bound - abs(slope)
+    if margin <= 0:
+        return f"{name} is {reading[field]:.3g}" if compare(reading[field], limit) else ""
     found = outcome(slope, slope + margin, sign * limit)
     if found == "below":
         return ""

@@ -30,8 +30,8 @@ COMMANDS = {
 """,
     ),
     "tour": Command(
-        "a tour of the lab: eight short steps, each with a question",
-        "A tour of the lab: eight short steps, each with a question and its answer.",
+        "a tour of the lab: nine short steps, with questions",
+        "A tour of the lab: nine short steps, with questions and their answers.",
         ("tour --no-record", "terminal"),
         """\
   pendu-tui tour

@@ -45,10 +45,13 @@ def explained(error: BaseException) -> UserError:
         return UserError(f"{place}: {type(error).__name__}: {error}")
     # imported here: --help and --version do not need them
     from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.engine.scenes import SceneError
+    from pendu_tui.engine.scenes import SCENES, SceneError
     from pendu_tui.recordings.errors import RecordingError
 
     match error:
+        case SceneError(models=(_, *_)):
+            suited = [name for name, scene in SCENES.items() if scene.model in error.models]
+            return UserError(f"{error} Scenes that would do: {', '.join(suited[:3])}.")
         case SceneError() | OwnMethodError():
             return UserError(str(error))
         case RecordingError():

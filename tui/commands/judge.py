@@ -283,7 +283,7 @@ def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
     return f"goes as h^{power:.2f} ± {uncertainty:.2f}"
 
 
-def _gated(orders: Mapping[str, float | None]) -> dict[str, float | None]:
+def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:
     """Return the orders as --fail-if compares them: as high as they may be, or not known."""
     from pendu_tui.engine.run.order import Order
 
@@ -291,7 +291,9 @@ def _gated(orders: Mapping[str, float | None]) -> dict[str, float | None]:
     uncertainty = orders.get("fluctuation_order_uncertainty")
     if power is None or uncertainty is None:
         return dict(orders)
-    return {**orders, "fluctuation_order": Order(power, uncertainty).highest}
+    order = Order(power, uncertainty)
+    unknown = {"fluctuation_order": f"cannot tell: it goes as {order}; {order.advice}"}
+    return {**orders, "fluctuation_order": order.highest, "unknown": unknown}
 
 
 def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:

@@ -1,4 +1,4 @@
-"""A tour of the lab: eight short steps, each with a question and its answer."""
+"""A tour of the lab: nine short steps, with questions and their answers."""
 
 import argparse
 

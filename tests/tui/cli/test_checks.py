@@ -175,6 +175,13 @@ def test_a_limit_on_a_slope_is_compared_with_its_bound(expression, slope, bound,
     assert bool(failure) == bool(outcome)
 
 
+@pytest.mark.parametrize(("slope", "passes"), [(None, False), (0.0, True)])
+def test_what_cannot_be_judged_does_not_pass(slope, passes):
+    gate = parse("max_energy_error > 1", ["max_energy_error"])
+    reading = {"max_energy_error": 0.1, "verdict": "undecided", "slope": slope, "reason": "short"}
+    assert (gate({"": reading}) == "") == passes
+
+
 def test_a_slope_that_cannot_be_told_says_how_long_a_record_would():
     gate = parse("trend > 1e-5", ["trend"])
     assert "4 times as long" in gate({"": {"trend": 0.0, "bound": 8e-5}})

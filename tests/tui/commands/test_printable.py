@@ -85,8 +85,8 @@ def test_no_command_prints_what_steers_a_terminal(command, codes):
     ],
     ids=lambda value: "",
 )
-def test_no_screen_shows_what_steers_a_terminal(command):
-    with PtyLab(*command) as lab:
+def test_no_screen_shows_what_steers_a_terminal(command, folder):
+    with PtyLab(*command, folder=folder) as lab:
         lab.run(2.0)
         lab.type("q")
         assert lab.end() == 0

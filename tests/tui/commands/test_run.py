@@ -193,7 +193,7 @@ def test_an_interrupt_and_lost_workers_keep_the_rows_that_are_done(monkeypatch, 
 
 
 def test_the_gate_is_that_of_every_run():
-    outcome = pendu(*LIST, "--fail-if", "rk4.max_energy_error > 1e-4")
+    outcome = pendu(*LIST, "--time", 20, "--fail-if", "rk4.max_energy_error > 1e-4")
     assert outcome.code == 1
     assert "in 2 of 4 runs, first at theta 0.523599, h 0.1" in outcome.err
 
