@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import islice, takewhile
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import GENERAL
@@ -44,6 +44,7 @@ def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h,
     phase, path = (theta, omega), []
     for _ in range(n):
         path.append(phase := method.step(model.force(), phase, h))
+    assume(all(map(math.isfinite, path[-1])))  # a large implicit step may have no solution
     energies = [model.energy()(point) for point in path]
     assert PlainLoops(method, model).propagate((theta, omega), h, n) == path[-1]
     expected = (n, path[-1], energies[-1], min(energies), max(energies))
