@@ -231,7 +231,7 @@ def test_every_command_is_in_the_list():
 def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, tmp_path):
     (tmp_path / "mine.py").write_text(block_with("python", "def ruth_3"), encoding="utf-8")
     commands = re.findall(r"`(pendu-tui [^`]*--method mine[^`]*)`", README)
-    told, on_stage = (shell(command) for command in commands)
+    told, on_stage, _ = (shell(command) for command in commands)
     (words,) = (line.split() for line in told.splitlines() if line.startswith("ruth_3"))
     assert words[1:] == ["-", words[2], "3", "yes", "no", "2.507"]
     assert float(words[2]) == pytest.approx(3, abs=0.01)

@@ -105,9 +105,9 @@ BACKWARD_EULER = Method(
     other_names=("implicit Euler",),
     reference=f"{HAIRER}, I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
-    note="The mirror image of explicit Euler: it loses the energy of small swings. Newton's iteration "
-    "to 1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 a step may have several "
-    "solutions, and fails if the iteration finds none.",
+    note="The mirror image of explicit Euler: it loses the energy of small swings. Newton's "
+    "iteration to 1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 a step may "
+    "have several solutions, and fails if the iteration finds none.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -127,9 +127,9 @@ IMPLICIT_MIDPOINT = Method(
     reference=f"{HAIRER}, II.1.1",
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
-    note="It keeps the energy of small swings exactly, but not their phase; beyond z = 2 a step fails "
-    "if Newton's iteration finds no solution. To 1e-12 rad it takes two evaluations a round; a "
-    "spring has a closed form, counted as one.",
+    note="It keeps the energy of small swings exactly, but not their phase; beyond z = 2 a step "
+    "fails if Newton's iteration finds no solution. To 1e-12 rad it takes two evaluations a round; "
+    "a spring has a closed form, counted as one.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

@@ -11,7 +11,8 @@ from pendu_tui.engine.quantities import CHARTED, ENERGY_ERROR, Quantity
 Phase = tuple[Any, ...]
 """(theta, omega) as methods take and yield it: a plain tuple, because it is fast.
 
-The numbers are floats, complex, NumPy arrays or mpmath numbers.  Some models have others, or more; `Model.observe` reads any phase.
+The numbers are floats, complex, NumPy arrays or mpmath numbers.  Some models have others, or more;
+`Model.observe` reads any phase.
 """
 
 Force = Callable[[Any], Any]

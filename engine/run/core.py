@@ -287,7 +287,7 @@ def _is_new(values: Any, part: Part, move: float) -> bool:
 
 
 def wave(times: Any, values: Any) -> tuple[float, Any]:
-    """Return the cycles of the wave that explains what a line leaves, and it; 0 if there is none."""
+    """Return the cycles of the wave that explains what a line leaves, and it; 0: there is none."""
     x = (times - times[0]) / (times[-1] - times[0])
     level = np.full_like(x, 1 / math.sqrt(len(x)))
     line = _unit(_without(x, (level,)))

@@ -1,4 +1,4 @@
-"""A limit on a measured number has three outcomes: below it, above it, or the record cannot tell."""
+"""A limit on a measured number has three outcomes: below, above, or the record cannot tell."""
 
 import math
 from typing import Literal

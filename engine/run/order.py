@@ -33,7 +33,7 @@ class Order(NamedTuple):
 
     @property
     def highest(self) -> float | None:
-        """The highest power that the runs allow; None if they do not tell one order from the next."""
+        """The highest power that the runs allow; None: they do not tell one order from the next."""
         if 2 * self.uncertainty >= 1:
             return None
         return self.power + 2 * self.uncertainty

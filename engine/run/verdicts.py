@@ -42,14 +42,16 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the energy rises for good; if it rests elsewhere now, its slope is that of rest",
+            meaning="the energy rises for good; if it rests elsewhere now, "
+            "its slope is that of rest",
             sentence="{0} gains {rate:share} of {unit} per s.",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the energy falls for good; if it rests elsewhere now, its slope is that of rest",
+            meaning="the energy falls for good; if it rests elsewhere now, "
+            "its slope is that of rest",
             sentence="{0} loses {rate:share} of {unit} per s.",
         ),
         Verdict(

@@ -54,7 +54,8 @@ _FIRST_LOOK = (
             log=False,
             front=("velocity_verlet", "rk4"),
             moment=50.0,
-            sentence="RK4 left Verlet's band at 33 s, for good: its error grows, Verlet's does not.",
+            sentence="RK4 left Verlet's band at 33 s, for good: its error grows, "
+            "Verlet's does not.",
         ),
     ),
     Scene(

@@ -18,19 +18,21 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 960_900,
-    "characters_of_engine": 305_200,
-    "characters_of_recordings": 78_000,
-    "characters_of_tui": 577_700,
-    "characters_of_tests": 756_000,
-    "files": 182,
+    "characters": 1_056_000,
+    "characters_of_engine": 328_600,
+    "characters_of_recordings": 88_600,
+    "characters_of_tui": 639_300,
+    "characters_of_tests": 853_000,
+    "files": 190,
     "long_lines": 0,
     "parallel_assignments": 15,
-    "conditional_expressions_per_1000_lines": 9,
+    "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
-    "numeric_constants": 195,
+    "numeric_constants": 239,
 }
-"""Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
+"""Two per cent above the measures, so that what CONTRIBUTING invites passes.
+
+Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
 
 def is_parallel_assignment(node: ast.AST) -> bool:

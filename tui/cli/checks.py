@@ -4,9 +4,9 @@ An expression, `velocity_verlet.FIELD > 1e-2 or rk4.verdict == grows`, joins com
 by `and`, `or` and parentheses.  Python's parser reads it, but only the nodes named here are
 evaluated.  It fails safe: every comparison holds if its method has failed or its value is unknown
 (None, missing, not finite, or another verdict than undecided asked of what cannot be judged).
-Hence there is no `not`.  A slope keeps a limit only if its bound does.  Only `diverged_at` is compared as it is;
-None means that the method never failed.  A field that is a word, such as `verdict`, is compared by
-== or !=, so `!= bounded` is strict.
+Hence there is no `not`.  A slope keeps a limit only if its bound does.  Only `diverged_at` is
+compared as it is; None means that the method never failed.  A field that is a word, such as
+`verdict`, is compared by == or !=, so `!= bounded` is strict.
 
 A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """

@@ -250,4 +250,4 @@ DROPPED = {
     "diff": "pendu-tui verify, which names the first difference; or export both and compare",
     "live --ghost": "pendu-tui replay FILE; in the lab r keeps the run before it, dimmed",
 }
-"""Of earlier versions, for one version: what to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option`."""
+"""What to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option` of before."""

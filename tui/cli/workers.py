@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from multiprocessing import active_children, get_context
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -29,7 +29,7 @@ Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
 
 
-def received(results: Connection, process: BaseProcess, seconds: float | None = None) -> Any:
+def received(results: Any, process: BaseProcess, seconds: float | None = None) -> Any:
     """Return what a process sends.  Raises EOFError if it ends, or TimeoutError.
 
     On Windows no end of the pipe tells of a process that ends before it has begun.

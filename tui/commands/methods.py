@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from itertools import groupby
 from typing import Any
 
-from pendu_tui.engine.methods import METHODS, Method, family_of, simplified
+from pendu_tui.engine.methods import METHODS, Cast, Method, family_of, simplified
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, Gate, conclude, parse
@@ -58,22 +58,11 @@ def run(options: argparse.Namespace) -> int:
         for method, row in zip(cast, rows, strict=True)
         if method.general
     }
-    sentences = [f"{key}: {why}" for key, why in wrong.items() if why]
-    labels = [
-        f"{method.label} ({method.key})"
-        for method in cast
-        if simplified(method.label) != simplified(method.key)
-    ]
-    notes = [NOTE, *sentences]
-    if labels:
-        notes.append(f"in the lab: {', '.join(labels)}")
-    if options.keys:
-        notes = [NOTE, *sentences, *(f"\n{method_card(method)}" for method in cast)]
     report = Report(
         name="methods",
         columns=columns,
         rows=list(_by_family(rows)),
-        notes=notes,
+        notes=[NOTE, *_notes(cast, wrong, bool(options.keys))],
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
@@ -81,6 +70,21 @@ def run(options: argparse.Namespace) -> int:
         return Exit.FINE
     checks = [Check(row["key"], _failure(gate, row, wrong)) for row in rows]
     return conclude(options.fail_if, checks, "methods")
+
+
+def _notes(cast: Cast, wrong: Mapping[str, str], with_cards: bool) -> Iterator[str]:
+    """Yield what is wrong with methods, and their cards or their names in the lab."""
+    yield from (f"{key}: {why}" for key, why in wrong.items() if why)
+    if with_cards:
+        yield from (f"\n{method_card(method)}" for method in cast)
+        return
+    labels = [
+        f"{method.label} ({method.key})"
+        for method in cast
+        if simplified(method.label) != simplified(method.key)
+    ]
+    if labels:
+        yield f"in the lab: {', '.join(labels)}"
 
 
 def _failure(gate: Gate, row: Row, wrong: Mapping[str, str]) -> str:

@@ -133,36 +133,33 @@ def time_chart(
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
-    rows = height - 2
     runs = _runs(window, cast, shown, ghost)
     levels = _levels(shown)
-    log_time = shown.has_log_time
     label_width = 5  # enough for decades
     if not shown.log:
-        y_axis = _linear_y_axis(runs, levels, rows)
+        y_axis = _linear_y_axis(runs, levels, height - 2)
         label_width = y_axis.label_width
     columns = columns_beside(label_width, width)
-    x_axis = _time_axis(window, shown, columns, log_time)
-    edges, times = _moments(x_axis, columns, log_time)
-    sides = [run.columns(edges, shown.log, log_time) for run in runs]
+    x_axis = _time_axis(window, shown, columns, shown.has_log_time)
+    edges, times = _moments(x_axis, columns, shown.has_log_time)
+    sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
     if shown.log:
-        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
+        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, height - 2)
     plot = _Plot(Canvas(width, height), x_axis, y_axis, log=shown.log)
-    plot.draw_axes()
-    plot.draw_marks(changes, levels, log_time)
+    plot.draw_marks(changes, levels, shown.has_log_time)
     for run, (low, high) in zip(runs, sides, strict=True):
         plot.draw_curves(run, low, high)
     low, high = sides[0]
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
-        row = (y_axis.high - y_axis.low) / rows
-        for column, value in _crossings(high / row, times, window.repeats):
-            plot.canvas.label(plot.left + column, plot.row(value * row), CROSSING, TEXT)
+        plot.draw_crossings(high, times, window.repeats, height - 2)
     plot.name_lines(plot.ends(runs[0], low, high, names))
-    picture = plot.canvas.picture()
     ends = (x_axis.low, x_axis.high)
-    return TimePlot(picture, shown.places(cast), plot.left, times.tolist(), values, ends, log_time)
+    picture = plot.canvas.picture()
+    return TimePlot(
+        picture, shown.places(cast), plot.left, times.tolist(), values, ends, shown.has_log_time
+    )
 
 
 def _runs(
@@ -192,6 +189,8 @@ class _Plot(Frame):
     def draw_marks(
         self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
     ) -> None:
+        """Draw the axes, the changes of the step and the levels."""
+        self.draw_axes()
         canvas = self.canvas
         for x, text in changes:
             value = math.log10(max(x, FLOOR)) if log_time else x
@@ -227,6 +226,12 @@ class _Plot(Frame):
         gone = beyond & np.roll(beyond, 1, axis=0)
         gone[0] = False
         return gone
+
+    def draw_crossings(self, high: Floats, times: Floats, repeats: float, rows: int) -> None:
+        """Mark where one error passes another for good."""
+        row = (self.y_axis.high - self.y_axis.low) / rows
+        for column, value in _crossings(high / row, times, repeats):
+            self.canvas.label(self.left + column, self.row(value * row), CROSSING, TEXT)
 
     def ends(self, run: _Run, low: Floats, high: Floats, names: Sequence[str]) -> Iterator[End]:
         """Yield the ends of curves; where one has left the chart, write its value instead."""

@@ -67,7 +67,7 @@ class Shown(NamedTuple):
         )
 
     def shot(self, scene: Scene, view: str, equal_cost: bool) -> Shot:
-        """Return the shot that shows the scene like this, with its moment, sentence and question."""
+        """Return the shot that shows the scene like this, with moment, sentence and question."""
         front: tuple[str, ...] = ()
         if self.hidden:
             front = tuple(scene.cast[place].key for place in self.places(scene.cast))

@@ -13,7 +13,7 @@ MAX_SECONDS = 2.0
 
 
 class PatientParser(XTermParser):
-    """A parser of what the terminal sends, in which a paste ends after two seconds at the latest."""
+    """A parser of what the terminal sends, in which a paste ends after two seconds at most."""
 
     _began: float | None = None  # s, the paste
     _before = ""

@@ -18,8 +18,7 @@ COMMANDS = (
     "doctor",
     "run --time 1 --record run.mcap",
     "judge energies.csv --time 1 --energy 2",
-    "stability --section --starts 9 --steps 50 -o map.svg",
-    "stability --map --theta-values 1 --z-values 0.1:2:4 --steps 20 --workers 2",
+    "stability --theta-values 1 --z-values 0.1:2:4 --steps 20 --workers 2",
 )
 NAMES = [
     "pickle",
@@ -82,8 +81,8 @@ def test_a_command_runs_no_module_of_the_current_folder(tmp_path, hostile, progr
 def test_no_view_of_the_lab_runs_a_module_of_the_current_folder(tmp_path, hostile, program):
     with PtyLab("live", program=program, folder=hostile) as session:
         for keys, shown in (
-            ("", "Quit"),
-            ("\x1bOR", "area"),
+            ("", "LIVE"),
+            ("\x1bOR", "g: ring"),
             ("\x1bOS", "points left"),
             ("\x1b[15~", "300 steps"),  # of what another process has computed
         ):
