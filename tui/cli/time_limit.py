@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from itertools import count
 from threading import Thread, main_thread
+from typing import IO
 
 from pendu_tui.engine.methods.own import USER_CODE, OwnMethodError, TooLongError
 
@@ -28,7 +29,7 @@ class Watch(Thread):
     def __init__(self) -> None:
         super().__init__(name="watch", daemon=True)
         self.block = 0  # the number of a block that counts as one step
-        self.pulse = -1  # the descriptor that shows the watcher that this process lives
+        self.pulse: IO[bytes] | None = None  # shows the watcher that this process lives
         self.look: Callable[[], object] = bool  # what else to look at
         self.end: Callable[[str], object] = _end
 
@@ -45,8 +46,10 @@ class Watch(Thread):
             if looks * LOOK_INTERVAL >= 2 * MAX_TIME and USER_CODE.is_running:
                 self.end(f"ended, for your method {TooLongError.why}.")
             self.look()
-            with suppress(OSError):  # there is no watcher
-                os.write(self.pulse, b".")
+            if self.pulse:
+                with suppress(OSError, ValueError):  # the watcher has ended
+                    self.pulse.write(b".")
+                    self.pulse.flush()
 
 
 @cache
@@ -84,6 +87,5 @@ def watched() -> Iterator[None]:
     watcher = [sys.executable, "-P", "-m", "pendu_tui.tui.terminal.watcher", str(os.getpid())]
     with subprocess.Popen(watcher, stdin=subprocess.PIPE, start_new_session=True) as process:
         assert process.stdin
-        watch().pulse = process.stdin.fileno()
+        watch().pulse = process.stdin  # no number, which another file may get once it is closed
         yield
-        watch().pulse = -1
