@@ -10,19 +10,23 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
 ROOMS = ("engine", "recordings", "tui")
+KINDS = (".py", ".tcss", ".toml", ".json")
+DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_056_000,
-    "characters_of_engine": 328_600,
-    "characters_of_recordings": 88_600,
-    "characters_of_tui": 639_300,
-    "characters_of_tests": 853_000,
+    "characters": 929_000,
+    "characters_of_engine": 282_600,
+    "characters_of_recordings": 79_300,
+    "characters_of_tui": 567_300,
+    "characters_of_tests": 758_300,
+    "characters_of_bench": 95_600,
     "files": 190,
     "long_lines": 0,
     "parallel_assignments": 15,
@@ -32,6 +36,7 @@ CEILINGS = {
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 
+Characters are those of Python without docstrings, and of data as text; in tests, all of Python.
 Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
 
@@ -60,27 +65,38 @@ def is_long_function(node: ast.AST) -> bool:
     return node.end_lineno - node.lineno + 1 - documented > MAX_FUNCTION_LINES
 
 
+def docstrings(nodes: list[ast.AST], text: str) -> Iterator[str]:
+    """Yield the docstrings of a module, its classes and its functions as they are written."""
+    for node in nodes:
+        if isinstance(node, DOCUMENTED) and ast.get_docstring(node, clean=False):
+            yield ast.get_source_segment(text, node.body[0]) or ""
+
+
+def tracked(*patterns: str) -> Iterator[tuple[str, str]]:
+    """Yield the names and the texts of the project's files."""
+    command = ["git", "ls-files", *patterns]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    for name in filter(lambda name: (ROOT / name).exists(), listed.stdout.splitlines()):
+        yield name, (ROOT / name).read_text(encoding="utf-8")
+
+
 def measured() -> tuple[Counter[str], list[str]]:
     """Return the measures by the names of their ceilings, and the functions that are too long."""
     found: Counter[str] = Counter()
     long_functions = []
-    command = ["git", "ls-files", "*.py", "*.tcss"]
-    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    for name in filter(lambda name: (ROOT / name).exists(), listed.stdout.splitlines()):
-        room = name.partition("/")[0]
-        text = (ROOT / name).read_text(encoding="utf-8")
-        found[f"characters_of_{room}"] += len(text)
-        if room not in ROOMS:
-            continue
+    for name, text in tracked("tests/*.py"):
+        folder = "bench" if name.startswith("tests/bench/") else "tests"
+        found[f"characters_of_{folder}"] += len(text)
+    for name, text in tracked(*(f"{room}/*{kind}" for room in ROOMS for kind in KINDS)):
+        tree = ast.parse(text if name.endswith(".py") else "")
+        nodes = list(ast.walk(tree))
+        characters = len(text) - sum(map(len, docstrings(nodes, text)))
         lines = [line for line in text.splitlines() if line.strip()]
-        found["characters"] += len(text)
-        found["files"] += 1
+        found["characters"] += characters
+        found[f"characters_of_{name.partition('/')[0]}"] += characters
+        found["files"] += name.endswith(".py")
         found["lines"] += len(lines)
         found["long_lines"] += sum(len(line) > MAX_COLUMNS for line in lines)
-        if not name.endswith(".py"):
-            continue
-        tree = ast.parse(text)
-        nodes = list(ast.walk(tree))
         found["numeric_constants"] += sum(map(is_numeric_constant, tree.body))
         found["parallel_assignments"] += sum(map(is_parallel_assignment, nodes))
         found["conditional_expressions"] += sum(isinstance(node, ast.IfExp) for node in nodes)
