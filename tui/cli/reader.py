@@ -17,10 +17,9 @@ from typing import Any
 import numpy as np
 
 from pendu_tui.recordings.errors import printable
-from pendu_tui.tui.cli.choice import Wanted, choose, known_names
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, role
-from pendu_tui.tui.cli.tables import SAMPLE, Sheet
+from pendu_tui.tui.cli.tables import SAMPLE, Sheet, Wanted, choose, known_names
 from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # bytes

@@ -20,13 +20,12 @@ from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.errors import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
-from pendu_tui.tui.cli.choice import Wanted, find
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.options import did_you_mean
 from pendu_tui.tui.cli.reader import read_sheets, unreadable
 from pendu_tui.tui.cli.report import Report, fields_of, finite, form_of, publish
-from pendu_tui.tui.cli.tables import REASONS, Series
+from pendu_tui.tui.cli.tables import REASONS, Series, Wanted, find
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -227,7 +226,7 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
 
 def _finish(series: Series, options: argparse.Namespace) -> None:
     """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
-    from pendu_tui.tui.cli.choice import Wanted
+    from pendu_tui.tui.cli.tables import Wanted
 
     wanted = Wanted(units=options.units, step=options.step)
     series.finish(wanted, options.start, options.end)

@@ -4,10 +4,9 @@ import io
 
 import pytest
 
-from pendu_tui.tui.cli.choice import Wanted
 from pendu_tui.tui.cli.layouts import LAYOUTS
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series
+from pendu_tui.tui.cli.tables import Series, Wanted
 
 CASES = {
     "LAMMPS, all thermo styles": (

@@ -10,10 +10,9 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.tui.cli.choice import Wanted
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series
+from pendu_tui.tui.cli.tables import Series, Wanted
 
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
 

@@ -13,10 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.tui.cli.choice import Wanted
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series
+from pendu_tui.tui.cli.tables import Series, Wanted
 from tests.tui.command_line import Outcome, pendu
 
 ROWS = [(n / 10, 100 + math.sin(n)) for n in range(300)]
