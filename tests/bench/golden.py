@@ -170,7 +170,7 @@ def said_by(line: str) -> str:
 def pictures() -> Iterator[tuple[str, str]]:
     """Draw every view at three sizes."""
     from pendu_tui.engine.scenes import DEFAULT_SCENE
-    from pendu_tui.tui.screens.still import still
+    from pendu_tui.tui.screens.launch import still
     from tests.tui.conftest import text_of
 
     for view, keys in VIEWS.items():

@@ -38,7 +38,7 @@ async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
     from pendu_tui.tui.playback.live import Live
     from pendu_tui.tui.screens.app import PenduApp
     from pendu_tui.tui.screens.lab import LabScreen
-    from pendu_tui.tui.screens.still import settled
+    from pendu_tui.tui.screens.launch import settled
 
     now = 0.0
     panes: dict[Widget, Pane] = {}

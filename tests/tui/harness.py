@@ -19,7 +19,7 @@ from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.still import settled
+from pendu_tui.tui.screens.launch import settled
 from pendu_tui.tui.terminal.options import FPS
 from pendu_tui.tui.views import VIEWS
 

@@ -49,7 +49,7 @@ from pendu_tui.tui.cli.workers import workers_of
 from pendu_tui.tui.drawing.palette import PALETTES
 from pendu_tui.tui.drawing.picture import lines_of
 from pendu_tui.tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from pendu_tui.tui.words.accuracy import COSTS, factor_words, few, front_words, length
+from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
 
 MAX_STEPS = 10**10  # at the smallest h: half an hour, compiled
 CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows

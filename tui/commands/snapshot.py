@@ -15,7 +15,7 @@ from pendu_tui.tui.terminal.options import terminal_options_of
 def run(options: argparse.Namespace) -> int:
     import asyncio
 
-    from pendu_tui.tui.screens.still import still
+    from pendu_tui.tui.screens.launch import still
 
     scene = scene_of(options)
     check_fits(scene.cast)

@@ -1,14 +1,19 @@
 """PenduApp: themes, signals, errors, and the screen of the lab."""
 
+import html
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from traceback import walk_tb
+from typing import Any, ClassVar, TypeVar
 
-from textual.app import ScreenStackError
+from rich.cells import cell_len
+from textual.app import App, ScreenStackError
 from textual.binding import Binding, BindingType
+from textual.events import Event
 from textual.filter import LineFilter
-from textual.screen import Screen
+from textual.screen import ModalScreen, Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
 from pendu_tui.recordings.errors import printable
@@ -16,7 +21,6 @@ from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.drawing.palette import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.palette_faults import ForgivingApp, is_of_palette
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
@@ -26,6 +30,39 @@ from pendu_tui.tui.terminal.watchdog import Watchdog
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
 """Classes for the style sheet, each from so many columns or rows on."""
+
+
+Result = TypeVar("Result")
+FAULTY = {"textual.command", "textual.widgets._option_list"}
+
+
+class ForgivingApp(App[Result]):
+    """Closes a palette or list that raises, where Textual would end the app.
+
+    They raise when keys come faster than they open, fill and close, in Textual 8.2, too:
+    https://github.com/Textualize/textual/issues/3714
+    """
+
+    async def on_event(self, event: Event) -> None:
+        try:
+            await super().on_event(event)
+        except Exception as error:
+            if not is_of_palette(error):
+                raise
+            self._handle_exception(error)
+
+    def _handle_exception(self, error: Exception) -> None:
+        if not is_of_palette(error):
+            super()._handle_exception(error)
+        elif isinstance(self.screen, ModalScreen):
+            self.call_later(self.screen.dismiss)
+
+
+def is_of_palette(error: BaseException) -> bool:
+    """Return whether an error, maybe of a worker, was raised in Textual's palette or list."""
+    raised = getattr(error, "error", error)
+    modules = {frame.f_globals["__name__"] for frame, _ in walk_tb(raised.__traceback__)}
+    return not modules.isdisjoint(FAULTY)
 
 
 class PenduApp(ForgivingApp[Exit | BaseException]):
@@ -60,8 +97,6 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
-        from pendu_tui.tui.screens.svg import portable
-
         return portable(super().export_screenshot(title=title, simplify=simplify))
 
     def get_default_screen(self) -> Screen[None]:
@@ -148,3 +183,30 @@ def _theme(name: str, colours: Palette) -> Theme:
         error=called(colours.warn),
         variables=variables,
     )
+
+
+def normalised(svg: str) -> str:
+    return re.sub(r"terminal-\d+-", "terminal-", svg)
+
+
+def portable(svg: str) -> str:
+    """Return the picture with a position for each word instead of a length for each text.
+
+    Inkscape and librsvg ignore the length, and draw braille in fonts of other widths.
+    """
+    fonts = "font-family: Fira Code, DejaVu Sans Mono, monospace"
+    text = r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'
+    return re.sub(text, _placed, svg).replace("font-family: Fira Code, monospace", fonts)
+
+
+def _placed(found: re.Match[str]) -> str:
+    opening, start, y, length, rest, escaped = found.groups()
+    text = html.unescape(escaped)
+    cell = float(length) / max(1, cell_len(text))
+    parts = []
+    for word in re.finditer(r"[!-~]+|[^\s]", text):
+        x = float(start) + cell_len(text[: word.start()]) * cell
+        width = cell_len(word[0]) * cell
+        place = f'{opening}x="{x:.5g}" {y} textLength="{width:.5g}"{rest}'
+        parts.append(f"{place}>{html.escape(word[0])}</text>")
+    return "".join(parts)

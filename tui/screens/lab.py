@@ -50,9 +50,8 @@ from pendu_tui.tui.views.view import (
     View,
     Zoomed,
 )
-from pendu_tui.tui.words.events import event_lines, numbered
 from pendu_tui.tui.words.numbers import seconds
-from pendu_tui.tui.words.plain_text import description
+from pendu_tui.tui.words.plain_text import description, event_lines, numbered
 
 STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
 

@@ -1,30 +1,42 @@
-"""Open the lab or a replay, show it (or print it as sentences), and say where the recording is."""
+"""Open the lab or a replay: on the screen, as sentences, or as a picture; say where it is recorded."""
 
 import argparse
+import asyncio
 import gc
 import os
 import shlex
 import sys
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
 from typing import TYPE_CHECKING
 
+from textual.widget import Widget
+
 from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import library
 from pendu_tui.recordings.errors import NameTakenError, printable
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.cli.report import progress, warn
+from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.app import PenduApp, normalised
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.check import background, check_terminal
-from pendu_tui.tui.terminal.options import fitting_theme, terminal_options_of
+from pendu_tui.tui.terminal.options import (
+    FPS,
+    USUAL,
+    TerminalOptions,
+    fitting_theme,
+    terminal_options_of,
+)
 from pendu_tui.tui.words.plain_text import tell
 
 if TYPE_CHECKING:
@@ -169,3 +181,41 @@ def say_goodbye(source: Source) -> int:
         warn(f"the recording stopped: {recorder.failed}")
         return Exit.DISK
     return Exit.FINE
+
+
+async def still(
+    scene: Scene,
+    seconds: float,
+    size: tuple[int, int],
+    terminal: TerminalOptions = USUAL,
+    keys: Sequence[str] = (),
+) -> str:
+    """Return the lab as an SVG picture, `seconds` after the start, with `keys` pressed then."""
+    now = 0.0
+    live = Live(scene, clock=lambda: 0.0)
+    screen = LabScreen(live, clock=lambda: now)
+    app = PenduApp(screen, terminal=terminal)
+    async with app.run_test(size=size) as pilot:
+        for frame in range(round(seconds * FPS) + 1):
+            now = frame / FPS
+            live.tick(now)
+        screen.show_now()
+        await pilot.press(*keys)
+        await settled(app)
+        await pilot.pause()
+        return normalised(app.export_screenshot())
+
+
+async def settled(app: PenduApp) -> None:
+    panes = app.lab.query("#views *").results
+    async with asyncio.timeout(30):
+        while not all(map(_is_settled, panes(Widget))):
+            await asyncio.sleep(0.01)
+    for pane in panes(CellWidget):
+        pane.draw()
+
+
+def _is_settled(pane: Widget) -> bool:
+    # a pane on screen that is not drawable does not know its size yet
+    is_shown = getattr(pane, "drawable", True) or not pane.is_on_screen
+    return is_shown and getattr(pane, "settled", True)

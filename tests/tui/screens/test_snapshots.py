@@ -15,8 +15,8 @@ import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.screens.still import still
-from pendu_tui.tui.screens.svg import normalised
+from pendu_tui.tui.screens.app import normalised
+from pendu_tui.tui.screens.launch import still
 from pendu_tui.tui.terminal.options import SMALLEST, TerminalOptions
 from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS

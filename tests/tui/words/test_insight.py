@@ -12,7 +12,6 @@ from pendu_tui.engine.run.verdicts import Judgement
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.palette import TEXT
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.words.events import event_lines
 from pendu_tui.tui.words.insight import (
     FRESH,
     TURN,
@@ -28,6 +27,7 @@ from pendu_tui.tui.words.insight import (
     painted,
     sentence,
 )
+from pendu_tui.tui.words.plain_text import event_lines
 from tests.tui.harness import FPS, Lab, after
 
 DRIFT = SCENES["drift"]

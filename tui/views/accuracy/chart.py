@@ -11,7 +11,7 @@ from pendu_tui.engine.methods import Cast
 from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from pendu_tui.tui.drawing.palette import FRAME, ink_of
 from pendu_tui.tui.drawing.picture import Picture
-from pendu_tui.tui.words.accuracy import COSTS
+from pendu_tui.tui.words.studies import COSTS
 
 Placed = list[tuple[int, int, Point]]
 """Column and row in the chart, and the point drawn there."""

@@ -21,7 +21,7 @@ from pendu_tui.tui.views.accuracy.chart import (
     placed,
 )
 from pendu_tui.tui.views.view import Chooser, Memo, StepSizeChosen, StudyView
-from pendu_tui.tui.words.accuracy import front_words, point_words
+from pendu_tui.tui.words.studies import front_words, point_words
 
 
 class AccuracyPane(Chooser[Point]):

@@ -7,8 +7,8 @@ from pendu_tui.tui.drawing.palette import QUIET, TEXT, ink_of
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.events import EventLine, event_lines, numbered
 from pendu_tui.tui.words.insight import short_name
+from pendu_tui.tui.words.plain_text import EventLine, event_lines, numbered
 
 
 class EventList(Pane):

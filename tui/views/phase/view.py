@@ -34,7 +34,7 @@ from pendu_tui.tui.views.phase.portrait import (
 )
 from pendu_tui.tui.views.phase.viewport import Viewport
 from pendu_tui.tui.views.view import Memo, StudyView
-from pendu_tui.tui.words.orbit import sentence
+from pendu_tui.tui.words.studies import sentence
 
 STARTS = 300  # orbits of a section
 ORBIT_STEPS = 2000  # they take a few ms

@@ -13,7 +13,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.accuracy.chart import MARKS, accuracy_series
 from pendu_tui.tui.views.accuracy.pane import AccuracyPane
-from pendu_tui.tui.words.accuracy import COSTS, front_words
+from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
