@@ -12,7 +12,7 @@ from pendu_tui.engine.models.model import Force, Phase
 from pendu_tui.engine.run import NUMERICS
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.files import RecordingError
 
 if TYPE_CHECKING:
     from pendu_tui.engine.methods.own import OwnMethod

@@ -18,7 +18,6 @@ from pendu_tui.engine.quantities import EXTREMES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
 from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
-from pendu_tui.recordings.errors import RecordingError, printable
 from pendu_tui.recordings.events import (
     Arithmetic,
     Event,
@@ -28,6 +27,7 @@ from pendu_tui.recordings.events import (
     name_of,
     noticed,
 )
+from pendu_tui.recordings.files import RecordingError, printable
 
 FORMAT_VERSION = "3"
 EVENTS = "/pendu/events"

@@ -189,7 +189,7 @@ def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
 
 def _flaw(path: Path) -> str:
     """Return what is wrong with a recording; "" if nothing is."""
-    from pendu_tui.recordings.errors import RecordingError
+    from pendu_tui.recordings.files import RecordingError
     from pendu_tui.recordings.verification import verify
 
     try:

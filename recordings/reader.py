@@ -18,9 +18,8 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel
 
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.files import MAGIC, RecordingError
 from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
-from pendu_tui.recordings.library import MAGIC
 
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69

@@ -17,8 +17,20 @@ from mcap.writer import CompressionType, Writer
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import DiskError, NameTakenError, printable, writing
 from pendu_tui.recordings.events import MAX_EVENTS, Event
+from pendu_tui.recordings.files import (
+    PROFILE,
+    DiskError,
+    NameTakenError,
+    check_target,
+    free_path,
+    hold,
+    is_stream,
+    part_of,
+    printable,
+    publish,
+    writing,
+)
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENT_SCHEMA,
@@ -29,15 +41,6 @@ from pendu_tui.recordings.format import (
     sample_schema,
     topics_of,
     without_extremes,
-)
-from pendu_tui.recordings.library import (
-    PROFILE,
-    check_target,
-    free_path,
-    hold,
-    is_stream,
-    part_of,
-    publish,
 )
 
 FLUSH_EVERY = 0.5  # s; with a frame and the flush, a kill loses less than a second

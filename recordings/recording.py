@@ -15,8 +15,8 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene, SceneError
-from pendu_tui.recordings.errors import RecordingError, named
 from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
+from pendu_tui.recordings.files import RecordingError, named, open_file
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
@@ -24,7 +24,6 @@ from pendu_tui.recordings.format import (
     decode_readings,
     topics_of,
 )
-from pendu_tui.recordings.library import open_file
 from pendu_tui.recordings.reader import Contents, Group, ShowProgress, read_chunk, read_contents
 
 CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two

@@ -1,6 +1,7 @@
-"""Verify: simulate a recording's runs again from their events, and compare every sample.
+"""Verification: simulate a recording's runs again from their events, and compare every sample.
 
-Samples must agree in every bit, or within TOLERANCE where this machine's sin differs.
+Samples must agree in every bit, or within TOLERANCE where this machine's sin differs.  And
+recovery: save the intact chunks of a damaged or unfinished recording as a complete one.
 """
 
 import math
@@ -16,10 +17,11 @@ from pendu_tui.engine.run import NUMERICS
 from pendu_tui.engine.run.compiled import TieredLoops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.recordings.errors import RecordingError, named
 from pendu_tui.recordings.events import Event, check_present
+from pendu_tui.recordings.files import RecordingError, named
 from pendu_tui.recordings.format import differences
 from pendu_tui.recordings.reader import ShowProgress
+from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording, Run
 
 TOLERANCE = 1e-6  # relative, above 1; another sin moves regular swings by 1e-8 in 1500 steps
@@ -149,3 +151,40 @@ def _is_close(a: float | None, b: float | None) -> bool:
     if a is None or b is None:
         return False
     return math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+
+
+def recover(
+    path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False
+) -> dict[str, Any]:
+    """Write what is intact of `path` to `out`, which appears only when it is complete.
+
+    No number is repaired, guessed or changed, but the extremes of the first sample after a gap: the
+    steps before it are lost.  Returns the fields of the report.  `damaged` is False if the recording was only unfinished;
+    `runs_lost` counts runs whose start is lost.  Raises RecordingError if nothing can be saved,
+    DiskError if `out` cannot be written.
+    """
+    with Recording.open(path, check=True, progress=progress) as recording:
+        recorder = Recorder(out, None, overwrite)
+        try:
+            for clock, value in recording.entries():
+                if value is None:
+                    recorder.note_gap()
+                elif isinstance(value, Event):
+                    recorder.event(value, clock)
+                else:
+                    recorder.sample(value, clock)
+            if not recorder.samples:
+                why = recording.reason or "it has no samples"
+                raise RecordingError(f"{path}: {why}.")
+            recorder.close()
+        finally:
+            recorder.abandon(delete=True)
+        return {
+            "file": str(path),
+            "out": str(recorder.path),
+            "damaged": recording.damaged,
+            "reason": recording.reason,
+            "samples_kept": recorder.samples,
+            "entries_lost": recording.entries_lost,
+            "runs_lost": len(recording.lost_runs),
+        }

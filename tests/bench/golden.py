@@ -182,7 +182,7 @@ def pictures() -> Iterator[tuple[str, str]]:
 def everything() -> Iterator[tuple[str, str]]:
     with ThreadPoolExecutor(PROCESSES) as pool:
         yield from zip(COMMAND_LINES, pool.map(said_by, COMMAND_LINES), strict=True)
-        from pendu_tui.recordings.library import GOLDEN
+        from pendu_tui.recordings.files import GOLDEN
 
         bundled = [f"export {path.stem}" for path in sorted(GOLDEN.glob("*.mcap"))]
         yield from zip(bundled, pool.map(said_by, bundled), strict=True)

@@ -10,13 +10,12 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.reader import read_contents
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.recovery import recover
-from pendu_tui.recordings.verification import verify
+from pendu_tui.recordings.verification import recover, verify
 from pendu_tui.tui.playback.replay import Replay
 from tests.recordings.examples import record, samples_of, tiny, two_runs
 from tests.tui.command_line import pendu

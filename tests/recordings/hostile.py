@@ -13,6 +13,7 @@ from mcap.writer import CompressionType, Writer
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.recordings.events import Event, noticed
+from pendu_tui.recordings.files import MAGIC
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
@@ -21,7 +22,6 @@ from pendu_tui.recordings.format import (
     encode_readings,
     topics_of,
 )
-from pendu_tui.recordings.library import MAGIC
 from tests.recordings.examples import SCENE, start
 
 Part = tuple[str, float, bytes]

@@ -13,7 +13,7 @@ from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELO
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.events import Event
-from pendu_tui.recordings.library import GOLDEN, SUFFIX
+from pendu_tui.recordings.files import GOLDEN, SUFFIX
 from pendu_tui.recordings.recorder import Recorder
 from tests.recordings.examples import Changes, with_changes
 

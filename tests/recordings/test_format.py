@@ -14,8 +14,8 @@ from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.events import Event, fingerprint, noticed
+from pendu_tui.recordings.files import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.format import (
     EVENT_SCHEMA,
     EXTRA,

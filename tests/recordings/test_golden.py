@@ -7,8 +7,8 @@ import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.verdicts import VERDICTS
+from pendu_tui.recordings.files import GOLDEN, golden_names
 from pendu_tui.recordings.format import values_of
-from pendu_tui.recordings.library import GOLDEN, golden_names
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.commands.export import columns_of
 from tests.recordings.examples import samples_of

@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.recordings.headless import simulate, steps_for
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.recovery import recover
+from pendu_tui.recordings.verification import recover
 from tests.recordings.examples import SCENE
 
 

@@ -12,8 +12,7 @@ import pytest
 
 from pendu_tui.recordings.events import remember
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.recovery import recover
-from pendu_tui.recordings.verification import verify
+from pendu_tui.recordings.verification import recover, verify
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
 

@@ -6,9 +6,15 @@ import time
 import pytest
 from mcap.writer import Writer
 
-from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import DiskError, RecordingError
-from pendu_tui.recordings.library import GOLDEN, being_made, listing, new_path
+from pendu_tui.recordings import files
+from pendu_tui.recordings.files import (
+    GOLDEN,
+    DiskError,
+    RecordingError,
+    being_made,
+    listing,
+    new_path,
+)
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
 from tests.recordings.examples import start, tiny
@@ -31,17 +37,17 @@ def fill(folder, **ages):
 
 
 def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monkeypatch):
-    assert library.folder() == folder
+    assert files.folder() == folder
     for nothing in ("", " "):
         monkeypatch.setenv("PENDU_RECORDINGS", nothing)
-        assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
+        assert files.folder().parts[-2:] == ("pendu-tui", "recordings")
     no_folders = ["s3://bucket/runs"]
     if not IS_WINDOWS:  # where any name stands for a folder
         no_folders.append("~nosuchuser/runs")
     for no_folder in no_folders:
         monkeypatch.setenv("PENDU_RECORDINGS", no_folder)
         with pytest.raises(DiskError, match="names no folder"):
-            library.folder()
+            files.folder()
 
 
 def test_a_new_recording_has_a_free_name_with_the_time(folder, monkeypatch):

@@ -6,14 +6,13 @@ import json
 import pytest
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import EXTRA, decode_event, encode_event
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.recovery import recover
-from pendu_tui.recordings.verification import verify
+from pendu_tui.recordings.verification import recover, verify
 from pendu_tui.tui.playback.replay import Replay
 from tests.recordings.examples import record, samples_of, start, with_changes
 from tests.recordings.test_verify import of_another_machine

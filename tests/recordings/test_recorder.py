@@ -16,11 +16,10 @@ from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
 from mcap.stream_reader import StreamReader
 
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.recordings.errors import DiskError
 from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.files import DiskError, part_of
 from pendu_tui.recordings.format import EVENTS
 from pendu_tui.recordings.headless import simulate
-from pendu_tui.recordings.library import part_of
 from pendu_tui.recordings.recorder import FLUSH_EVERY, LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify

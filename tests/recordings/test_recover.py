@@ -2,14 +2,13 @@
 
 import pytest
 
-from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.reader import read_contents
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.recovery import recover
-from pendu_tui.recordings.verification import verify
+from pendu_tui.recordings.verification import recover, verify
 from tests.recordings.examples import SCENE, record, samples_of, start
 
 

@@ -10,8 +10,8 @@ from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.compiled import CompiledLoops
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.recordings.errors import RecordingError
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import TOLERANCE, verify

@@ -14,7 +14,7 @@ from textual.geometry import Size
 
 from pendu_tui.engine.accuracy.study import ladder
 from pendu_tui.engine.scenes import DEFAULT_SCENE, Scene
-from pendu_tui.recordings.library import new_path
+from pendu_tui.recordings.files import new_path
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen

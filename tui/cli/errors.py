@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TextIO
 
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 
 MAX_CELL = 1000  # characters of a line
 
@@ -46,7 +46,7 @@ def explained(error: BaseException) -> UserError:
     # imported here: --help and --version do not need them
     from pendu_tui.engine.methods.own import OwnMethodError
     from pendu_tui.engine.scenes import SCENES, SceneError
-    from pendu_tui.recordings.errors import RecordingError
+    from pendu_tui.recordings.files import RecordingError
 
     match error:
         case SceneError(models=(_, *_)):
@@ -59,7 +59,7 @@ def explained(error: BaseException) -> UserError:
         case MemoryError():
             why = "not enough memory; use less of it, or smaller input."
             return UserError(why, Exit.INPUT_UNREADABLE)
-        case OSError():  # also recordings.errors.DiskError
+        case OSError():  # also DiskError
             why = (error.strerror or str(error)) + ADVICE.get(error.errno or 0, "")
             return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)
     raise error

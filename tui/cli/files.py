@@ -27,8 +27,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """
     from tempfile import mkstemp  # loads random and hashlib, which --help needs not
 
-    from pendu_tui.recordings.errors import writing
-    from pendu_tui.recordings.library import check_target, is_stream, publish
+    from pendu_tui.recordings.files import check_target, is_stream, publish, writing
 
     if is_stream(path):
         yield path
@@ -61,7 +60,7 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 
 def check_free(path: Path, force: bool) -> None:
     """Raise DiskError if this name is taken and must not, or cannot, be overwritten."""
-    from pendu_tui.recordings.library import check_target, is_stream
+    from pendu_tui.recordings.files import check_target, is_stream
 
     if not is_stream(path):
         check_target(path, force)

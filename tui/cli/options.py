@@ -91,21 +91,21 @@ def resolve(name: str) -> Path:
 
     Raises RecordingError if there is none.
     """
-    from pendu_tui.recordings import library
-    from pendu_tui.recordings.errors import RecordingError
+    from pendu_tui.recordings import files
+    from pendu_tui.recordings.files import RecordingError
 
-    folder = library.folder()
-    file = name + library.SUFFIX
-    for path in (Path(name), library.GOLDEN / file, folder / name, folder / file):
+    folder = files.folder()
+    file = name + files.SUFFIX
+    for path in (Path(name), files.GOLDEN / file, folder / name, folder / file):
         if path.exists() and not path.is_dir():
             return path
-    items = library.listing(folder)
+    items = files.listing(folder)
     if name == "latest" and items:
         return items[0].path
     if name == "latest":
         why = f"no recordings in {folder} yet; start pendu-tui to make one."
         raise RecordingError(why)
-    bundled = ["latest", *library.golden_names()]
+    bundled = ["latest", *files.golden_names()]
     advice = did_you_mean(name, [*bundled, *(item.path.name for item in items)])
     advice = advice or f": choose a file, or one of {', '.join(bundled)}."
     raise RecordingError(f"there is no recording {name!r}{advice}")

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, role
 from pendu_tui.tui.cli.tables import SAMPLE, Sheet, Wanted, choose, known_names

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import printable
-from pendu_tui.recordings.library import is_stream
+from pendu_tui.recordings.files import is_stream, printable
 from pendu_tui.tui.cli.errors import MAX_CELL, UserError
 from pendu_tui.tui.cli.errors import say as say
 from pendu_tui.tui.cli.errors import warn as warn

@@ -17,7 +17,7 @@ from pendu_tui.engine import scenes
 from pendu_tui.engine.methods import METHODS, Cast, Method
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES, Line, Scene, SceneError, Shot
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.cast import find, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import did_you_mean, number, seconds

@@ -21,7 +21,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any
 
 from pendu_tui.engine.methods.own import OwnMethodError
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import interruptible
 

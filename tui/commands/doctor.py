@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from tempfile import TemporaryFile
 
-from pendu_tui.recordings import library
+from pendu_tui.recordings import files
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.report import Column, Report, publish
@@ -73,7 +73,7 @@ def recordings() -> tuple[str, str]:
     advice = "set PENDU_RECORDINGS to a writable folder"
     path = None
     try:
-        path = nearest = library.folder()
+        path = nearest = files.folder()
         while not (nearest.exists() or nearest.is_symlink()):
             nearest = nearest.parent
         with TemporaryFile(dir=nearest):

@@ -17,7 +17,7 @@ import numpy as np
 
 from pendu_tui.engine import library
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError

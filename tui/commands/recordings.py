@@ -4,7 +4,7 @@ import argparse
 import time
 from typing import TYPE_CHECKING, Any
 
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import resolve
@@ -19,7 +19,7 @@ from pendu_tui.tui.cli.report import (
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:
-    from pendu_tui.recordings.library import Item
+    from pendu_tui.recordings.files import Item
     from pendu_tui.recordings.recording import Recording
 
 OPTIONS = {
@@ -46,11 +46,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings import library
+    from pendu_tui.recordings import files
 
-    rows = [_facts(item) for item in library.listing()]
-    folder = library.folder()
-    notes = [f"recording now: {path.with_suffix('')}" for path in library.being_made()]
+    rows = [_facts(item) for item in files.listing()]
+    folder = files.folder()
+    notes = [f"recording now: {path.with_suffix('')}" for path in files.being_made()]
     if not (rows or notes):
         notes = [f"No recordings in {folder} yet; start pendu-tui to make one."]
     columns = (
@@ -146,7 +146,7 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings.recovery import recover
+    from pendu_tui.recordings.verification import recover
 
     if options.output is None:
         raise UserError("name the file to write: -o OUT.")

@@ -5,8 +5,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings import files
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.options import resolve
@@ -48,7 +48,7 @@ def _files(name: str) -> list[Path]:
     """Return the recordings that an argument stands for, or its path."""
     path = Path(name)
     if name == "golden" and not path.exists():
-        path = library.GOLDEN
+        path = files.GOLDEN
     return sorted(path.rglob("*.mcap")) or [path]
 
 
@@ -65,7 +65,7 @@ def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str,
             result = verify(result.file, show, max_steps, only)
     except RecordingError as caught:
         error = str(caught)
-    is_part = result.file.suffix == library.PART
+    is_part = result.file.suffix == files.PART
     passes = result.identical and (result.complete or is_part)
     return asdict(result) | {"file": str(result.file), "passes": passes, "error": error}
 

@@ -17,8 +17,8 @@ from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, EventKind, noticed
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.time_limit import limited
 from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, RunState, Source

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
-from pendu_tui.recordings.errors import printable
 from pendu_tui.recordings.events import Event, check_present
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.playback.history import History, changes_of
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, Source

@@ -16,7 +16,7 @@ from textual.filter import LineFilter
 from textual.screen import ModalScreen, Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
-from pendu_tui.recordings.errors import printable
+from pendu_tui.recordings.files import printable
 from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.drawing.palette import PALETTES, Palette

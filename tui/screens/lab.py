@@ -20,8 +20,8 @@ from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene, SceneError
-from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import RecordingError
+from pendu_tui.recordings import files
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.errors import UserError, explained
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live, has_own
@@ -613,7 +613,7 @@ class LabScreen(SizedScreen[None]):
         from pendu_tui.tui.cli.scene_file import scene_text
 
         def save(folder: Any) -> Any:
-            path = library.free_path(folder / "scene.toml")
+            path = files.free_path(folder / "scene.toml")
             path.write_text(scene_text(self._seen()), encoding="utf-8")
             return path
 
@@ -622,7 +622,7 @@ class LabScreen(SizedScreen[None]):
     def _save(self, what: str, save: Callable[[Any], object]) -> None:
         """Save a file in the folder of recordings, and say where it is or why it is not."""
         try:
-            folder = library.folder()
+            folder = files.folder()
             folder.mkdir(parents=True, exist_ok=True)
             self.notify(f"Saved {save(folder)}", timeout=15)
         except OSError as error:

@@ -16,8 +16,8 @@ from textual.widget import Widget
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings import library
-from pendu_tui.recordings.errors import NameTakenError, printable
+from pendu_tui.recordings import files
+from pendu_tui.recordings.files import NameTakenError, printable
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError, explained
 from pendu_tui.tui.cli.files import stop_requests
@@ -57,7 +57,7 @@ def recording_path(file: Path | None, folder: Path | None = None) -> Path:
     """
     if file is not None and file.exists():
         raise UserError(f"{file} exists already: choose another name or delete it.", Exit.DISK)
-    path = file or library.new_path(folder)
+    path = file or files.new_path(folder)
     if file is None:
         path.parent.mkdir(parents=True, exist_ok=True)
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
@@ -80,7 +80,7 @@ def start_recording(live: Live, file: Path | None = None, folder: Path | None = 
         except NameTakenError:
             if file is not None:
                 raise
-            path = library.free_path(path)
+            path = files.free_path(path)
 
 
 def open_recording(path: Path) -> "Recording":

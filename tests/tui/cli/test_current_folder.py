@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.files import GOLDEN
 from tests.tui.command_line import ROOT
 from tests.tui.pty_lab import PtyLab
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
 from pendu_tui.tui.cli.errors import Exit

@@ -11,7 +11,7 @@ from signal import SIGINT, SIGTERM
 
 import pytest
 
-from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.files import repeat_swallowed_interrupts, whole_file
 from tests.tui.command_line import pendu

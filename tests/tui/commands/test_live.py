@@ -1,7 +1,7 @@
 """`pendu-tui live` before there is a screen."""
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.recordings.library import listing
+from pendu_tui.recordings.files import listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live

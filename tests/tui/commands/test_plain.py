@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pendu_tui.recordings.library import listing
+from pendu_tui.recordings.files import listing
 from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import PENDU, pendu
 

@@ -3,7 +3,7 @@ from io import BytesIO
 import pytest
 from mcap.writer import Writer
 
-from pendu_tui.recordings.library import golden_names
+from pendu_tui.recordings.files import golden_names
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import Outcome, pendu

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pendu_tui.recordings.library import new_path
+from pendu_tui.recordings.files import new_path
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify

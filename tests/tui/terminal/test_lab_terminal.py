@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import PENDU, ROOT, pendu

@@ -1,6 +1,6 @@
 """Where the screen is saved."""
 
-from pendu_tui.recordings import library
+from pendu_tui.recordings import files
 from tests.tui.conftest import text_of
 from tests.tui.harness import lab
 
@@ -11,7 +11,7 @@ async def test_s_saves_a_picture_among_the_recordings_or_reports_why_not(tmp_pat
         await theatre.press("s")
         (picture,) = (tmp_path / "new").iterdir()
         assert "t 0.00 s" in text_of(picture.read_text(encoding="utf-8"))
-        assert library.listing(tmp_path / "new") == []  # a picture is no recording
+        assert files.listing(tmp_path / "new") == []  # a picture is no recording
         monkeypatch.setenv("PENDU_RECORDINGS", str(picture / "below"))
         await theatre.press("s")
         assert "Screenshot not saved" in [each.message for each in theatre.app._notifications][-1]

@@ -7,7 +7,7 @@ import pytest
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET, Cast
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.recordings.library import GOLDEN
+from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay

@@ -1,4 +1,4 @@
-"""Library: the folder of recordings, their names and locks.
+"""Files: their names, locks and errors, the folder of recordings, and text made safe to print.
 
 A recorder locks its file, and the lock ends with its process: that tells unfinished recordings from
 those that are being made.
@@ -7,14 +7,12 @@ those that are being made.
 import os
 import struct
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from os.path import lexists
 from pathlib import Path
 from typing import IO, Any, BinaryIO, NamedTuple
 
-import platformdirs
-
-from pendu_tui.recordings.errors import DiskError, NameTakenError, RecordingError, writing
 from pendu_tui.recordings.system import lock, rename
 
 SUFFIX = ".mcap"
@@ -23,6 +21,55 @@ GOLDEN = Path(__file__).parent / "golden"
 MAGIC = b"\x89MCAP0\r\n"
 PROFILE = "pendu"  # in the file's header
 _HEADER = struct.Struct(f"<{len(MAGIC)}sBQI{len(PROFILE)}s")  # with the header's opcode and length
+MAX_TEXT = 200  # characters of one text from a file; a mark or a scene's name is shorter
+
+
+class RecordingError(Exception):
+    """A recording cannot be read; the text is a sentence for the user."""
+
+
+class DiskError(OSError):
+    """A file cannot be written; the text is a sentence for the user."""
+
+    def __init__(self, why: str, path: object, errno: int = 0) -> None:
+        super().__init__(errno, why, str(path))
+
+    def __str__(self) -> str:
+        return f"{self.filename}: {self.strerror}"
+
+
+class NameTakenError(DiskError):
+    """A file cannot be written because its name is taken."""
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Turn errors while `path` is read into a RecordingError that names it."""
+    try:
+        yield
+    except (OSError, RecordingError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise RecordingError(f"{path}: {why.removesuffix('.')}.") from error
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn an OSError while `path` is written into a DiskError."""
+    try:
+        yield
+    except DiskError:
+        raise
+    except OSError as error:
+        raise DiskError(error.strerror or str(error), path, error.errno or 0) from error
+
+
+def printable(text: str, limit: int = MAX_TEXT) -> str:
+    """Return at most `limit` characters of the text, without those that control a terminal."""
+    if len(text) > limit:
+        text = text[: limit - 1] + "…"
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
 class Item(NamedTuple):
@@ -85,6 +132,8 @@ def folder() -> Path:
     """Return $PENDU_RECORDINGS, or else a folder in the user's data, which need not exist."""
     chosen = os.environ.get("PENDU_RECORDINGS", "").strip()
     if not chosen:
+        import platformdirs  # slow to load, and --help needs none
+
         return platformdirs.user_data_path("pendu-tui", False) / "recordings"
     why = "PENDU_RECORDINGS names no folder"
     if "://" in chosen:
