@@ -10,7 +10,7 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 
 from pendu_tui.tui.screens.app import normalised
-from pendu_tui.tui.views.lab.stage import Stage
+from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held
 from tests.tui.harness import Theatre, lab
 

@@ -15,9 +15,8 @@ import numpy as np
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.palette import FAINT
-from pendu_tui.tui.drawing.picture import Picture
-from pendu_tui.tui.views.lab.time_chart import TimeChart
+from pendu_tui.tui.drawing.picture import FAINT, Picture
+from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import lab
 
 LIMITS = {"wrong": 0}

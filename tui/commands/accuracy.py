@@ -46,9 +46,8 @@ from pendu_tui.tui.cli.report import (
 )
 from pendu_tui.tui.cli.scene import general_scene_of
 from pendu_tui.tui.cli.workers import workers_of
-from pendu_tui.tui.drawing.palette import PALETTES
-from pendu_tui.tui.drawing.picture import lines_of
-from pendu_tui.tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
+from pendu_tui.tui.drawing.picture import PALETTES, lines_of
+from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
 
 MAX_STEPS = 10**10  # at the smallest h: half an hour, compiled

@@ -14,7 +14,7 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.drawing.loglog import Series as Series
-from pendu_tui.tui.drawing.palette import PALETTES, inks
+from pendu_tui.tui.drawing.picture import PALETTES, inks
 
 CM = 1 / 2.54  # inches
 MAX_PARTS = 400  # of a run, each drawn as its largest error

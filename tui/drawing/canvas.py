@@ -19,8 +19,7 @@ from functools import lru_cache
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
-from pendu_tui.tui.drawing.palette import FAINT, NOBODY
-from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.picture import FAINT, NOBODY, Picture, Row
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,8 +10,7 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from pendu_tui.tui.drawing.palette import NOBODY, palette
-from pendu_tui.tui.drawing.picture import Ink, Picture
+from pendu_tui.tui.drawing.picture import NOBODY, Ink, Picture, palette
 
 
 class CellWidget(Widget):

@@ -1,16 +1,210 @@
-"""Frame: two axes around a field of characters, and the names of lines at their ends."""
+"""Axes with round labels, the field between two of them, and the names of lines in it."""
 
+import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from pendu_tui.tui.drawing.axes import Axis, Floats
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import FRAME, TEXT
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import FRAME, TEXT, Picture
+
+Floats = NDArray[np.float64]
+Ticks = list[tuple[float, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """A range of numbers, and labels by value."""
+
+    low: float
+    high: float
+    labels: dict[float, str]
+
+    def share(self, values: ArrayLike) -> Floats:
+        """Return the positions of values along the axis, from 0 to 1, clipped."""
+        shares = (np.asarray(values, np.float64) - self.low) / (self.high - self.low)
+        return np.clip(shares, 0.0, 1.0)
+
+    @property
+    def label_width(self) -> int:
+        """Columns of the widest label; at least 5, or the chart would jump with each digit."""
+        return max([5, *map(len, self.labels.values())])
+
+
+def nice(value: float) -> float:
+    """Return the smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
+    if not value > 0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
+
+
+_DECADES = sorted(
+    {Fraction(n, d) for n in range(1, 5) for d in range(1, 17)} | {*map(Fraction, (6, 12, 50, 500))}
+)
+"""How many decades a row of characters may span."""
+_STEPS = [(float(each), each.numerator * (1 + (each.denominator == 1))) for each in _DECADES]
+"""These, and the decades from a label to the next: a whole number, two rows or more apart."""
+FEW_ROWS = 9
+
+
+def log_axis(low: float, high: float, rows: int) -> Axis:
+    """Return a vertical axis of log10 that covers low to high.
+
+    It is the shortest with powers of ten in the middle of three rows, or of two if rows are few.
+    """
+    need = 3 if rows >= FEW_ROWS else 2
+    axes: list[Axis] = []
+    for size, step in _STEPS:
+        top = round(high / size)
+        spare = rows - 1 - top + round(low / size)
+        axes += [_centred(top + above, size, step, rows) for above in range(spare + 1)]
+        if axes and len(axes[-1].labels) >= need:
+            break
+    axis = next((axis for axis in axes if len(axis.labels) >= need), axes[-1])
+    return replace(axis, labels={each: _power(each) for each in axis.labels})
+
+
+def _centred(top: int, row: float, step: float, rows: int) -> Axis:
+    """Return an axis whose rows have multiples of `row` in the middle, `top` times it at the top.
+
+    Multiples of `step` are labelled.
+    """
+    low = (top - rows + 0.5) * row
+    high = (top + 0.5) * row
+    return Axis(low, high, dict.fromkeys(_multiples(low, high, step), ""))
+
+
+def log_x_axis(low: float, high: float, columns: int) -> Axis:
+    """Return a horizontal axis of log10 with at most one label in 8 columns."""
+    first = math.floor(low)
+    last = max(math.ceil(high), first + 1)
+    step = math.ceil((last - first) * 8 / columns)
+    return Axis(first, last, {power: _power(power) for power in _multiples(first, last, step)})
+
+
+def _power(exponent: float) -> str:
+    return "1" + "0" * int(exponent) if 0 <= exponent <= 2 else f"1e{exponent:.0f}"
+
+
+def linear_axis(low: float, high: float, rows: int) -> Axis:
+    """Return a vertical axis from low to high or a little beyond, wider if they hardly differ.
+
+    Labels are two to five rows apart.
+    """
+    least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
+    if high - low < least:
+        low = low - least
+        high = high + least
+    power = 10.0 ** math.floor(math.log10((high - low) / rows))
+    steps = [part * power for part in (1, 2, 5, 10, 20, 50, 100)]
+    sizes = sorted((step / apart, step) for step in steps for apart in range(2, 6))
+    row, step = next(
+        (row, step) for row, step in sizes if round(high / row) - round(low / row) < rows
+    )
+    axis = _centred(round(high / row), row, step, rows)
+    return replace(axis, labels={each: _label(each, step) for each in axis.labels})
+
+
+def _label(value: float, step: float) -> str:
+    decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
+    if decimals < 5:
+        return f"{value:.{decimals}f}"
+    return f"{value * 10.0**decimals:.0f}e-{decimals}" if value else "0"
+
+
+def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
+    """Return an axis of seconds with labels in s, min or h about every 10 columns.
+
+    The last label adds unit and note.
+    """
+    units = ((3600, "h"), (60, "min"))
+    size, unit = next((each for each in units if end - start >= 5 * each[0]), (1, "s"))
+    step = nice((end - start) / size / max(columns / 10, 1))
+    values = _multiples(start / size, end / size, step)
+    labels = {value * size: f"{value:.6g}" for value in values}
+    if labels:
+        labels[max(labels)] += f" {unit}{note}"
+    return Axis(start, end, labels)
+
+
+_TIMES = (
+    *((value, f"{value:g} s") for value in (0.01, 0.1, 1, 2, 5, 10, 20)),
+    *((60 * value, f"{value} min") for value in (1, 2, 5, 10, 20)),
+    *((3600 * value, f"{value} h") for value in (1, 2, 5, 10)),
+    *((86400 * 10.0**power, f"1{'0' * power} d") for power in range(5)),
+)
+
+
+def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
+    """Return an axis of log10 of seconds, labelled in s, min, h or d every 8 columns or more."""
+    low = math.log10(start)
+    high = math.log10(end)
+    labels: dict[float, str] = {}
+    apart = 8 * (high - low) / columns
+    for seconds, text in _TIMES:
+        place = math.log10(seconds)
+        if low <= place <= high and (not labels or place - max(labels) >= apart):
+            labels[place] = text
+    if len(labels) < 2:  # short, and so almost linear
+        linear = time_axis(start, end, columns, note).labels
+        labels = {math.log10(value): text for value, text in linear.items() if value > 0}
+    else:
+        labels[max(labels)] += note
+    return Axis(low, high, labels)
+
+
+def number_ticks(low: float, high: float, most: int) -> Ticks:
+    """Return positions and labels of about `most` numbers."""
+    values = _multiples(low, high, nice((high - low) / most))
+    return [(value, compact(value)) for value in values]
+
+
+def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
+    """Return positions and labels of about `most` angles, in pi or, below pi/4 apart, in rad."""
+    share = (high - low) / math.pi / most
+    if share <= 0.1:
+        turns = (-1, 0, 1) if wrap else (0,)
+        step = nice((high - low) / most)
+        ticks: Ticks = []
+        for turn in turns:
+            begin = max(low - turn * math.tau, -math.pi if wrap else -math.inf)
+            end = min(high - turn * math.tau, math.pi if wrap else math.inf)
+            ticks += [
+                (value + turn * math.tau, compact(value)) for value in _multiples(begin, end, step)
+            ]
+        return ticks
+    step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share), nice(share))
+    values = _multiples(low / math.pi, high / math.pi, step)
+    return [(value * math.pi, in_pi(value, wrap)) for value in values]
+
+
+def _multiples(low: float, high: float, step: float) -> list[float]:
+    first = math.ceil(low / step - 1e-6)
+    last = math.floor(high / step + 1e-6)
+    return [number * step for number in range(first, last + 1)]
+
+
+def compact(value: float) -> str:
+    """Write a number in few characters: "0.5", "-2e-7"."""
+    return f"{value:.6g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+
+
+def in_pi(turns: float, wrap: bool = False) -> str:
+    """Write quarters of pi: "-pi", "3pi/4"; `wrap` turns them to -pi to pi."""
+    if wrap and abs(turns) > 1:
+        turns = round(math.remainder(turns, 2), 12)
+    if turns == 0:
+        return "0"
+    divisor = next(each for each in (1, 2, 4) if turns * each % 1 == 0)
+    count = f"{turns * divisor:.0f}"
+    over = "" if divisor == 1 else f"/{divisor}"
+    return {"1": "", "-1": "-"}.get(count, count) + "pi" + over
+
 
 ROOM = 4  # columns for letters on the right of the field
 NAMED = 60, 8  # columns and rows of a chart from which on its lines have names

@@ -10,11 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pendu_tui.tui.drawing.axes import Floats, log_axis, log_x_axis
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.frame import ROOM, Frame, columns_beside, too_small
-from pendu_tui.tui.drawing.palette import TEXT
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.frame import (
+    ROOM,
+    Floats,
+    Frame,
+    columns_beside,
+    log_axis,
+    log_x_axis,
+    too_small,
+)
+from pendu_tui.tui.drawing.picture import TEXT, Picture
 
 MIN_COLUMNS = 20
 MIN_ROWS = 7

@@ -2,12 +2,19 @@
 
 import numpy as np
 
-from pendu_tui.tui.drawing.axes import Axis, Floats, linear_axis, number_ticks
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.frame import ROOM, Frame, columns_beside, too_small
+from pendu_tui.tui.drawing.frame import (
+    ROOM,
+    Axis,
+    Floats,
+    Frame,
+    columns_beside,
+    linear_axis,
+    number_ticks,
+    too_small,
+)
 from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, plotted
-from pendu_tui.tui.drawing.palette import QUIET, TEXT
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture
 
 TREND = 0  # an ink, as that of a method, so that neither hides the other
 ENERGY = 1

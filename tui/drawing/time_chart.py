@@ -10,18 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Cast
-from pendu_tui.tui.drawing.axes import (
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.drawing.frame import (
     Axis,
+    End,
     Floats,
+    Frame,
+    columns_beside,
     linear_axis,
     log_axis,
     log_time_axis,
     time_axis,
+    too_small,
 )
-from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.frame import End, Frame, columns_beside, too_small
-from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, faint, inks
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, Picture, faint, inks
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
 

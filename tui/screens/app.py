@@ -19,7 +19,7 @@ from textual.theme import BUILTIN_THEMES, Theme
 from pendu_tui.recordings.files import printable
 from pendu_tui.recordings.system import STOP
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.drawing.palette import PALETTES, Palette
+from pendu_tui.tui.drawing.picture import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
 from pendu_tui.tui.terminal.check import is_gone

@@ -16,8 +16,7 @@ from textual.screen import Screen, ScreenResultType
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.palette import EXACT, FRAME, QUIET, TEXT, WARN
-from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, WARN, Picture, Row
 from pendu_tui.tui.playback.lesson import ASTRAY
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import SMALLEST

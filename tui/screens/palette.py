@@ -10,7 +10,7 @@ from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.content import Content
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.screens.dialogs import KEY_WIDTH, Once, bindings_of, purpose
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import key_text

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Literal, NamedTuple, get_args
 
 from pendu_tui.tui.cli.options import count
-from pendu_tui.tui.drawing.palette import PALETTES
+from pendu_tui.tui.drawing.picture import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
 """The characters of pictures; with ASCII, lines and words are ASCII, too."""

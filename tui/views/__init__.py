@@ -16,10 +16,10 @@ class ViewEntry(NamedTuple):
 
 
 VIEWS: dict[str, ViewEntry] = {
-    "lab": ViewEntry("Lab", "pendu_tui.tui.views.lab.view", "LabView"),
-    "phase": ViewEntry("Phase space", "pendu_tui.tui.views.phase.view", "PhaseView"),
-    "accuracy": ViewEntry("Accuracy", "pendu_tui.tui.views.accuracy.pane", "AccuracyView"),
-    "stability": ViewEntry("Stability", "pendu_tui.tui.views.stability.pane", "StabilityView"),
+    "lab": ViewEntry("Lab", "pendu_tui.tui.views.lab", "LabView"),
+    "phase": ViewEntry("Phase space", "pendu_tui.tui.views.phase", "PhaseView"),
+    "accuracy": ViewEntry("Accuracy", "pendu_tui.tui.views.accuracy", "AccuracyView"),
+    "stability": ViewEntry("Stability", "pendu_tui.tui.views.stability", "StabilityView"),
 }
 """In the order of the key v."""
 

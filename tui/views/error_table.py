@@ -22,8 +22,7 @@ from pendu_tui.engine.quantities import (
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.run.verdicts import FAILED, GROWS, VERDICTS, Judgement
-from pendu_tui.tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
-from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN, Picture, Row, inks, mark
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Pane

@@ -20,8 +20,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene, SceneError
 from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.palette import TEXT
-from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.picture import TEXT, Picture, Row
 from pendu_tui.tui.playback.shown import Shown, Stretch
 from pendu_tui.tui.playback.source import Source
 

@@ -24,8 +24,7 @@ from pendu_tui.engine.run.verdicts import (
     Milestone,
 )
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.drawing.palette import ink_of
-from pendu_tui.tui.drawing.picture import Row
+from pendu_tui.tui.drawing.picture import Row, ink_of
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.numbers import about, seconds, two_digits
 

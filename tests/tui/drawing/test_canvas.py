@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, TEXT, faint
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, NOBODY, TEXT, Picture, faint
 from tests.tui.drawn import cells
 
 DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit

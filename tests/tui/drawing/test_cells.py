@@ -7,8 +7,7 @@ from textual.app import App, ComposeResult
 from textual.strip import Strip
 
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.palette import NOBODY, TEXT
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import NOBODY, TEXT, Picture
 
 
 class Drawn(CellWidget):

@@ -8,7 +8,7 @@ from rich.color import Color, ColorSystem
 
 from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import (
+from pendu_tui.tui.drawing.picture import (
     EXACT,
     FAINT,
     FRAME,

@@ -18,7 +18,7 @@ from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.harness import FPS, Clocked
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)

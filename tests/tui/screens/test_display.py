@@ -6,7 +6,7 @@ import pytest
 from rich.color import Color
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.tui.drawing.palette import PALETTES, TEXT
+from pendu_tui.tui.drawing.picture import PALETTES, TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen

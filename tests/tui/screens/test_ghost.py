@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.tui.drawing.palette import faint, ink_of
+from pendu_tui.tui.drawing.picture import faint, ink_of
 from pendu_tui.tui.playback.ghost import Ghost
-from pendu_tui.tui.views.lab.stage import Stage
-from pendu_tui.tui.views.lab.time_chart import TimeChart
+from pendu_tui.tui.views.lab import TimeChart
+from pendu_tui.tui.views.stage import Stage
 from tests.tui.drawn import inks
 from tests.tui.harness import after, lab
 

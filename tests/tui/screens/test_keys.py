@@ -12,10 +12,9 @@ from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
 from pendu_tui.tui.views.error_table import ErrorTable
-from pendu_tui.tui.views.lab.event_list import EventList
-from pendu_tui.tui.views.lab.stage import Stage
-from pendu_tui.tui.views.lab.time_chart import TimeChart
-from pendu_tui.tui.views.phase.view import SectionPane
+from pendu_tui.tui.views.lab import EventList, TimeChart
+from pendu_tui.tui.views.phase import SectionPane
+from pendu_tui.tui.views.stage import Stage
 from tests.tui.harness import lab, on_stage, uncomputed
 
 

@@ -11,7 +11,7 @@ from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.screens.launch import start_recording
 from pendu_tui.tui.screens.lines import SeekBar, StatusLine
-from pendu_tui.tui.views.lab.event_list import EventList
+from pendu_tui.tui.views.lab import EventList
 from tests.tui.harness import eventful, lab, player, recorded
 
 

@@ -46,7 +46,7 @@ def stored_studies(monkeypatch, request):
         for item in studies[task]:
             yield item
 
-    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", PASSES)
+    monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", PASSES)
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", computed)
     yield
     if is_update:

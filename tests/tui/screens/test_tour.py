@@ -16,7 +16,7 @@ STEPS = tour().pages
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the stability map: they take no time."""
-    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", (20, 300))
+    monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (20, 300))
 
 
 def words(text: str) -> str:

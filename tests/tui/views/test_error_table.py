@@ -6,7 +6,7 @@ import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
-from pendu_tui.tui.drawing.palette import GOOD, QUIET, TEXT, WARN
+from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_columns, table

@@ -8,9 +8,9 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.views import VIEWS
-from pendu_tui.tui.views.accuracy.pane import AccuracyPane
-from pendu_tui.tui.views.phase.view import SectionPane
-from pendu_tui.tui.views.stability.pane import StabilityPane
+from pendu_tui.tui.views.accuracy import AccuracyPane
+from pendu_tui.tui.views.phase import SectionPane
+from pendu_tui.tui.views.stability import StabilityPane
 from pendu_tui.tui.views.view import Pane
 from tests.tui.harness import key_of, lab, player, uncomputed
 

@@ -6,7 +6,7 @@ import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.views.reach import amplitude, reach
+from pendu_tui.tui.views.viewport import amplitude, reach
 from tests.tui.harness import Lab
 
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import FAINT, inks
+from pendu_tui.tui.drawing.picture import FAINT, inks
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.phase.portrait import Portrait, method_points, phase_ground, phase_picture
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.portrait import Portrait, method_points, phase_ground, phase_picture
+from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import cells
 from tests.tui.drawn import places as cells_in
 

@@ -7,7 +7,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.lab.event_list import EventList
+from pendu_tui.tui.views.lab import EventList
 from pendu_tui.tui.words.plain_text import event_lines, numbered
 from tests.tui.harness import after
 

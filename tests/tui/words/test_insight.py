@@ -10,7 +10,7 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import TEXT
+from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.words.insight import (
     FRESH,

@@ -8,11 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
-from pendu_tui.tui.drawing.palette import EXACT, faint
+from pendu_tui.tui.drawing.picture import EXACT, faint
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.error_table import ErrorTable
-from pendu_tui.tui.views.lab.lanes import Bob, Look, arc, lanes, stage_picture
-from pendu_tui.tui.views.lab.stage import Lens, Stage
+from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, arc, lanes, stage_picture
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, places, size
 from tests.tui.harness import lab, player, recorded

@@ -9,20 +9,30 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import Model, State
 from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
-from pendu_tui.engine.phase_space.section import Points
+from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, spread
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.scenes import Line
-from pendu_tui.tui.drawing.axes import in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT, faint, inks
-from pendu_tui.tui.drawing.picture import Picture, Row
+from pendu_tui.tui.drawing.frame import in_pi, nice, number_ticks, theta_ticks
+from pendu_tui.tui.drawing.picture import (
+    EXACT,
+    FAINT,
+    FRAME,
+    QUIET,
+    TEXT,
+    Picture,
+    Row,
+    faint,
+    inks,
+)
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import FPS
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.viewport import Viewport
 from pendu_tui.tui.words.numbers import energy_share, motion_text, regime
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
@@ -340,3 +350,63 @@ def _border(values: NDArray[Any], heavy: bool = False) -> Mask:
 def _dots(mask: Mask) -> Dots:
     y, x = np.nonzero(mask)
     return x, y
+
+
+ORBIT_STEPS = 2000  # they take a few ms
+GAP = 2  # dots between orbits of a section
+
+
+def starts(viewport: Viewport, count: int) -> Points:
+    across = viewport.theta_at(0.0), viewport.theta_at(2.0 * viewport.columns)
+    return spread(count, across, (viewport.omega_at(4.0 * viewport.rows), viewport.omega_at(0.0)))
+
+
+class Section:
+    """Orbits of one method, over the separatrix of the true pendulum."""
+
+    def __init__(self, viewport: Viewport, model: Model, method: Method, ink: int) -> None:
+        self._viewport = viewport
+        self._method = method
+        self._ink = ink
+        self._ground = Canvas(viewport.columns, viewport.rows)
+        self._ground.scatter(*Portrait.of(viewport, model).separatrix, FRAME)
+        size = self._ground.height + 2 * GAP, self._ground.width + 2 * GAP
+        self._near = np.zeros(size, np.bool_)
+
+    @np.errstate(all="ignore")  # a diverging method may be too far out to count in dots
+    def add(self, points: Points) -> None:
+        x = np.floor(self._viewport.x(points[0]))
+        y = np.floor(self._viewport.y(points[1]))
+        inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)
+        most = 0.3  # the share of its dots that may lie close to other orbits
+        if self._method.symplectic:
+            most = 0.6
+        for each in range(x.shape[1]):
+            at = inside[:, each]
+            i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
+            if len(i) and self._near[j + GAP, i + GAP].mean() <= most:
+                self._ground.scatter(i, j, faint(self._ink))
+                for right in range(2 * GAP + 1):
+                    for down in range(2 * GAP + 1):
+                        self._near[j + down, i + right] = True
+
+    @np.errstate(all="ignore")
+    def picture(self, orbit: Points, start: State, crosshair: State | None = None) -> Picture:
+        """Draw one orbit over the others, in thick dots or as a spiral, and its start."""
+        canvas = self._ground.copy()
+        viewport = self._viewport
+        if self._method.symplectic:
+            draw_dots(canvas, viewport, orbit, self._ink, BLOCK[:3])
+        else:  # a spiral of 300 steps
+            canvas.path(*on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
+        if crosshair is not None:
+            draw_crosshair(canvas, viewport, crosshair)
+        draw_points(canvas, viewport, [PhasePoint(*start, self._ink, self._method.letter)])
+        write_words(canvas, axes(viewport))
+        return canvas.picture()
+
+
+@lru_cache(maxsize=64)
+def orbit_of(method: Method, model: Model, h: float, start: State) -> tuple[Points, OrbitKind]:
+    points = orbit(method, model, h, start, ORBIT_STEPS)
+    return points, kind_of(method, model, h, points)

@@ -1,26 +1,37 @@
-"""PhasePane: the methods in phase space, where a new start can be chosen."""
+"""Phase space (F3, and a pane of the lab): theta across, omega up.
+
+The lab's pane is drawn without NumPy until the first paint, so what needs it is imported later.
+"""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.reactive import var
 
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
-from pendu_tui.engine.models.model import State
+from pendu_tui.engine.models.model import Model, State
+from pendu_tui.engine.quantities import Head
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.time_limit import limited
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import TEXT, Picture, inks
 from pendu_tui.tui.playback.live import has_own
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.views.phase.viewport import Viewport
-from pendu_tui.tui.views.reach import amplitude, reach
-from pendu_tui.tui.views.view import Chooser
+from pendu_tui.tui.views.error_table import Column, ErrorTable
+from pendu_tui.tui.views.view import Chooser, Memo, StudyView
+from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
+from pendu_tui.tui.words.studies import sentence
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
+    from pendu_tui.engine.phase_space.section import Points
     from pendu_tui.tui.drawing.canvas import Canvas
+    from pendu_tui.tui.views.portrait import Section
 
 TRAIL_SECONDS = 0.09  # of the clock, for which trails stay as they are: three frames
 DOTS = 4  # an arrow key moves the crosshair so far
@@ -80,7 +91,7 @@ class PhasePane(Chooser[State]):
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        from pendu_tui.tui.views.phase.portrait import (
+        from pendu_tui.tui.views.portrait import (
             Portrait,
             caption,
             method_points,
@@ -185,3 +196,117 @@ class PhasePane(Chooser[State]):
         x, y = event.get_content_offset_capture(self)
         columns, rows = self._cells
         return (x, y) if x in range(columns) and y in range(rows) else None
+
+
+STARTS = 300  # orbits of a section
+AREA = Head("area", 11, "area/area0", 11)
+
+
+class SectionPane(PhasePane):
+    """The portrait or, after key x, a section of one method."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("x", "section", "Map", tooltip="a method's own map")
+    ]
+
+    shows_section: var[bool] = var(False)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._section = Memo(self._begun)
+        self._orbits = 0  # of the section, so far
+
+    @property
+    def settled(self) -> bool:
+        if self.drawable and self.shows_section:
+            return self._orbits == STARTS
+        return super().settled
+
+    def watch_shows_section(self) -> None:
+        if not self.shows_section:
+            self._section.forget()
+            self.workers.cancel_node(self)
+        self.draw()
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        if self.shows_section and (why := source.scene.why_not_mapped):
+            self.notify(why, severity="warning")
+            self.shows_section = False
+        if self.shows_section:
+            return self._map(source)
+        return super().picture(source, sample)
+
+    def _begun(
+        self, viewport: Viewport, model: Model, method: Method, ink: int, h: float
+    ) -> "Section":
+        """Begin to compute a section, of which there is nothing yet."""
+        from pendu_tui.engine.phase_space.section import pieces
+        from pendu_tui.tui.views.portrait import ORBIT_STEPS, Section, starts
+
+        self._orbits = 0
+        self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
+        return Section(viewport, model, method, ink)
+
+    def _map(self, source: Source) -> Picture:
+        from pendu_tui.tui.views.portrait import orbit_of
+
+        method = self.cast[self.index]
+        h = abs(source.stepping.own[self.index])
+        model = source.scene.equations
+        section = self._section(self.viewport, model, method, inks(self.cast)[self.index], h)
+        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
+        if self._orbits < STARTS:
+            title += f", computing {10 * self._orbits // STARTS / 10:.0%}"
+        self.write_titles(title, "wheel: zoom, tab: next method, x: back")
+        start = self.cursor or State(source.scene.theta, source.scene.omega)
+        plot = section.picture(orbit_of(method, model, h, start)[0], start, self.cursor)
+        _, kind = orbit_of(method, model, h, self.aim or start)
+        where = "start"
+        if self.aim:
+            where = f"{self.aim.theta:g}, {self.aim.omega:g}"
+        return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
+
+    def forget(self) -> None:
+        self._section.forget()
+
+    def add(self, result: "Points") -> None:
+        self._section.result.add(result)
+        self._orbits += result[0].shape[1]
+
+    def action_section(self) -> None:
+        self.shows_section = not self.shows_section
+
+
+class AreaTable(ErrorTable):
+    """Also says how each method has changed the area of the ring, if there is one."""
+
+    def __init__(self, pane: PhasePane) -> None:
+        super().__init__()
+        self._pane = pane
+
+    @property
+    def more(self) -> Sequence[Column]:
+        ring = self._pane.ring
+        if ring is None or len(ring.area_ratios) != len(self.cast):  # of the run before
+            return ()
+        ratios = dict(zip(self.cast, ring.area_ratios, strict=True))
+        return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
+
+
+class PhaseView(StudyView):
+    PANE = SectionPane
+
+    def compose(self) -> ComposeResult:
+        yield from super().compose()
+        yield self.with_source(AreaTable(self.pane))
+
+
+def area_text(ratio: float) -> str:
+    """Return an area ratio as a text that differs from 1: "1 + 2.2e-16"."""
+    if not 0 < ratio < math.inf:
+        return "> 1e308" if ratio else "< 1e-308"
+    if ratio == 1:
+        return "1"
+    if abs(ratio - 1) < 1e-6:
+        return f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
+    return f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"

@@ -9,9 +9,8 @@ from textual import events
 
 from pendu_tui.engine.phase_space.area import Neighbours
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.phase.pane import DOTS, PhasePane
-from pendu_tui.tui.views.phase.view import AreaTable
-from pendu_tui.tui.views.phase.viewport import MIN_SPAN
+from pendu_tui.tui.views.phase import DOTS, AreaTable, PhasePane
+from pendu_tui.tui.views.viewport import MIN_SPAN
 from tests.tui.harness import lab, until
 
 DRIFT = SCENES["drift"]

@@ -14,7 +14,7 @@ from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
-from pendu_tui.tui.views.lab.time_chart import TimeChart, modified_energy_of, title
+from pendu_tui.tui.views.lab import TimeChart, modified_energy_of, title
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_history import run
 

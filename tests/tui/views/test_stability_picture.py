@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.stability.grid import Grid
 from pendu_tui.engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
-from pendu_tui.tui.drawing.palette import PALETTES
-from pendu_tui.tui.drawing.picture import Picture
-from pendu_tui.tui.views.stability import picture as drawing
+from pendu_tui.tui.drawing.picture import PALETTES, Picture
+from pendu_tui.tui.views import stability as drawing
 
 STEPS = 1000
 GRID = Grid((np.arange(12) + 0.5) * math.pi / 12, (np.arange(30) + 0.5) / 10, STEPS)

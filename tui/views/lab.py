@@ -1,20 +1,67 @@
-"""TimeChart: a quantity of all methods over time."""
+"""The lab (F2): the stage, charts of errors, phase space, the events, and the table."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from textual import events
+from textual.app import ComposeResult
+from textual.geometry import NULL_OFFSET, NULL_SPACING, Region, Size
+from textual.layout import ArrangeResult, Layout, WidgetPlacement
+from textual.widget import Widget
 
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.models.model import ExactMotion, Model
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture, ink_of
 from pendu_tui.tui.playback.shown import Quantity, Shown, Stretch
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.views.view import Memo, Pane, Zoomed
+from pendu_tui.tui.views.error_table import ErrorTable
+from pendu_tui.tui.views.phase import PhasePane
+from pendu_tui.tui.views.stage import Stage
+from pendu_tui.tui.views.view import Box, Memo, Pane, View, Zoomed
 from pendu_tui.tui.words.insight import short_name
 from pendu_tui.tui.words.numbers import about, seconds
+from pendu_tui.tui.words.plain_text import EventLine, event_lines, numbered
+
+
+class EventList(Pane):
+    def __init__(self) -> None:
+        super().__init__()
+        self.border_title = "Events (E)"
+        self._listed: list[EventLine] = []
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        lines = event_lines(source, self.shown.hidden)
+        texts = numbered(lines)[-self.room.height :]
+        self._listed = lines[-self.room.height :]
+        pairs = zip(self._listed, texts, strict=True)
+        return Picture([[(self._fitted(text, line), self._ink(line))] for line, text in pairs])
+
+    def _ink(self, line: EventLine) -> int:
+        if line.method is not None:
+            return ink_of(line.method, self.cast)
+        return {"mark": TEXT}.get(line.kind, QUIET)
+
+    def _fitted(self, text: str, line: EventLine) -> str:
+        """Shorten a text to fit: letters for the methods' names, then … at the end."""
+        width = self.room.width
+        if line.method and len(text) > width:
+            for method in self.cast:
+                text = text.replace(short_name(method), method.letter)
+        if len(text) > width:
+            text = f"{text[: width - 1]}…"
+        return text
+
+    async def on_click(self, event: events.Click) -> None:
+        offset = event.get_content_offset(self)
+        if offset is not None and offset.y < len(self._listed):
+            line = self._listed[offset.y]
+            await self.run_action(f"screen.go_to({line.run}, {line.step})")
+        else:
+            await self.run_action("screen.events")
+
 
 if TYPE_CHECKING:
     from pendu_tui.tui.drawing.time_chart import Reading, TimePlot
@@ -164,3 +211,84 @@ class TimeChart(Pane):
         elif factor >= 1 or len(history.between(*ends).x) >= 8:
             run = self.source.sample.run
             self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
+
+
+SMALL = (22, 38)  # columns of the stage and of the chart on the smallest screen
+
+
+def places(columns: int, rows: int) -> dict[str, Region]:
+    """Return the regions of the panes: the stage and events left, charts and phase space right."""
+    side = min(max(columns * 3 // 8, SMALL[0]), columns)
+    events = 0
+    if rows >= 20:  # room for phase space below the chart, too
+        events = max(5, -(-rows // 5))
+        side = min(side, 2 * (rows - events) + 2)  # a cell is twice as high as wide
+        events = rows - min(rows - events, side // 2 + 2)
+    regions = {"stage": Region(0, 0, side, rows - events)}
+    if events:
+        regions["events"] = Region(0, rows - events, side, events)
+    stack = ["chart"]
+    if rows >= 45:
+        stack.append("second_chart")
+    if events:
+        stack.append("phase")
+    if side == columns:
+        return regions
+    edges = [rows * part // len(stack) for part in range(len(stack) + 1)]
+    for name, (top, low) in zip(stack, pairwise(edges), strict=True):
+        regions[name] = Region(side, top, columns - side, low - top)
+    return regions
+
+
+class CellLayout(Layout):
+    """A layout computed by a function of the size; it hides widgets without a region."""
+
+    name = "cells"
+
+    def __init__(self, regions: Callable[[Size], dict[Widget, Region]]) -> None:
+        self._regions = regions
+
+    def arrange(
+        self, parent: Widget, children: list[Widget], size: Size, greedy: bool = True
+    ) -> ArrangeResult:
+        return [
+            WidgetPlacement(region, NULL_OFFSET, NULL_SPACING, widget)
+            for widget, region in self._regions(size).items()
+            if region and widget in children
+        ]
+
+
+class Arranged(Box):
+    def __init__(self, layout: CellLayout, *panes: Widget) -> None:
+        super().__init__(*panes)
+        self._layout = layout
+
+    @property
+    def layout(self) -> CellLayout:
+        return self._layout
+
+
+class LabView(View):
+    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
+        super().__init__(source, shown, id)
+        self._named: dict[str, Pane] = {
+            "stage": Stage(),
+            "phase": PhasePane(),
+            "events": EventList(),
+            "chart": TimeChart(),
+            "second_chart": TimeChart(ahead=1),
+        }
+
+    def compose(self) -> ComposeResult:
+        panes = map(self.with_source, self._named.values())
+        yield Arranged(CellLayout(self._regions), *panes)
+        yield self.with_source(ErrorTable())
+
+    def zoom(self, factor: float) -> None:
+        charts = list(self.query(TimeChart))
+        next((each for each in charts if each.pointer is not None), charts[0]).zoom(factor)
+
+    def _regions(self, size: Size) -> dict[Widget, Region]:
+        regions = places(size.width, size.height)
+        self._named["phase"].can_focus = "phase" in regions  # Tab skips hidden panes
+        return {self._named[name]: region for name, region in regions.items()}

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pendu_tui.tui.drawing.axes import (
+from pendu_tui.tui.drawing.frame import (
     linear_axis,
     log_axis,
     log_time_axis,

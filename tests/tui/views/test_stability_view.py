@@ -10,7 +10,7 @@ from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.stability.outcomes import UNKNOWN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.stability.pane import StabilityPane
+from pendu_tui.tui.views.stability import StabilityPane
 from tests.tui.harness import until, view_of
 
 VERLET = 2  # in USUAL_CAST
@@ -18,7 +18,7 @@ VERLET = 2  # in USUAL_CAST
 
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pendu_tui.tui.views.stability.pane.PASSES", (20, 60))
+    monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (20, 60))
 
 
 @asynccontextmanager

@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.phase.viewport import MIN_SPAN, Viewport, rounded
+from pendu_tui.tui.views.viewport import MIN_SPAN, Viewport, rounded
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))

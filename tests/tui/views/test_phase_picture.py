@@ -7,15 +7,15 @@ import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.palette import EXACT, FAINT
-from pendu_tui.tui.views.phase.portrait import (
+from pendu_tui.tui.drawing.picture import EXACT, FAINT
+from pendu_tui.tui.views.portrait import (
     SPARSE,
     PhasePoint,
     Portrait,
     phase_ground,
     phase_picture,
 )
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import cells, places
 
 DRIFT = SCENES["drift"]

@@ -9,7 +9,7 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.stability import outcomes as fates
 from pendu_tui.engine.stability.grid import Grid
 from pendu_tui.tui.screens.lines import limit_warning
-from pendu_tui.tui.views.stability.pane import note, verdict
+from pendu_tui.tui.views.stability import note, verdict
 
 VERLET, RK4 = USUAL_CAST[2:]
 GRID = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]), 300, (RK4,))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.geometry import Region
 
-from pendu_tui.tui.views.lab.view import SMALL, places
+from pendu_tui.tui.views.lab import SMALL, places
 
 
 @given(st.integers(1, 400), st.integers(1, 150))

@@ -11,8 +11,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.accuracy.chart import MARKS, accuracy_series
-from pendu_tui.tui.views.accuracy.pane import AccuracyPane
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -22,7 +21,7 @@ VERLET = 2
 
 @pytest.fixture(autouse=True)
 def _few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pendu_tui.tui.views.accuracy.pane.usual", lambda scene, all: (5.0, RUNGS))
+    monkeypatch.setattr("pendu_tui.tui.views.accuracy.usual", lambda scene, all: (5.0, RUNGS))
 
 
 def words(pane: AccuracyPane) -> str:

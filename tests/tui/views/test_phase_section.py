@@ -9,9 +9,10 @@ from pendu_tui.engine.methods import USUAL_CAST, VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
 from pendu_tui.engine.phase_space.section import iterate, orbit, pieces
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.drawing.palette import FRAME, faint
-from pendu_tui.tui.views.phase.view import Section, SectionPane, starts
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.drawing.picture import FRAME, faint
+from pendu_tui.tui.views.phase import SectionPane
+from pendu_tui.tui.views.portrait import Section, starts
+from pendu_tui.tui.views.viewport import Viewport
 from tests.tui import drawn
 from tests.tui.drawn import places
 from tests.tui.harness import lab, until
@@ -73,7 +74,7 @@ def test_it_fits_every_size_and_method(method, size):
 
 @pytest.fixture(autouse=True)
 def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pendu_tui.tui.views.phase.view.STARTS", 40)
+    monkeypatch.setattr("pendu_tui.tui.views.phase.STARTS", 40)
 
 
 async def section_of(theatre, *keys: str) -> SectionPane:

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.drawing.axes import in_pi, number_ticks, theta_ticks
-from pendu_tui.tui.views.phase.portrait import Portrait
-from pendu_tui.tui.views.phase.viewport import Viewport
+from pendu_tui.tui.drawing.frame import in_pi, number_ticks, theta_ticks
+from pendu_tui.tui.views.portrait import Portrait
+from pendu_tui.tui.views.viewport import Viewport
 
 DRIFT = SCENES["drift"]
 MODEL = DRIFT.equations

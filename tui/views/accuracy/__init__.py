@@ -1,1 +1,0 @@
-"""Error over cost (F4)."""

@@ -1,1 +1,0 @@
-"""The lab (F2): everything at a glance."""

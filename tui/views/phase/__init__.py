@@ -1,1 +1,0 @@
-"""Phase space (F3, and a pane of the lab): theta across, omega up."""

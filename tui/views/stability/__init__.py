@@ -1,1 +1,0 @@
-"""Where each method becomes unstable (F5)."""
