@@ -55,7 +55,7 @@ def test_the_first_paint_of_the_lab_does_not_wait_for_numpy_and_the_recorder():
 def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
     room = pendu_tui.tui.commands
     names = {module.name for module in pkgutil.iter_modules(room.__path__) if not module.ispkg}
-    assert names - {"options", "figures"} == {*COMMANDS}
+    assert names - {"options", "report"} == {*COMMANDS}
     assert all(callable(import_module(f"{room.__name__}.{name}").run) for name in COMMANDS)
 
 

@@ -1,10 +1,9 @@
 """The command line, from the arguments to what is printed.
 
-`dispatch` finds the command in `commands` and runs it.  `options`, `scene`, `cast` and `workers`
-read options that several commands share,
-`scene_file` reads TOML, `checks` --fail-if, and `tables` what other programs write.  `report`
-prints, `files` writes whole files, `time_limit` interrupts a user's own methods, and `errors` turns
-errors into a sentence and an exit code.
+`dispatch` finds the command in `commands` and runs it.  `scene`, `cast` and `workers` read options
+that several commands share, `checks` reads --fail-if, `options` the values of options, and `tables`
+what other programs write.  `files` writes whole files, `time_limit` interrupts a user's own
+methods, and `errors` turns errors into a sentence and an exit code.
 """
 
 from pendu_tui.tui.cli.dispatch import main

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, named
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import Suggestions, add_file
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -20,29 +19,6 @@ if TYPE_CHECKING:
     from pendu_tui.engine.methods.own import OwnMethod
 
 MAX_SECONDS = 10.0  # to measure a method; 0.2 s is typical
-KEYS = [method.key for method in METHODS]
-
-
-def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
-    """Add the options that choose methods, for `cast_of`.
-
-    `default` describes the cast without --methods in the help.
-    """
-    parser.add_argument(
-        "--methods",
-        metavar="KEY,KEY",
-        choices=Suggestions(KEYS),
-        help=f"these methods, in this order (default: {default}); the start of a name is enough",
-    )
-    add_file(
-        parser,
-        "--method",
-        metavar="FILE.py:FUNCTION[,letter=m]",
-        action="append",
-        default=[],
-        help="add your own method: a generator function (force, phase, h), see "
-        ".github/docs/methods.md; the file runs with your rights (repeatable)",
-    )
 
 
 def cast_of(

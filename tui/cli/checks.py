@@ -27,9 +27,8 @@ from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.limit import advice, outcome
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
 from pendu_tui.tui.cli.cast import find
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.options import did_you_mean
-from pendu_tui.tui.cli.report import warn
 
 _OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
 FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)

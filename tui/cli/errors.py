@@ -1,11 +1,14 @@
-"""Errors: one sentence for the user, and an exit code; and how sentences are printed."""
+"""Errors: one sentence for the user, and an exit code; how sentences and progress are printed."""
 
 import errno
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
-from typing import TextIO
+from time import monotonic
+from typing import Any, TextIO
 
 from pendu_tui.recordings.files import printable
 
@@ -111,3 +114,34 @@ def say(text: str, stream: TextIO | None = None) -> None:
         fill = partial(textwrap.fill, break_long_words=False, break_on_hyphens=False)
         lines = [fill(line, columns) for line in lines]
     print("\n".join(lines), file=out)
+
+
+@contextmanager
+def progress(what: str) -> Iterator[Callable[[float, float], None]]:
+    """Yield a function to call with the work done and the whole work.
+
+    On a terminal it shows a bar and the time left, after a second.
+    """
+    began = monotonic()
+    bar: Any = None
+
+    def show(done: float, total: float) -> None:
+        nonlocal bar
+        is_long = monotonic() > began + 1 and 0 < done < total
+        if bar is None and is_long and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.markup import escape
+            from rich.progress import Progress
+
+            columns = Progress.get_default_columns()
+            bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
+            bar.add_task(escape(printable(what)))
+            bar.start()
+        if bar is not None:
+            bar.update(0, completed=done, total=total)
+
+    try:
+        yield show
+    finally:
+        if bar is not None:
+            bar.stop()

@@ -16,6 +16,8 @@ from typing import TextIO
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.errors import Exit, UserError
 
+FIGURES = (".svg", ".pdf", ".png")  # the suffixes of figures
+
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:

@@ -1,40 +1,36 @@
-"""The options that describe a scene: its name, its numbers and its cast."""
+"""Scenes as the user describes them: by options, or in a file of TOML.
+
+The fields of a file are those that `scenes --json` prints, and what differs in the shot.  Scenes
+under [[scene]] are the pages of a lesson; the tour is one.
+"""
 
 import argparse
+import json
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields, replace
+from functools import cache
 from itertools import product
 from pathlib import Path
+from typing import Any, get_type_hints
 
-from pendu_tui.engine.models import NUMBERS
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from pendu_tui.tui.cli.cast import add_cast_options, cast_of
-from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.options import LIST, Suggestions, did_you_mean, values
-
-
-def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
-    """Add the options of a scene, for `scene_of`; with `lists`, for `scenes_of`."""
-    more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
-    group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
-    names = Suggestions(SCENES)
-    group.add_argument(
-        "scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene"
-    )
-    group.add_argument(
-        "--scene",
-        dest="scene_option",
-        metavar="NAME|FILE.toml",
-        choices=names,
-        help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes "
-        "--json",
-    )
-    for each in NUMBERS.values():
-        option = f"--{each.name.replace('_', '-')}"
-        read = values(each.read) if lists else each.read
-        group.add_argument(option, metavar=each.metavar, type=read, help=each.about)
-    add_cast_options(group)
+from pendu_tui.engine import scenes
+from pendu_tui.engine.methods import METHODS, Cast, Method
+from pendu_tui.engine.models import MODELS, NUMBERS
+from pendu_tui.engine.scenes import (
+    DEFAULT_SCENE,
+    MAX_METHODS,
+    SCENES,
+    Line,
+    Scene,
+    SceneError,
+    Shot,
+)
+from pendu_tui.recordings.files import printable
+from pendu_tui.tui.cli.cast import cast_of, find, own_method_at
+from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import did_you_mean, number, seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +91,6 @@ def scene_of(
 def scene_named(name: str, lesson: bool = False) -> Scene:
     """Return a listed scene or that of a file, of a `lesson` the first.  Raises UserError."""
     if name.endswith(".toml"):
-        from pendu_tui.tui.cli.scene_file import read_scenes
-
         first, *others = read_scenes(Path(name)).values()
         if others and not lesson:
             raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")
@@ -113,3 +107,268 @@ def general_scene_of(options: argparse.Namespace) -> Scene:
     if why := scene.why_not_mapped:
         raise UserError(why)
     return scene
+
+
+TOUR = Path(scenes.__file__).with_name("tour.toml")
+MAX_ANSWERS = 4
+MAX_TEXT = 400  # characters of a sentence
+
+_READERS = {name: each.read for name, each in NUMBERS.items()}
+_READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
+_SCENE = {
+    "name": str,
+    "from": str,
+    "watch": str,
+    "model": str,
+    "speed": float,
+    "methods": list[str],
+    "shot": dict[str, Any],
+    **dict.fromkeys(NUMBERS, float),
+}
+_SHOT = get_type_hints(Shot)
+_VALUES = {name: each.default for name, each in NUMBERS.items()}
+_VALUES |= {name: value for each in SCENES.values() for name, value in each.parameters.items()}
+_EXAMPLES = {
+    "name": '"swing"',
+    "from": '"near-separatrix"',
+    "watch": '"Verlet keeps its energy."',
+    "model": '"damped"',
+    "speed": "4",
+    "methods": '["velocity_verlet", "mine.py:step"]',
+    "shot": '{view = "phase"}',
+    "view": '"phase"',
+    "quantity": '"theta_error"',
+    "log": "false",
+    "seconds": "20",
+    "line": '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
+    "front": '["rk4"]',
+    "ring": "true",
+    "under": "0.05",
+    "moment": "12.5",
+    "sentence": '"Here they part."',
+    "question": '"Which one comes back?"',
+    "answers": '["Verlet.", "RK4."]',
+    "right": "1",
+    "truth": '"Its step is symmetric."',
+    "equal_cost": "true",
+    "returns": "true",
+    **{name: f"{value:g}" for name, value in _VALUES.items()},
+    "theta": '"57deg"',
+}
+
+
+class _FieldError(Exception):
+    """An error in a field of a file; `names` are the path to it."""
+
+    def __init__(self, why: object, *names: str) -> None:
+        super().__init__(why)
+        self.names = names
+
+    def line(self, text: str, start: int) -> str:
+        """Return `, line N` of the field in the text from `start` on."""
+        for name in self.names:
+            pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
+            found = pattern.search(text, start)
+            if found:
+                start = found.end()
+        return f", line {text[:start].count(chr(10)) + 1}" if self.names else ""
+
+
+@cache
+def read_scenes(path: Path) -> dict[str, Scene]:
+    """Return the scenes of a file by name: the whole file, or its [[scene]] tables.
+
+    Fields before the tables belong to all.  Raises UserError with line and field.
+    """
+    text, given = _read(path)
+    if not given:
+        why = f"{path} describes no scene; give fields of scenes --json."
+        raise UserError(why, Exit.INPUT_UNREADABLE)
+    tables = given.pop("scene", [{}])
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        raise UserError(f"{path}: begin each with [[scene]].", Exit.INPUT_UNREADABLE)
+    heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
+    heads += [0] * len(tables)
+    found: dict[str, Scene] = {}
+    for nth, table in enumerate(tables, 1):
+        name = f"{path.stem}-{nth}" if len(tables) > 1 else path.stem
+        try:
+            scene = _scene({**given, **table}, path.parent)
+            if scene.name == "custom":
+                scene = replace(scene, name=name)
+            if scene.name in found:
+                raise _FieldError(f"there are two scenes named {scene.name}.", "name")
+        except _FieldError as error:
+            where = error.line(text, heads[nth - 1])
+            raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+        found[scene.name] = scene
+    return found
+
+
+def _read(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the text of a TOML file and its values."""
+    import tomllib  # takes 6 ms, of 450 to the first pendulum
+
+    most = 100_000  # bytes
+    try:
+        with path.open("rb") as file:
+            raw = file.read(most + 1)
+        text = raw[:most].decode("utf-8-sig")
+        if len(raw) > most:
+            raise ValueError(f"it is longer than {most} bytes")
+        return text, tomllib.loads(text)
+    except OSError as error:
+        why = f"cannot read {path}: {error.strerror}."
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # such as binary data, or an integer of 5,000 digits
+        why = f"{path} is not TOML: {printable(str(error), 200)}."
+    raise UserError(why, Exit.INPUT_UNREADABLE)
+
+
+def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
+    """Return the scene of a table; the user's own methods are in the folder."""
+    found = _values(given, _SCENE)
+    base = Scene()
+    if listed := found.pop("from", ""):
+        base = _known(SCENES, listed, "from")
+    model = found.get("model", base.model)
+    if model not in MODELS:
+        raise _FieldError(f"there is no model {model!r}; choose from {', '.join(MODELS)}.", "model")
+    if "methods" in found:
+        found["cast"] = _methods(found.pop("methods"), folder)
+    elif model != base.model:
+        found["cast"] = _cast_for(model)
+    texts: dict[str, Any] = {
+        name: found.pop(name) for name in ("name", "watch", "speed") if name in found
+    }
+    shot = found.pop("shot", None)
+    try:
+        scene = base.altered(**found)
+        if shot is not None:
+            texts["shot"] = _shot(shot, scene)
+        return replace(scene, **{"name": scene.name, **texts})
+    except SceneError as error:
+        named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
+        raise _FieldError(error, *named[:1]) from None
+
+
+def _known(listed: Mapping[str, Any], name: str, field: str) -> Any:
+    if name not in listed:
+        hint = did_you_mean(name, listed) or "; pendu-tui scenes lists them."
+        raise _FieldError(f"{field}: there is no {name!r}{hint}", field)
+    return listed[name]
+
+
+def _cast_for(model: str) -> Cast:
+    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
+    suited = tuple(method for method in METHODS if model in method.models)
+    return next(casts, suited[:MAX_METHODS])
+
+
+def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
+    shot = Shot(**_values(given, _SHOT, "shot"))
+    charted = [each.name for each in scene.equations.charted()]
+    keys = [method.key for method in scene.cast]
+    for name, words, known in (
+        ("view", [shot.view], ["lab", "phase", "stability", "accuracy"]),
+        ("quantity", [shot.quantity], charted),
+        ("front", shot.front, keys),
+    ):
+        if unknown := [word for word in words if word not in known]:
+            why = f"a shot has no {unknown[0]!r}; choose from {', '.join(known)}."
+            raise _FieldError(why, "shot", name)
+    if shot.moment is None and (shot.question or shot.returns):
+        why = f"it needs a moment; use for example moment = {_EXAMPLES['moment']}."
+        raise _FieldError(why, "shot", "question" if shot.question else "returns")
+    count = len(shot.answers)
+    if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
+        raise _FieldError(
+            f"a question has two to {MAX_ANSWERS} answers, and the number of the right one; use "
+            f"for example answers = {_EXAMPLES['answers']} and right = {_EXAMPLES['right']}.",
+            "shot",
+            "question",
+        )
+    return shot
+
+
+def _values(given: Mapping[str, Any], types: Mapping[str, Any], *above: str) -> dict[str, Any]:
+    """Return the values of a table's fields; `above` is the table's name, if any."""
+    import msgspec
+
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        if name not in types:
+            advice = did_you_mean(name, types) or f"; choose from {', '.join(types)}."
+            owner = above[0] if above else "scene"
+            raise _FieldError(f"a {owner} has no field {printable(name, 40)}{advice}", *above, name)
+        try:
+            if name in _READERS:
+                value = _READERS[name](str(value))
+            found[name] = _printable(msgspec.convert(value, types[name]))
+        except (ValueError, msgspec.ValidationError) as error:
+            why = str(error).partition(";")[0]
+            like = f"{name} = {_EXAMPLES[name]}"
+            raise _FieldError(f"{name}: {why}; use for example {like}.", *above, name) from None
+    return found
+
+
+def _printable(value: Any) -> Any:
+    if isinstance(value, str):
+        return printable(value, MAX_TEXT)
+    if isinstance(value, (tuple, list)):
+        return type(value)(map(_printable, value))
+    if isinstance(value, Line):
+        return replace(value, name=printable(value.name, 40))
+    return value
+
+
+def _methods(keys: Sequence[str], folder: Path) -> Cast:
+    """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
+    if not keys:
+        raise _FieldError(f"methods: use for example {_EXAMPLES['methods']}.", "methods")
+    cast: list[Method] = []
+    for key in keys:
+        try:
+            if ".py:" in key:
+                found: Method = own_method_at(f"{folder / key}", cast)
+            else:
+                found = find(key, METHODS, "methods")
+        except UserError as error:
+            raise _FieldError(error, "methods") from None
+        if found in cast:
+            raise _FieldError(f"methods: {key} is given twice.", "methods")
+        cast.append(found)
+    return tuple(cast)
+
+
+def scene_text(scene: Scene) -> str:
+    """Return a scene as TOML, which `read_scenes` reads to the last bit."""
+    default = Shot()
+    shot = {each.name: getattr(scene.shot, each.name) for each in fields(Shot)}
+    shot = {name: value for name, value in shot.items() if value != getattr(default, name)}
+    methods = list(map(_method_text, scene.cast))
+    lines = _lines({**scene.fields(), "methods": methods, "speed": scene.speed})
+    if shot:
+        lines += ["", "[shot]", *_lines(shot)]
+    return "\n".join([*lines, ""])
+
+
+def _method_text(method: Method) -> str:
+    """Return a method's key, or FILE.py:KEY of a user's own."""
+    file = getattr(method, "file", "")
+    return f"{Path(file).absolute()}:{method.key}" if file else method.key
+
+
+def _lines(table: Mapping[str, Any]) -> list[str]:
+    return [f"{name} = {_toml(name, value)}" for name, value in table.items()]
+
+
+def _toml(name: str, value: Any) -> str:
+    """Return a value as TOML, which is JSON but for tables."""
+    if isinstance(value, Line):
+        return f"{{{', '.join(_lines(asdict(value)))}}}"
+    if name == "theta" and abs(value) > math.tau:
+        return f'"{value!r}rad"'  # without a unit it is refused: it may be meant in degrees
+    return json.dumps(value, ensure_ascii=False)

@@ -29,23 +29,22 @@ from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run import compiled, loops
 from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.scenes import Scene, check_h
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
 from pendu_tui.tui.cli.files import keep_older
-from pendu_tui.tui.cli.report import (
+from pendu_tui.tui.cli.scene import general_scene_of
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.report import (
     Column,
     Report,
     Table,
     check_output,
     console,
+    draw,
     fields_of,
     method_column,
-    progress,
     publish,
     scene_line,
-    warn,
 )
-from pendu_tui.tui.cli.scene import general_scene_of
-from pendu_tui.tui.cli.workers import workers_of
 from pendu_tui.tui.drawing.picture import PALETTES, lines_of
 from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
@@ -78,13 +77,12 @@ def run(options: argparse.Namespace) -> int:
         interrupted = True
         keep_older(options.output)
     if is_figure:
-        from pendu_tui.tui.commands import figures
-
         kind = options.error
         cast = results.scene.cast
         series = accuracy_series(results.points, kind, options.cost, cast)
         axes = (COSTS[options.cost], ERROR_LABELS[kind].partition(",")[0])
-        figures.draw(options, cast, series, axes, log="xy")
+        lines = [(each.mark, each.x, each.y) for each in series]
+        draw(options, cast, lines, axes, log="xy")
     else:
         publish(report(results, interrupted), options)
     if interrupted:

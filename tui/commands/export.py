@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.errors import Exit, progress, warn
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.cli.report import progress, warn, write_csv
+from pendu_tui.tui.commands.report import write_csv
 from pendu_tui.tui.words.numbers import file_size
 
 if TYPE_CHECKING:

@@ -24,8 +24,8 @@ from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.options import did_you_mean
 from pendu_tui.tui.cli.reader import read_sheets, unreadable
-from pendu_tui.tui.cli.report import Report, fields_of, finite, form_of, publish
 from pendu_tui.tui.cli.tables import REASONS, Series, Wanted, find
+from pendu_tui.tui.commands.report import Report, fields_of, finite, form_of, publish
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:

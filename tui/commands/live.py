@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
 
 def lesson_of(file: Path) -> "Lesson | None":
     """Return the lesson in a scene file; None for a single scene without a question."""
-    from pendu_tui.tui.cli.scene_file import read_scenes
+    from pendu_tui.tui.cli.scene import read_scenes
     from pendu_tui.tui.playback.lesson import Lesson
 
     pages = [*read_scenes(file).values()]

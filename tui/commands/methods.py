@@ -14,7 +14,7 @@ from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.report import Column, Report, fields_of, finite, publish
+from pendu_tui.tui.commands.report import Column, Report, fields_of, finite, publish
 from pendu_tui.tui.words.cards import method_card
 
 CLAIMS = (

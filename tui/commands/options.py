@@ -6,19 +6,21 @@ methods, numbers, verdicts and fields.
 
 import argparse
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import CHAOTIC, VERDICTS
-from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.engine.stability import LOST
+from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
-from pendu_tui.tui.cli.cast import KEYS, add_cast_options
 from pendu_tui.tui.cli.checks import FIELDS, JUDGED, MEASURED_NUMBERS, MEASURED_WORDS
 from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.files import FIGURES
 from pendu_tui.tui.cli.options import (
     LIST,
     Suggestions,
@@ -36,11 +38,84 @@ from pendu_tui.tui.cli.options import (
     step_sizes,
     values,
 )
-from pendu_tui.tui.cli.report import FIGURES, add_report_options, file_type
-from pendu_tui.tui.cli.scene import add_scene_options
 from pendu_tui.tui.terminal.options import add_picture_options, add_terminal_options, cells
 
+KEYS = [method.key for method in METHODS]
+
 Add = Callable[[argparse.ArgumentParser], object]
+
+
+def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
+    """Add the options of a scene, for `scene_of`; with `lists`, for `scenes_of`."""
+    more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
+    group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
+    names = Suggestions(SCENES)
+    group.add_argument(
+        "scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene"
+    )
+    group.add_argument(
+        "--scene",
+        dest="scene_option",
+        metavar="NAME|FILE.toml",
+        choices=names,
+        help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes "
+        "--json",
+    )
+    for each in NUMBERS.values():
+        option = f"--{each.name.replace('_', '-')}"
+        read = values(each.read) if lists else each.read
+        group.add_argument(option, metavar=each.metavar, type=read, help=each.about)
+    add_cast_options(group)
+
+
+def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
+    """Add the options that choose methods, for `cast_of`.
+
+    `default` describes the cast without --methods in the help.
+    """
+    parser.add_argument(
+        "--methods",
+        metavar="KEY,KEY",
+        choices=Suggestions(KEYS),
+        help=f"these methods, in this order (default: {default}); the start of a name is enough",
+    )
+    add_file(
+        parser,
+        "--method",
+        metavar="FILE.py:FUNCTION[,letter=m]",
+        action="append",
+        default=[],
+        help="add your own method: a generator function (force, phase, h), see "
+        ".github/docs/methods.md; the file runs with your rights (repeatable)",
+    )
+
+
+def add_report_options(
+    parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()
+) -> None:
+    """Add --json, --csv for rows of numbers, and -o for files with these suffixes."""
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--json", action="store_true", help="one JSON object, SI units")
+    if csv:
+        forms.add_argument("--csv", action="store_true", help="a line of CSV for each row")
+    if files:
+        names = "|".join(files)
+        what = f"write FILE, in the form of its suffix: {', '.join(files)}"
+        add_file(forms, "-o", "--output", metavar=f"FILE{names}", type=file_type(files), help=what)
+        parser.add_argument("--force", action="store_true", help="overwrite FILE")
+
+
+def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
+    """Return a reader of paths with one of these suffixes; devices and pipes may have any."""
+
+    def read(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in suffixes and not is_stream(path):
+            named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
+            raise ValueError(f"{text!r} has another suffix; use {named}")
+        return path
+
+    return read
 
 
 def add_worker_options(parser: argparse.ArgumentParser) -> None:

@@ -5,17 +5,10 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.recordings.files import RecordingError
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError, progress
 from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.cli.report import (
-    Column,
-    Form,
-    Report,
-    Table,
-    fields_of,
-    progress,
-)
+from pendu_tui.tui.commands.report import Column, Form, Report, Table, fields_of
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
@@ -20,28 +22,28 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
-from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
-from pendu_tui.tui.cli.report import (
-    Column,
-    Report,
-    check_output,
-    fields_of,
-    method_column,
-    progress,
-    publish,
-    scene_line,
-    warn,
-)
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
 from pendu_tui.tui.cli.time_limit import watch
 from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.report import (
+    Column,
+    Report,
+    check_output,
+    draw,
+    fields_of,
+    method_column,
+    publish,
+    scene_line,
+)
 from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
 from pendu_tui.tui.words.numbers import counted, file_size, z_text
 
 MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # samples for a figure
+MAX_PARTS = 400  # of a figure, each drawn as its largest error
 
 Row = dict[str, Any]
 ALWAYS = [each.name for each in quantities.RECORDED if each.recorded == "always"]
@@ -91,9 +93,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
     if not is_whole:
         keep_older(options.output)
     if is_figure:
-        from pendu_tui.tui.commands import figures
-
-        figures.draw_run(options, scene, samples[1:] or samples)
+        _draw(options, scene, samples[1:] or samples)
     else:
         publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
     if not is_whole:
@@ -138,6 +138,21 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
                     options.record = recording.path
                 break
     return samples
+
+
+def _draw(options: Namespace, scene: Scene, samples: Sequence[Sample]) -> None:
+    """Draw the largest energy error of each half swing, or of longer parts of a long run."""
+    t = np.array([sample.t for sample in samples])
+    error = scene.equations.error.name
+    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
+    swing = scene.exact().period or math.tau / scene.w0
+    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
+    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
+    lines = [
+        (method.letter, t[first], np.fmax.reduceat(np.abs(row), first))
+        for method, row in zip(scene.cast, errors, strict=True)
+    ]
+    draw(options, scene.cast, lines, ("time / s", "largest |ΔE / E₀| of a half swing"), log="y")
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:

@@ -6,8 +6,8 @@ from typing import Any
 
 from pendu_tui.engine.scenes import GROUPS, SCENES
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.cli.report import Column, Report, publish
 from pendu_tui.tui.cli.scene import scene_named
+from pendu_tui.tui.commands.report import Column, Report, publish
 from pendu_tui.tui.words.cards import scene_card
 
 COLUMNS = (

@@ -5,8 +5,7 @@ import os
 from pathlib import Path
 
 from pendu_tui.tui.cli.cast import check_fits
-from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.report import warn
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.terminal.options import terminal_options_of
 

@@ -5,9 +5,8 @@ import os
 from pathlib import Path
 
 from pendu_tui.tui.cli.cast import check_fits
-from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.errors import Exit, say
 from pendu_tui.tui.cli.files import whole_file
-from pendu_tui.tui.cli.report import say
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.terminal.options import terminal_options_of
 

@@ -17,22 +17,21 @@ from pendu_tui.engine.stability.grid import Grid, Part
 from pendu_tui.engine.stability.linear import amplification
 from pendu_tui.engine.stability.outcomes import FATES, UNKNOWN, Cells
 from pendu_tui.engine.stability.study import Row, amplitude, ladder_of, map_of, table
-from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import keep_older
-from pendu_tui.tui.cli.report import (
+from pendu_tui.tui.cli.scene import general_scene_of
+from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.commands.report import (
     Column,
     Report,
     Table,
     check_output,
+    draw,
     finite,
     form_of,
     method_column,
-    progress,
     publish,
-    warn,
 )
-from pendu_tui.tui.cli.scene import general_scene_of
-from pendu_tui.tui.cli.workers import workers_of
 
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
 LINEAR = """\
@@ -58,11 +57,8 @@ def run(options: argparse.Namespace) -> int:
         if ended:  # the others may fail at a z not yet computed
             rows = [row for row in rows if row.failure]
         if is_figure:
-            from pendu_tui.tui.commands import figures
-
             axes = ("amplitude / °", "z = h ω₀ from which a swing is lost")
-            series = [figures.Series(0, *line) for line in _lines(scene, rows)]
-            figures.draw(options, scene.cast, series, axes, log="y")
+            draw(options, scene.cast, _lines(scene, rows), axes, log="y")
         else:
             publish(report(scene, options.steps, rows, is_whole=ended is None), options)
     if ended is None:

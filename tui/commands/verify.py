@@ -8,9 +8,9 @@ from typing import Any
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.cast import cast_of, own_methods
-from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.errors import Exit, progress, say, warn
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.cli.report import Report, progress, publish, say, warn
+from pendu_tui.tui.commands.report import Report, publish
 from pendu_tui.tui.words.numbers import counted
 
 

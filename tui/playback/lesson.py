@@ -148,6 +148,6 @@ class Lesson:
 
 def tour() -> Lesson:
     """Return the lesson that comes with the program."""
-    from pendu_tui.tui.cli.scene_file import TOUR, read_scenes
+    from pendu_tui.tui.cli.scene import TOUR, read_scenes
 
     return Lesson("Tour", read_scenes(TOUR).values())

@@ -610,7 +610,7 @@ class LabScreen(SizedScreen[None]):
 
     def action_save_scene(self) -> None:
         """Save what is on the screen as a scene file, which a lesson may begin with."""
-        from pendu_tui.tui.cli.scene_file import scene_text
+        from pendu_tui.tui.cli.scene import scene_text
 
         def save(folder: Any) -> Any:
             path = files.free_path(folder / "scene.toml")

@@ -19,9 +19,8 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
 from pendu_tui.recordings.system import environment
-from pendu_tui.tui.cli.errors import Exit, UserError, explained
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import stop_requests
-from pendu_tui.tui.cli.report import progress, warn
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live

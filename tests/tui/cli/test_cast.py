@@ -19,8 +19,8 @@ from pendu_tui.engine.methods import VELOCITY_VERLET as VERLET
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli import cast as cast_options
-from pendu_tui.tui.cli.options import Parser
-from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.cli.dispatch import parser_of
+from pendu_tui.tui.cli.scene import scene_of
 from tests.tui.command_line import IS_WINDOWS, PENDU, ROOT, pendu
 
 STEP = """
@@ -52,9 +52,7 @@ def mine(tmp_path, monkeypatch):
 
 
 def cast_from(*arguments: str) -> Cast:
-    parser = Parser(prog="pendu-tui test")
-    add_scene_options(parser)
-    return scene_of(parser.parse_args(arguments)).cast
+    return scene_of(parser_of("snapshot").parse_args(arguments)).cast
 
 
 @pytest.mark.parametrize(

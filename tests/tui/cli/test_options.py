@@ -6,15 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
+from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.options import Parser, angle, number, seconds, values
-from pendu_tui.tui.cli.scene import add_scene_options, scene_of
+from pendu_tui.tui.cli.options import angle, number, seconds, values
+from pendu_tui.tui.cli.scene import scene_of
 
 
 def scene_from(*arguments: str) -> Scene:
-    parser = Parser(prog="pendu-tui test")
-    add_scene_options(parser)
-    return scene_of(parser.parse_args(list(arguments)))
+    return scene_of(parser_of("snapshot").parse_args(list(arguments)))
 
 
 def test_options_override_the_scene_and_its_name_becomes_custom():

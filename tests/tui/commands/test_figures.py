@@ -39,6 +39,6 @@ def test_a_figure_has_a_line_for_each_method(tmp_path):
 
 
 def test_without_matplotlib_there_is_one_sentence_with_the_advice(tmp_path, monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.cli.report.find_spec", lambda name: None)
+    monkeypatch.setattr("pendu_tui.tui.commands.report.find_spec", lambda name: None)
     figure = ("-o", tmp_path / "run.pdf")
     assert pendu(*COMMANDS["run"], *figure).refused(2, ".pdf files", "[plot]")

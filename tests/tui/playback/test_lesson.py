@@ -9,7 +9,7 @@ import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Shot
-from pendu_tui.tui.cli.scene_file import read_scenes
+from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.words.plain_text import READING, tell

@@ -8,7 +8,7 @@ from textual.command import CommandList
 from textual.widgets import Input
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.cli.scene_file import read_scenes
+from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.screens.palette import LabCommands, entries
 from pendu_tui.tui.terminal.options import CHARACTER_SETS

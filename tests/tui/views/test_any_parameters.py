@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.cli.scene_file import scene_text
+from pendu_tui.tui.cli.scene import scene_text
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities

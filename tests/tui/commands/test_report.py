@@ -8,7 +8,8 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console
 
-from pendu_tui.tui.cli.report import Column, Report, Table, progress, warn
+from pendu_tui.tui.cli.errors import progress, warn
+from pendu_tui.tui.commands.report import Column, Report, Table
 
 ROWS = [
     {"method": "rk4", "error": 0.1 + 0.2, "why": "it loses a little energy at every step"},
@@ -73,7 +74,7 @@ class Terminal(io.StringIO):
 def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
     clock = itertools.count(0, seconds_per_call)
     monkeypatch.setattr("sys.stderr", stream)
-    monkeypatch.setattr("pendu_tui.tui.cli.report.monotonic", lambda: next(clock))
+    monkeypatch.setattr("pendu_tui.tui.cli.errors.monotonic", lambda: next(clock))
     with progress("working") as show:
         for done in range(5):
             show(done, 5)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from pendu_tui.engine.scenes import SCENES, Line, Shot
-from pendu_tui.tui.cli.scene_file import read_scenes, scene_text
+from pendu_tui.tui.cli.scene import read_scenes, scene_text
 from tests.tui.command_line import own_method, pendu
 
 

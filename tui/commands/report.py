@@ -1,33 +1,29 @@
-"""What commands print: reports on stdout, warnings and progress on stderr."""
+"""What commands print or write: reports as tables, JSON, CSV or figures."""
 
 import argparse
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from argparse import Namespace
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
-from itertools import chain
+from itertools import chain, cycle
 from pathlib import Path
-from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
-from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.files import is_stream, printable
-from pendu_tui.tui.cli.errors import MAX_CELL, UserError
-from pendu_tui.tui.cli.errors import say as say
-from pendu_tui.tui.cli.errors import warn as warn
-from pendu_tui.tui.cli.files import check_free, text_file
-from pendu_tui.tui.cli.options import add_file
+from pendu_tui.recordings.files import printable
+from pendu_tui.tui.cli.errors import MAX_CELL, UserError, say
+from pendu_tui.tui.cli.files import FIGURES, check_free, text_file, whole_file
+from pendu_tui.tui.drawing.picture import PALETTES, inks
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.table import Table as RichTable
 
 Form = Literal["table", "json", "csv"]
-FIGURES = (".svg", ".pdf", ".png")  # the suffixes of figures
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:
@@ -50,37 +46,6 @@ def console(piped_width: int | None = None) -> "Console":
 
     width = None if sys.stdout.isatty() else piped_width
     return Console(width=width, markup=False, emoji=False, highlight=False)
-
-
-@contextmanager
-def progress(what: str) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function to call with the work done and the whole work.
-
-    On a terminal it shows a bar and the time left, after a second.
-    """
-    began = monotonic()
-    bar: Any = None
-
-    def show(done: float, total: float) -> None:
-        nonlocal bar
-        is_long = monotonic() > began + 1 and 0 < done < total
-        if bar is None and is_long and sys.stderr.isatty():
-            from rich.console import Console
-            from rich.markup import escape
-            from rich.progress import Progress
-
-            columns = Progress.get_default_columns()
-            bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
-            bar.add_task(escape(printable(what)))
-            bar.start()
-        if bar is not None:
-            bar.update(0, completed=done, total=total)
-
-    try:
-        yield show
-    finally:
-        if bar is not None:
-            bar.stop()
 
 
 class Column(NamedTuple):
@@ -200,34 +165,6 @@ def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object
     writer.writerows(rows)
 
 
-def add_report_options(
-    parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()
-) -> None:
-    """Add --json, --csv for rows of numbers, and -o for files with these suffixes."""
-    forms = parser.add_mutually_exclusive_group()
-    forms.add_argument("--json", action="store_true", help="one JSON object, SI units")
-    if csv:
-        forms.add_argument("--csv", action="store_true", help="a line of CSV for each row")
-    if files:
-        names = "|".join(files)
-        what = f"write FILE, in the form of its suffix: {', '.join(files)}"
-        add_file(forms, "-o", "--output", metavar=f"FILE{names}", type=file_type(files), help=what)
-        parser.add_argument("--force", action="store_true", help="overwrite FILE")
-
-
-def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
-    """Return a reader of paths with one of these suffixes; devices and pipes may have any."""
-
-    def read(text: str) -> Path:
-        path = Path(text)
-        if path.suffix.lower() not in suffixes and not is_stream(path):
-            named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
-            raise ValueError(f"{text!r} has another suffix; use {named}")
-        return path
-
-    return read
-
-
 def form_of(options: argparse.Namespace) -> Form:
     """Return the form that the options or the suffix of the -o file ask for."""
     path: Path | None = getattr(options, "output", None)
@@ -260,3 +197,58 @@ def check_output(options: argparse.Namespace) -> bool:
     if is_figure and find_spec("matplotlib") is None:
         raise UserError(f"{path.suffix} files need an extra: pip install 'pendu-tui[plot]'.")
     return is_figure
+
+
+CM = 1 / 2.54  # inches
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
+STYLE = {
+    "font.size": 7,
+    "axes.titlesize": 7,
+    "figure.labelsize": 7,
+    "axes.linewidth": 0.5,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 2.5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 600,
+    "svg.fonttype": "path",  # outlines, which need no font
+    "svg.hashsalt": "pendu-tui",
+    "pdf.fonttype": 42,  # TrueType, which journals ask for
+}
+NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
+
+
+Line = tuple[str, Any, Any]
+"""The letter of a method or the name of a reference, and the numbers x and y."""
+
+
+def draw(
+    options: Namespace, cast: Cast, lines: Iterable[Line], labels: tuple[str, str], log: str
+) -> None:
+    """Draw the lines of a chart one column wide and write the -o file by Matplotlib.
+
+    `labels` are those of x and y, `log` names the logarithmic axes: "xy", "y" or "".  Methods
+    differ in colour and in line style; references are dotted.  The same input gives the same bytes.
+    """
+    from matplotlib import style  # an extra
+    from matplotlib.figure import Figure
+
+    colours = map(PALETTES["light"].colour, inks(cast))
+    looks = {
+        method.letter: {"color": colour, "linestyle": line, "label": method.label, "marker": "."}
+        for method, colour, line in zip(cast, colours, cycle(LINES))
+    }
+    suffix = options.output.suffix.lower()
+    with (
+        style.context(STYLE, after_reset=True),
+        whole_file(options.output, options.force) as part,
+    ):
+        figure = Figure((8.5 * CM, 6 * CM))  # a column of a journal
+        axes = figure.add_subplot(xlabel=labels[0], ylabel=labels[1])
+        axes.set(**{f"{axis}scale": "log" for axis in log})
+        for mark, x, y in lines:
+            reference = {"color": "grey", "linestyle": ":", "linewidth": 0.5}
+            axes.plot(x, y, **looks.get(mark, reference))
+        figure.legend(loc="outside upper center", ncols=2)
+        figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
