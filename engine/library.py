@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from pendu_tui.engine.accuracy.recommend import Attempt
-    from pendu_tui.engine.accuracy.study import ErrorKind
     from pendu_tui.engine.methods.measure import Measured
     from pendu_tui.engine.methods.method import Phases
     from pendu_tui.engine.run.order import Order
+    from pendu_tui.engine.studies.accuracy import ErrorKind
+    from pendu_tui.engine.studies.recommend import Attempt
 
     Floats = NDArray[np.float64]
 
@@ -121,8 +121,8 @@ def simulate(
     """
     import numpy as np
 
-    from pendu_tui.engine.run.compiled import TieredLoops
     from pendu_tui.engine.run.lockstep import Lockstep
+    from pendu_tui.engine.run.loops import TieredLoops
 
     chosen = _scene(scene, methods, numbers)
     stops = _stops(chosen, _number("time", time), every)
@@ -291,9 +291,9 @@ def limits(
 
     Steps h are tried on a ladder with a rung every 1 %, with so many `steps` each: `pendu-tui
     stability --steps 1000` finds the same limits; more steps find lower ones.  Its help, which is
-    engine.stability.LOST, says when a swing is lost.  `numbers` are those of `simulate`.
+    engine.studies.LOST, says when a swing is lost.  `numbers` are those of `simulate`.
     """
-    from pendu_tui.engine.stability.study import amplitude, ladder_of, table
+    from pendu_tui.engine.studies.stability import amplitude, ladder_of, table
 
     chosen = _general(scene, methods, numbers)
     theta = amplitude(chosen)
@@ -328,9 +328,9 @@ def recommend(
     cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
     end).  Raises ValueError if no method reaches the target.
     """
-    from pendu_tui.engine.accuracy.recommend import least_cost
-    from pendu_tui.engine.accuracy.study import Study, usual
-    from pendu_tui.engine.run.compiled import TieredLoops
+    from pendu_tui.engine.run.loops import TieredLoops
+    from pendu_tui.engine.studies.accuracy import Study, usual
+    from pendu_tui.engine.studies.recommend import least_cost
 
     chosen = _general(scene, methods, numbers)
     if chosen.theta == chosen.omega == 0:

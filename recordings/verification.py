@@ -14,8 +14,8 @@ from typing import Any
 
 from pendu_tui.engine.quantities import EXTREMES
 from pendu_tui.engine.run import NUMERICS
-from pendu_tui.engine.run.compiled import TieredLoops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.loops import TieredLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.recordings.files import RecordingError, named

@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, Method
-from pendu_tui.engine.models.numbers import COMMON
+from pendu_tui.engine.models.model import COMMON
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.scenes import Scene

@@ -2,8 +2,9 @@
 
 A method is a generator function (force, phase, h) -> phases, written as in the book, with only
 + - * / on the phase and never `+=`, which would change arrays in place.  So it runs unchanged on
-floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The methods of `precision`,
-`adaptive`, `damped`, `stiff` and `learned` are made for one scene each.
+floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families
+"friction", "step doubling", "precision", "fast and slow parts" and "learned" are made for one scene
+each.
 """
 
 import copyreg
@@ -13,38 +14,26 @@ from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from itertools import groupby
 
-from pendu_tui.engine.methods import (
-    adaptive,
-    damped,
-    euler,
-    implicit,
-    learned,
-    precision,
-    runge_kutta,
-    splitting,
-    stiff,
-    verlet,
-)
-from pendu_tui.engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
+from pendu_tui.engine.methods import implicit, learned, parts, runge_kutta, splitting, verlet
 from pendu_tui.engine.methods.method import Method as Method
-from pendu_tui.engine.methods.runge_kutta import RK4
-from pendu_tui.engine.methods.taylor import TAYLOR_20 as TAYLOR_20
-from pendu_tui.engine.methods.taylor import WHY_NOT
-from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
+from pendu_tui.engine.methods.parts import TAYLOR_20 as TAYLOR_20
+from pendu_tui.engine.methods.parts import WHY_NOT
+from pendu_tui.engine.methods.runge_kutta import EXPLICIT_EULER, RK4
+from pendu_tui.engine.methods.verlet import SYMPLECTIC_EULER, VELOCITY_VERLET
 
 Cast = tuple[Method, ...]
 """The methods of a run, in order."""
 
 FAMILIES: dict[str, Cast] = {
-    "Euler": euler.FAMILY,
+    "Euler": (EXPLICIT_EULER, SYMPLECTIC_EULER),
     "Verlet": verlet.FAMILY,
     "Runge-Kutta": runge_kutta.FAMILY,
     "splitting": splitting.FAMILY,
     "implicit": implicit.FAMILY,
-    "friction": damped.FAMILY,
-    "step doubling": adaptive.FAMILY,
-    "precision": precision.FAMILY,
-    "fast and slow parts": stiff.FAMILY,
+    "friction": parts.FRICTION,
+    "step doubling": verlet.STEP_DOUBLING,
+    "precision": verlet.PRECISION,
+    "fast and slow parts": parts.FAST_AND_SLOW,
     "learned": learned.FAMILY,
 }
 

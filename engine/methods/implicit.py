@@ -9,9 +9,14 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
 
-from pendu_tui.engine.methods.method import COMPILABLE, HAIRER, Method, Phases
+from pendu_tui.engine.methods.method import (
+    COMPILABLE,
+    HAIRER,
+    Method,
+    Phases,
+    implicit_midpoint_modified_energy,
+)
 from pendu_tui.engine.models.model import Force, Phase
-from pendu_tui.engine.models.modified_energy import implicit_midpoint_modified_energy
 from pendu_tui.engine.models.spring import SpringParts
 
 TOLERANCE = 1e-12  # rad, and relative, of the last correction: the next would be far smaller

@@ -1,12 +1,37 @@
-"""Explicit Runge-Kutta methods."""
+"""Explicit Runge-Kutta methods, of which explicit Euler is the first."""
 
 import math
 from collections.abc import Iterator
 
-from pendu_tui.engine.methods.euler import euler_step
 from pendu_tui.engine.methods.method import HAIRER, Method
 from pendu_tui.engine.models import FIRST_ORDER
 from pendu_tui.engine.models.model import Force, Phase, Rates
+
+
+def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Explicit (forward) Euler: both updates from the old state.
+
+    The step's determinant is 1 + h² w0² cos theta.
+    """
+    theta, omega = phase
+    while True:
+        theta, omega = theta + h * omega, omega + h * force(theta)
+        yield theta, omega
+
+
+def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
+    """Explicit Euler on a first-order system.
+
+    With friction, small swings gain energy from h = gamma/w0² on.
+    """
+    while True:
+        phase = euler_step(phase, h, rates(phase))
+        yield phase
+
+
+def euler_step(phase: Phase, h: float, rates: Phase) -> Phase:
+    """Return the phase after a step of h [s] at these rates."""
+    return tuple(value + h * rate for value, rate in zip(phase, rates, strict=True))
 
 
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -65,6 +90,24 @@ def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
         phase = euler_step(phase, h / 6, tuple(a + 2 * b + 2 * c + d for a, b, c, d in slopes))
         yield phase
 
+
+EXPLICIT_EULER = Method(
+    key="explicit_euler",
+    label="Explicit Euler",
+    letter="e",
+    hue=0,
+    phases=explicit_euler,
+    formula="theta' = theta + h omega;  omega' = omega + h a(theta)",
+    order=1,
+    force_evaluations=1,
+    linear_limit=0.0,
+    other_names=("forward Euler",),
+    reference=f"{HAIRER}, I.1.2",
+    used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, "
+    "Numerical integration]",
+    on_rates=explicit_euler_on_rates,
+    models=("pendulum", "linear", *FIRST_ORDER),
+)
 
 RK4 = Method(
     key="rk4",

@@ -1,13 +1,28 @@
 """The Verlet methods: half a kick, a drift, half a kick; or half a drift, a kick, half a drift."""
 
+import math
+import struct
 from collections.abc import Iterator
+from typing import Any
 
-from pendu_tui.engine.methods.method import HAIRER, Method
-from pendu_tui.engine.models.model import Force, Phase
-from pendu_tui.engine.models.modified_energy import (
+from pendu_tui.engine.methods.method import (
+    HAIRER,
+    Method,
+    Phases,
     position_verlet_modified_energy,
+    symplectic_euler_modified_energy,
     velocity_verlet_modified_energy,
 )
+from pendu_tui.engine.models.model import Force, Phase
+
+
+def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Symplectic Euler: kick omega, then drift theta with the new omega."""
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
 
 
 def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -33,6 +48,24 @@ def position_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta = theta_half + half * omega
         yield theta, omega
 
+
+SYMPLECTIC_EULER = Method(
+    key="symplectic_euler",
+    label="Symplectic Euler",
+    letter="s",
+    hue=1,
+    phases=symplectic_euler,
+    formula="omega' = omega + h a(theta);  theta' = theta + h omega'",
+    order=1,
+    force_evaluations=1,
+    symplectic=True,
+    linear_limit=2.0,
+    other_names=("semi-implicit Euler", "Euler-Cromer"),
+    reference=f"{HAIRER}, I.1.2",
+    used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML "
+    "Reference, integrator]",
+    modified_energy=symplectic_euler_modified_energy,
+)
 
 VELOCITY_VERLET = Method(
     key="velocity_verlet",
@@ -75,3 +108,182 @@ POSITION_VERLET = Method(
 )
 
 FAMILY = (VELOCITY_VERLET, POSITION_VERLET)
+
+
+class Float32(float):
+    """A number of 32 bits, IEEE binary32.
+
+    A sum or product rounded to a double and then to 32 bits is the same as rounded once, because a
+    double has more than twice the digits.  Figueroa, ACM SIGNUM Newsletter 30 (1995) 21.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, value: float) -> "Float32":
+        """Round to 32 bits.  Raises OverflowError beyond 3.4e38."""
+        return super().__new__(cls, _BINARY32.unpack(_BINARY32.pack(value))[0])
+
+    def __add__(self, other: float) -> "Float32":
+        return Float32(float(self) + float(other))
+
+    def __mul__(self, other: float) -> "Float32":
+        return Float32(float(self) * float(other))
+
+    __rmul__ = __mul__
+
+
+_BINARY32 = struct.Struct("<f")
+
+
+class Compensated(float):
+    """A double that keeps what its last addition lost, and adds it in the next.
+
+    Compensated summation: Kahan, Comm. ACM 8 (1965) 40; Hairer, Lubich & Wanner (2006), VIII.5.
+    """
+
+    __slots__ = ("compensation",)
+    compensation: float
+
+    def __new__(cls, value: float, compensation: float = 0.0) -> "Compensated":
+        compensated = super().__new__(cls, value)
+        compensated.compensation = compensation
+        return compensated
+
+    def __add__(self, other: float) -> "Compensated":
+        increment = float(other) + self.compensation
+        total = float(self) + increment
+        return Compensated(total, increment - (total - float(self)))
+
+
+def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Velocity Verlet with all numbers in 32 bits; the sine is rounded from a double."""
+
+    def rounded(theta: Any) -> Float32:
+        return Float32(force(float(theta)))
+
+    start = Float32(phase[0]), Float32(phase[1])
+    for theta, omega in velocity_verlet(rounded, start, Float32(h)):
+        yield float(theta), float(omega)
+
+
+def verlet_compensated(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Velocity Verlet with compensated sums.  The compensation is a part of the phase."""
+    theta, omega = (x if isinstance(x, Compensated) else Compensated(x) for x in phase)
+    return velocity_verlet(force, (theta, omega), h)
+
+
+def _verlet(*, numbers: str, keeps_area: bool, **fields: Any) -> Method:
+    return Method(
+        **fields,
+        formula=f"velocity Verlet, {numbers}",
+        order=2,
+        force_evaluations=1,
+        first_same_as_last=True,
+        symplectic=keeps_area,
+        reversible=keeps_area,
+        linear_limit=2.0,
+        reference=f"{HAIRER}, VIII.5",
+        models=("pendulum",),
+        any_numbers=False,
+    )
+
+
+VERLET_FLOAT32 = _verlet(
+    phases=verlet_float32,
+    key="verlet_float32",
+    other_names=("single-precision Verlet",),
+    label="Single Verlet",
+    letter="n",
+    numbers="all numbers rounded to 32 bits",
+    keeps_area=False,
+    note="Rounding is not symplectic: the modified energy walks, by 1e-5 in 10 000 steps.",
+    epsilon=2.0**-24,
+    used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions "
+    "and Units]",
+)
+
+VERLET_COMPENSATED = _verlet(
+    phases=verlet_compensated,
+    key="verlet_compensated",
+    other_names=("Verlet with compensated sums",),
+    label="Kahan Verlet",
+    letter="k",
+    numbers="each sum keeps what it rounds off for the next",
+    keeps_area=True,
+    used=None,
+    note="Each sum takes three more additions.",
+)
+
+PRECISION = (VERLET_FLOAT32, VERLET_COMPENSATED)
+
+
+TOLERANCE = 0.1  # rad and rad/s, of a step
+
+
+def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
+    """Return the method with step doubling: h is halved where a step and two halves differ.
+
+    The result is that of the two halves, or with `richardson` their extrapolation, of order 4 for a
+    method of order 2.  Each step begins with h again.  The difference is hypot(theta, omega), in
+    rad and rad/s.
+    """
+
+    def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
+        whole = next(phases(force, phase, h))
+        halves = next(phases(force, next(phases(force, phase, h / 2)), h / 2))
+        theta = halves[0] - whole[0]
+        omega = halves[1] - whole[1]
+        if halvings and math.hypot(theta, omega) > tolerance:
+            return step(force, step(force, phase, h / 2, halvings - 1), h / 2, halvings - 1)
+        if richardson:
+            return halves[0] + theta / 3, halves[1] + omega / 3
+        return halves
+
+    def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+        while True:
+            # at most ten halvings, because at 1e9 rad/s no step looks accurate
+            phase = step(force, phase, h, 10)
+            yield phase
+
+    return halved
+
+
+def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
+    return Method(
+        **fields,
+        phases=halving(velocity_verlet, TOLERANCE, richardson),
+        formula="a step of velocity Verlet, and two halves: if they differ by more than "
+        f"{TOLERANCE}, halve h; {ends}",
+        reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
+        used=None,
+        note="Its force evaluations, which equal cost uses, are the mean of a minute of the scene "
+        "halving. An undivided step takes six, and the order is that of undivided steps.",
+        models=("pendulum", "linear"),
+        any_numbers=False,
+        varies=True,
+    )
+
+
+HALVING_VERLET = _halving(
+    key="halving_verlet",
+    label="Step doubling",
+    letter="h",
+    other_names=("adaptive Verlet",),
+    richardson=False,
+    ends="the halves count",
+    order=2,
+    force_evaluations=8,
+)
+
+HALVING_RICHARDSON = _halving(
+    key="halving_richardson",
+    label="Richardson Verlet",
+    letter="a",
+    other_names=("extrapolated Verlet",),
+    richardson=True,
+    ends="they are extrapolated to h = 0",
+    order=4,
+    force_evaluations=7,
+)
+
+STEP_DOUBLING = (HALVING_VERLET, HALVING_RICHARDSON)

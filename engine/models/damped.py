@@ -12,13 +12,13 @@ from pendu_tui.engine.models.model import (
     EnergyReference,
     ExactMotion,
     Force,
+    Number,
     Phase,
     Rates,
     Regime,
     Sine,
     State,
 )
-from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 from pendu_tui.engine.quantities import ENERGY_ERROR, Chart, Head

@@ -19,13 +19,13 @@ from pendu_tui.engine.models.model import (
     ExactMotion,
     ExtraColumn,
     Model,
+    Number,
     Observation,
     Phase,
     Rates,
     Sine,
     State,
 )
-from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
 from pendu_tui.engine.quantities import Chart, Quantity
 

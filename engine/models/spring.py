@@ -18,12 +18,12 @@ from pendu_tui.engine.models.model import (
     ExtraColumn,
     Force,
     Model,
+    Number,
     Observation,
     Phase,
     Sine,
     State,
 )
-from pendu_tui.engine.models.numbers import Number
 from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 from pendu_tui.engine.quantities import Chart, Quantity
 

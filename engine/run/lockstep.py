@@ -90,7 +90,7 @@ class Lockstep:
         self,
         scene: Scene,
         run: int = 1,
-        loops: LoopsOf = PlainLoops,  # or engine.run.compiled.compiled
+        loops: LoopsOf = PlainLoops,  # or engine.run.loops.compiled
         judged: bool = False,
     ) -> None:
         self.scene = scene

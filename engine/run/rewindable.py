@@ -12,9 +12,8 @@ from itertools import pairwise
 from operator import attrgetter
 from typing import NamedTuple
 
-from pendu_tui.engine.run.compiled import TieredLoops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
-from pendu_tui.engine.run.loops import LoopsOf
+from pendu_tui.engine.run.loops import LoopsOf, TieredLoops
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange
 from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from pendu_tui.engine.methods import GENERAL
-from pendu_tui.engine.run.compiled import compiled
 from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.bench.truths import WINDOWS, letter, runner

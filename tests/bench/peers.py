@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendu_tui.engine.methods import GENERAL, TAYLOR_20
-from pendu_tui.engine.run.compiled import compiled
+from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.scenes import Scene
 
 LIMITS = {"targets_behind_heyoka": 2}  # the series has a fixed step

@@ -7,8 +7,8 @@ from itertools import count
 import pytest
 
 from pendu_tui.engine.run import loops
-from pendu_tui.engine.run.compiled import CompiledLoops
 from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import CompiledLoops
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import RecordingError

@@ -12,8 +12,8 @@ from textual._xterm_parser import XTermParser
 from textual.events import Key, Resize
 from textual.geometry import Size
 
-from pendu_tui.engine.accuracy.study import ladder
 from pendu_tui.engine.scenes import DEFAULT_SCENE, Scene
+from pendu_tui.engine.studies.accuracy import ladder
 from pendu_tui.recordings.files import new_path
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live

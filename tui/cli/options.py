@@ -9,9 +9,9 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.models.numbers import angle as angle
-from pendu_tui.engine.models.numbers import number as number
-from pendu_tui.engine.models.numbers import seconds as seconds
+from pendu_tui.engine.models.model import angle as angle
+from pendu_tui.engine.models.model import number as number
+from pendu_tui.engine.models.model import seconds as seconds
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"

@@ -7,17 +7,21 @@ from functools import partial
 from operator import methodcaller
 from typing import Any
 
-from pendu_tui.engine.accuracy.front import Cheapest, front
-from pendu_tui.engine.accuracy.recommend import Advice, Attempt, least_cost
-from pendu_tui.engine.accuracy.study import (
+from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.run import loops
+from pendu_tui.engine.run.loops import LoopsOf
+from pendu_tui.engine.scenes import Scene, check_h
+from pendu_tui.engine.studies.accuracy import (
     ALL_LADDER,
     REASONS,
     Z_LADDER,
+    Cheapest,
     Clock,
     Order,
     Point,
     Study,
     compilable,
+    front,
     ladder,
     measured_point,
     orders,
@@ -25,10 +29,7 @@ from pendu_tui.engine.accuracy.study import (
     usual,
     with_all_methods,
 )
-from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.engine.run import compiled, loops
-from pendu_tui.engine.run.loops import LoopsOf
-from pendu_tui.engine.scenes import Scene, check_h
+from pendu_tui.engine.studies.recommend import Advice, Attempt, least_cost
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
 from pendu_tui.tui.cli.files import keep_older
 from pendu_tui.tui.cli.scene import general_scene_of
@@ -123,8 +124,8 @@ def measure(results: Results) -> None:
     """Fill the results step by step, so that an interrupt keeps those that are there."""
     scene = results.scene
     rungs = _ladder(results)
-    study_loops: LoopsOf = compiled.TieredLoops
-    timed_loops: LoopsOf = compiled.compiled
+    study_loops: LoopsOf = loops.TieredLoops
+    timed_loops: LoopsOf = loops.compiled
     # seconds compare methods only if all or none of them are compiled
     fast = not results.options.no_compiled and (not results.clock or compilable(scene.cast))
     if not fast:

@@ -35,7 +35,7 @@ Row = dict[str, Any]
 
 def run(options: argparse.Namespace) -> int:
     from pendu_tui.engine.methods.measure import no_order, yes
-    from pendu_tui.engine.run.compiled import available
+    from pendu_tui.engine.run.loops import available
 
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))

@@ -15,7 +15,7 @@ from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import CHAOTIC, VERDICTS
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
-from pendu_tui.engine.stability import LOST
+from pendu_tui.engine.studies import LOST
 from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import FIELDS, JUDGED, MEASURED_NUMBERS, MEASURED_WORDS

@@ -15,7 +15,7 @@ import numpy as np
 from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
-from pendu_tui.engine.run import compiled, loops
+from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
@@ -106,7 +106,7 @@ def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockste
     """Return the lockstep of a run, compiled if that pays."""
     if not is_compiled:
         return Lockstep(scene, judged=True)
-    tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
+    tiered = partial(loops.TieredLoops, expected_steps=expected_steps)
     return Lockstep(scene, loops=tiered, judged=True)
 
 

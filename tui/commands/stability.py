@@ -12,11 +12,20 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.measure import linear_limit
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.scenes import Z_LIMITS, Scene
-from pendu_tui.engine.stability import BAND, LOST
-from pendu_tui.engine.stability.grid import Grid, Part
-from pendu_tui.engine.stability.linear import amplification
-from pendu_tui.engine.stability.outcomes import FATES, UNKNOWN, Cells
-from pendu_tui.engine.stability.study import Row, amplitude, ladder_of, map_of, table
+from pendu_tui.engine.studies import BAND, LOST
+from pendu_tui.engine.studies.stability import (
+    FATES,
+    UNKNOWN,
+    Cells,
+    Grid,
+    Part,
+    Row,
+    amplification,
+    amplitude,
+    ladder_of,
+    map_of,
+    table,
+)
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import keep_older
 from pendu_tui.tui.cli.scene import general_scene_of

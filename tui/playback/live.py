@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethod, OwnMethodError
 from pendu_tui.engine.models.model import Model
-from pendu_tui.engine.run.compiled import TieredLoops, compiled
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.loops import Loops
+from pendu_tui.engine.run.loops import Loops, TieredLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement, Milestone

@@ -9,17 +9,19 @@ from textual import events
 from textual.binding import Binding, BindingType
 from textual.geometry import Size
 
-from pendu_tui.engine.accuracy.front import Cost, cost_of, front
-from pendu_tui.engine.accuracy.study import (
+from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.studies.accuracy import (
+    Cost,
     ErrorKind,
     Flaw,
     Point,
+    cost_of,
+    front,
     measured,
     usual,
     with_all_methods,
 )
-from pendu_tui.engine.methods import Cast, Method
-from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from pendu_tui.tui.drawing.picture import FRAME, Picture, ink_of
 from pendu_tui.tui.playback.source import Source

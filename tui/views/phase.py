@@ -28,8 +28,8 @@ from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
 from pendu_tui.tui.words.studies import sentence
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
-    from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
-    from pendu_tui.engine.phase_space.section import Points
+    from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
+    from pendu_tui.engine.studies.section import Points
     from pendu_tui.tui.drawing.canvas import Canvas
     from pendu_tui.tui.views.portrait import Section
 
@@ -123,7 +123,7 @@ class PhasePane(Chooser[State]):
         if not self.shown.ring or scene.why_no_ring or scene is self._ringless:
             self.neighbours = self.ring = None
             return
-        from pendu_tui.engine.phase_space.area import Neighbours
+        from pendu_tui.engine.studies.ring import Neighbours
 
         # large enough to see, small enough to stay a ring for a while
         radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
@@ -240,7 +240,7 @@ class SectionPane(PhasePane):
         self, viewport: Viewport, model: Model, method: Method, ink: int, h: float
     ) -> "Section":
         """Begin to compute a section, of which there is nothing yet."""
-        from pendu_tui.engine.phase_space.section import pieces
+        from pendu_tui.engine.studies.section import pieces
         from pendu_tui.tui.views.portrait import ORBIT_STEPS, Section, starts
 
         self._orbits = 0

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import Model, State
-from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
-from pendu_tui.engine.phase_space.section import OrbitKind, Points, kind_of, orbit, spread
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.scenes import Line
+from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
+from pendu_tui.engine.studies.section import OrbitKind, Points, kind_of, orbit, spread
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.frame import in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.picture import (

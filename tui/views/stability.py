@@ -15,13 +15,21 @@ from rich.style import Style
 from textual import events
 
 from pendu_tui.engine.methods import Cast, Method
-from pendu_tui.engine.methods.euler import SYMPLECTIC_EULER
-from pendu_tui.engine.methods.verlet import VELOCITY_VERLET
+from pendu_tui.engine.methods.verlet import SYMPLECTIC_EULER, VELOCITY_VERLET
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.stability.chaos import GREENE_Z
-from pendu_tui.engine.stability.grid import Grid, Piece, pieces
-from pendu_tui.engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, is_lost
-from pendu_tui.engine.stability.study import amplitude
+from pendu_tui.engine.studies.stability import (
+    CHAOTIC,
+    FATES,
+    GREENE_Z,
+    HELD,
+    UNKNOWN,
+    Cells,
+    Grid,
+    Piece,
+    amplitude,
+    is_lost,
+    pieces,
+)
 from pendu_tui.tui.drawing.frame import number_ticks
 from pendu_tui.tui.drawing.picture import (
     NOBODY,

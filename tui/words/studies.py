@@ -3,12 +3,11 @@
 import math
 from collections.abc import Sequence
 
-from pendu_tui.engine.accuracy.front import Cheapest, Cost, ranges
-from pendu_tui.engine.accuracy.study import REASONS, ErrorKind, Point
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.runge_kutta import RK4
-from pendu_tui.engine.phase_space.section import OrbitKind, least_lyapunov
 from pendu_tui.engine.run.verdicts import CHAOTIC, UNDECIDED
+from pendu_tui.engine.studies.accuracy import REASONS, Cheapest, Cost, ErrorKind, Point, ranges
+from pendu_tui.engine.studies.section import OrbitKind, least_lyapunov
 from pendu_tui.tui.words.numbers import counted
 
 COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}

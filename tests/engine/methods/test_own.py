@@ -14,11 +14,10 @@ from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
 from pendu_tui.engine.methods.examine import load
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run.compiled import compiled
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, compiled
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
-from pendu_tui.engine.stability.grid import Grid, Part
+from pendu_tui.engine.studies.stability import Grid, Part
 
 VERLET = '''
 def mine(force, phase, h):

@@ -10,17 +10,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET, learned, method_of
-from pendu_tui.engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET
-from pendu_tui.engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from pendu_tui.engine.methods.implicit import IMPLICIT_MIDPOINT
-from pendu_tui.engine.methods.precision import (
+from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET, RESPA
+from pendu_tui.engine.methods.verlet import (
+    HALVING_RICHARDSON,
+    HALVING_VERLET,
+    POSITION_VERLET,
     VERLET_COMPENSATED,
     VERLET_FLOAT32,
     Compensated,
     Float32,
 )
-from pendu_tui.engine.methods.stiff import IMEX_EULER, RESPA
-from pendu_tui.engine.methods.verlet import POSITION_VERLET
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.mean_field import MeanField
 from pendu_tui.engine.models.pendulum import Pendulum

@@ -7,8 +7,7 @@ from statistics import fmean
 import pytest
 
 from pendu_tui.engine.methods import TAYLOR_20
-from pendu_tui.engine.run.compiled import available, compiled
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.scenes import Scene
 
 SWING = Scene(theta=2.0)

@@ -16,7 +16,7 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from pendu_tui.engine.models.numbers import Number
+from pendu_tui.engine.models.model import Number
 from pendu_tui.engine.models.model import ExactMotion, ExtraColumn, Model, Observation, State
 from pendu_tui.engine.quantities import Chart, Quantity
 

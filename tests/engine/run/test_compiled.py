@@ -7,12 +7,12 @@ import pytest
 from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run import compiled
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run import loops as loops_module
+from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, TieredLoops, available, compiled
 from tests.engine.run.test_loops import OVERFLOWING
 from tests.test_architecture import loaded_after
 
-needs_numba = pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 PENDULUM = Pendulum(9.81)
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 
@@ -20,7 +20,7 @@ each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: meth
 @needs_numba
 @each_method
 def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
-    fast, slow = compiled.compiled(method, PENDULUM), PlainLoops(method, PENDULUM)
+    fast, slow = compiled(method, PENDULUM), PlainLoops(method, PENDULUM)
     assert fast is not slow
     start = ((2.5, 0.3), 0.05, 20_000)
     assert fast.advance(*start, math.inf) == slow.advance(*start, math.inf)
@@ -45,7 +45,7 @@ def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
 @pytest.mark.parametrize("h", [0.001, -0.02, 0.7, 3.0])
 def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
     start = ((math.radians(179.9), -0.2), h, 2_000)
-    fast, slow = compiled.compiled(method, model), PlainLoops(method, model)
+    fast, slow = compiled(method, model), PlainLoops(method, model)
     found = fast.advance(*start, 1e9)
     assert repr(found) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
     if found[0] == 2_000:
@@ -57,15 +57,15 @@ def test_a_method_that_overflows_ends_at_the_same_step_compiled_and_plain():
     start = ((1.7, 0.0), 0.1, 100, math.inf)
     expected = PlainLoops(OVERFLOWING, PENDULUM).advance(*start)
     assert 0 < expected[0] < 100
-    assert compiled.compiled(OVERFLOWING, PENDULUM).advance(*start) == expected
+    assert compiled(OVERFLOWING, PENDULUM).advance(*start) == expected
 
 
 @each_method
 @pytest.mark.parametrize("ahead", [0, 10_000])
 def test_loops_have_the_same_bits_before_and_after_they_are_compiled(method, ahead, monkeypatch):
-    monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
+    monkeypatch.setattr(loops_module, "COMPILED_FROM", 3_000)
     loops, plain = (
-        compiled.TieredLoops(method, PENDULUM, expected_steps=ahead),
+        TieredLoops(method, PENDULUM, expected_steps=ahead),
         PlainLoops(method, PENDULUM),
     )
     for n in (1_000, 1_000, 2_000, 500):
@@ -79,16 +79,14 @@ def test_loops_have_the_same_bits_before_and_after_they_are_compiled(method, ahe
 def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     ahead, compiled_steps, monkeypatch
 ):
-    monkeypatch.setattr(compiled, "COMPILED_FROM", 3)
+    monkeypatch.setattr(loops_module, "COMPILED_FROM", 3)
     used = []
 
     def fast(method, model):
         advance = PlainLoops(method, model).advance
-        return compiled.CompiledLoops(
-            propagate=lambda *start: used.append(start[-1]), advance=advance
-        )
+        return CompiledLoops(propagate=lambda *start: used.append(start[-1]), advance=advance)
 
-    loops = compiled.TieredLoops(GENERAL[0], PENDULUM, fast, ahead)
+    loops = TieredLoops(GENERAL[0], PENDULUM, fast, ahead)
     for n in (1, 2, 4):
         loops.propagate((1.0, 0.0), 0.05, n)
     assert used == compiled_steps
@@ -96,8 +94,8 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
 
 def test_few_steps_and_asking_for_numba_do_not_import_it():
     work = """
-import pendu_tui.engine.accuracy.study
-from pendu_tui.engine.run.compiled import TieredLoops, available
+import pendu_tui.engine.studies.accuracy
+from pendu_tui.engine.run.loops import TieredLoops, available
 from pendu_tui.engine.scenes import DEFAULT_SCENE as scene
 available()
 TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
@@ -118,8 +116,8 @@ def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
 
             return sine
 
-    monkeypatch.setattr(compiled, "_same_sine", compiled._same_sine.__wrapped__)
-    monkeypatch.setattr(compiled, "_compiled", compiled._compiled.__wrapped__)
-    assert not isinstance(compiled.compiled(GENERAL[0], PENDULUM), PlainLoops)
-    monkeypatch.setattr(compiled, "import_module", lambda name: OtherSine)
-    assert isinstance(compiled.compiled(GENERAL[0], PENDULUM), PlainLoops)
+    monkeypatch.setattr(loops_module, "_same_sine", loops_module._same_sine.__wrapped__)
+    monkeypatch.setattr(loops_module, "_compiled", loops_module._compiled.__wrapped__)
+    assert not isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)
+    monkeypatch.setattr(loops_module, "import_module", lambda name: OtherSine)
+    assert isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)

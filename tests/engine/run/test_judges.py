@@ -10,9 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.run import compiled
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Milestone
@@ -129,8 +128,8 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str) ->
     assert cut.milestones == whole.milestones
     assert cut.judgements == whole.judgements
     assert whole.milestones
-    if compiled.available():
-        fast = moved(scene, [steps], compiled.compiled)
+    if available():
+        fast = moved(scene, [steps], compiled)
         assert (fast.milestones, fast.judgements) == (whole.milestones, whole.judgements)
 
 

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.run.compiled import available, compiled
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene, SceneError
 from pendu_tui.recordings.format import without_extremes

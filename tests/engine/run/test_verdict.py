@@ -8,16 +8,15 @@ import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run import compiled
 from pendu_tui.engine.run.judge import Judge, LookPoint
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
 E, S, V, R = USUAL_CAST
-LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
+LOOPS = compiled if available() else PlainLoops  # the same bits
 CELLS = list(truths())
 SAMPLED = CELLS[::47]  # 47 and the 36 steps of a line have no divisor in common
 BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]

@@ -17,7 +17,7 @@ RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 20)
 
 @pytest.fixture
 def small_parts(monkeypatch):
-    monkeypatch.setattr("pendu_tui.engine.stability.grid.PART", 6)
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
 
 
 @pytest.mark.parametrize("command", [(*STABILITY, "--csv"), (*RUNS, "--csv")], ids=lambda c: c[0])

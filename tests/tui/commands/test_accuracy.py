@@ -5,10 +5,10 @@ from itertools import count
 
 import pytest
 
-from pendu_tui.engine.accuracy.study import Study
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.studies.accuracy import Study
 from tests.tui.command_line import pendu
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -125,8 +125,8 @@ SECONDS = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.
 @pytest.fixture
 def hasty(monkeypatch):
     """Seconds of methods that are not compiled, measured in few steps."""
-    monkeypatch.setattr("pendu_tui.engine.run.compiled.compiled", PlainLoops)
-    monkeypatch.setattr("pendu_tui.engine.accuracy.study.TIMED_STEPS", 100)
+    monkeypatch.setattr("pendu_tui.engine.run.loops.compiled", PlainLoops)
+    monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
 
 
 def test_over_seconds_the_series_is_one_of_the_methods(hasty):

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import GROUPS, SCENES
 from pendu_tui.tui.commands.methods import MEASURED
 from pendu_tui.tui.words.cards import method_card, scene_card

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.stability.grid import Grid
-from pendu_tui.engine.stability.outcomes import FATES
+from pendu_tui.engine.studies.stability import FATES, Grid
 from pendu_tui.tui.cli.errors import Exit, UserError
 from tests.tui.command_line import pendu
 
@@ -18,7 +17,7 @@ KEYS = [method.key for method in USUAL_CAST]
 
 
 def stops_after_a_part(monkeypatch, error):
-    monkeypatch.setattr("pendu_tui.engine.stability.grid.PART", 10)  # swings: 5 z of a method
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 10)  # swings: 5 z of a method
 
     def run(function, tasks):
         yield function(tasks[0])

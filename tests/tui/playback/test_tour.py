@@ -7,14 +7,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from pendu_tui.engine.accuracy.recommend import reach
-from pendu_tui.engine.accuracy.study import Study, usual
 from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET
-from pendu_tui.engine.phase_space.area import Neighbourhood
 from pendu_tui.engine.run.lockstep import Lockstep, Reading
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.tangent import jacobian
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.accuracy import Study, usual
+from pendu_tui.engine.studies.recommend import reach
+from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown

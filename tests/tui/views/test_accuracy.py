@@ -4,11 +4,10 @@ from contextlib import asynccontextmanager
 
 import pytest
 
-from pendu_tui.engine.accuracy.front import front
-from pendu_tui.engine.accuracy.study import Study, ladder
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.studies.accuracy import Study, front, ladder
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series

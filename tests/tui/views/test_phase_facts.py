@@ -5,9 +5,9 @@ import math
 import pytest
 
 from pendu_tui.engine.models.model import State
-from pendu_tui.engine.phase_space.area import Neighbours
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.views.phase import area_text
 from pendu_tui.tui.views.portrait import place_text, ring_text

@@ -7,8 +7,8 @@ import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST, VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
-from pendu_tui.engine.phase_space.section import iterate, orbit, pieces
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.section import iterate, orbit, pieces
 from pendu_tui.tui.drawing.picture import FRAME, faint
 from pendu_tui.tui.views.phase import SectionPane
 from pendu_tui.tui.views.portrait import Section, starts

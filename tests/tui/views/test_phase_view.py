@@ -7,8 +7,8 @@ from contextlib import asynccontextmanager
 import pytest
 from textual import events
 
-from pendu_tui.engine.phase_space.area import Neighbours
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.views.phase import DOTS, AreaTable, PhasePane
 from pendu_tui.tui.views.viewport import MIN_SPAN
 from tests.tui.harness import lab, until

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import GENERAL
-from pendu_tui.engine.stability.grid import Grid
-from pendu_tui.engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
+from pendu_tui.engine.studies.stability import CELL, GROWS, HOLDS, LOSES, UNKNOWN, Grid
 from pendu_tui.tui.drawing.picture import PALETTES, Picture
 from pendu_tui.tui.views import stability as drawing
 

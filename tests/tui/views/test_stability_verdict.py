@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.stability import outcomes as fates
-from pendu_tui.engine.stability.grid import Grid
+from pendu_tui.engine.studies import stability as fates
+from pendu_tui.engine.studies.stability import Grid
 from pendu_tui.tui.screens.lines import limit_warning
 from pendu_tui.tui.views.stability import note, verdict
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.stability.outcomes import UNKNOWN
+from pendu_tui.engine.studies.stability import UNKNOWN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.stability import StabilityPane

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
-from pendu_tui.engine.phase_space.section import OrbitKind
+from pendu_tui.engine.studies.section import OrbitKind
 from pendu_tui.tui.words.studies import cells, sentence
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)

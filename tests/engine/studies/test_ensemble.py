@@ -8,8 +8,8 @@ import pytest
 
 from pendu_tui.engine.methods import FAMILIES, GENERAL, VELOCITY_VERLET
 from pendu_tui.engine.models import Pendulum
-from pendu_tui.engine.run.compiled import available
-from pendu_tui.engine.run.ensemble import Watched, compiled, plain
+from pendu_tui.engine.run.loops import available
+from pendu_tui.engine.studies.ensemble import Watched, compiled, plain
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 WAYS = [(method, False) for method in GENERAL]

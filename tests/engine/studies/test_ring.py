@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from pendu_tui.engine.phase_space.area import Neighbourhood, Neighbours
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
 
 DRIFT = SCENES["drift"]
 

@@ -5,17 +5,16 @@ from dataclasses import replace
 
 import pytest
 
-from pendu_tui.engine.accuracy.recommend import MAX_TIMES, least_cost, reach
-from pendu_tui.engine.accuracy.study import Study, with_all_methods
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.run import compiled
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.scenes import SCENES, Z_LIMITS
+from pendu_tui.engine.studies.accuracy import Study, with_all_methods
+from pendu_tui.engine.studies.recommend import MAX_TIMES, least_cost, reach
 
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
-LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
+LOOPS = compiled if available() else PlainLoops  # the same bits
 
 
 def recommended(scene, time, kind, target):

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run.ensemble import plain
-from pendu_tui.engine.stability.linear import wobble
-from pendu_tui.engine.stability.outcomes import (
+from pendu_tui.engine.studies.ensemble import plain
+from pendu_tui.engine.studies.stability import (
     BAND,
     CHAOTIC,
     ELSEWHERE,
@@ -22,6 +21,7 @@ from pendu_tui.engine.stability.outcomes import (
     first_failure,
     is_lost,
     outcomes,
+    wobble,
 )
 
 BY_KEY = {method.key: method for method in GENERAL}
@@ -78,7 +78,7 @@ def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch):
         watch = plain(method, model)
         return lambda phase, h, *others: begun.append(len(h)) or watch(phase, h, *others)
 
-    monkeypatch.setattr("pendu_tui.engine.stability.outcomes.plain", counting)
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.plain", counting)
     cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
     assert len(np.unique(cells["steps"])) > 200
     assert begun[0] == 500

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
-from pendu_tui.engine.run.compiled import available
+from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.engine.stability.grid import Grid, pieces
-from pendu_tui.engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
-from pendu_tui.engine.stability.study import map_of
+from pendu_tui.engine.studies.stability import HOLDS, UNKNOWN, Grid, map_of, outcomes, pieces
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_way = pytest.mark.parametrize(

@@ -5,18 +5,25 @@ interpolated.  Cost is counted in force evaluations, or in seconds by a clock th
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
-from statistics import linear_regression
+from itertools import groupby
+from statistics import fmean, linear_regression
 from typing import Literal, NamedTuple
 
-from pendu_tui.engine.accuracy.rounding import rounding_floor
 from pendu_tui.engine.methods import GENERAL, Cast, Method
 from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.engine.run.compiled import TieredLoops, available
+from pendu_tui.engine.methods.runge_kutta import RK4
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import LoopsOf, PlainLoops, count_evaluations
+from pendu_tui.engine.run.loops import (
+    LoopsOf,
+    PlainLoops,
+    TieredLoops,
+    available,
+    count_evaluations,
+)
 from pendu_tui.engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
@@ -297,3 +304,120 @@ def _slope(points: Sequence[Point]) -> float | None:
         [math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted]
     )
     return line.slope
+
+
+Cost = Literal["evaluations", "seconds"]
+
+
+@dataclass(frozen=True, slots=True)
+class Cheapest:
+    """The cheapest method at one accuracy."""
+
+    target: float  # of the error
+    method: Method
+    cost: float  # force evaluations or seconds
+    saves: float | None  # RK4's force evaluations over this method's; None: one is not known
+
+
+def cost_of(point: Point, cost: Cost) -> float:
+    """Return the cost of a run; 0 if it is not timed, or has no force evaluations."""
+    if cost == "seconds":
+        return point.seconds or 0.0
+    return point.force_evaluations
+
+
+def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
+    """Return the cheapest method at errors of 0.1, 0.01 and so on, the largest error first.
+
+    Costs are interpolated between a method's points, log over log.  An error is left out if the
+    coarsest run of a method is that accurate, since a coarser one may be cheaper.
+    """
+    lines: dict[Method, list[Point]] = {}
+    for point in sorted(points, key=lambda point: point.steps):
+        lines.setdefault(point.method, []).append(point)
+    cheapest = []
+    for decade in range(1, 16):
+        target = 10.0**-decade
+        if any(_reaches(line[0], kind, target) for line in lines.values()):
+            continue
+        costs = {
+            method: known
+            for method, line in lines.items()
+            if (known := cost_at(line, kind, cost, target))
+        }
+        if costs:
+            best = min(costs, key=lambda method: costs[method])
+            own = cost_at(lines[best], kind, "evaluations", target)
+            rk4 = cost_at(lines.get(RK4, ()), kind, "evaluations", target)
+            cheapest.append(Cheapest(target, best, costs[best], own and rk4 and rk4 / own))
+    return cheapest
+
+
+def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -> float | None:
+    """Return the interpolated cost at which the error falls to `target`, or None."""
+    coarser: Point | None = None
+    for finer in sorted(line, key=lambda point: point.steps):
+        if _reaches(finer, kind, target):
+            return _interpolated(coarser, finer, kind, cost, target)
+        coarser = finer
+    return None
+
+
+def _interpolated(
+    coarser: Point | None, finer: Point, kind: ErrorKind, cost: Cost, target: float
+) -> float | None:
+    """Return the cost between two runs of which only the finer reaches the target."""
+    high = cost_of(finer, cost)
+    below = finer.error(kind)
+    if not high:
+        return None
+    if coarser is None or not below:
+        return high
+    low = cost_of(coarser, cost)
+    above = coarser.error(kind)
+    if not low or not (math.isfinite(above) and above > target):
+        return high
+    share = math.log(above / target) / math.log(above / below)
+    return float(low * (high / low) ** share)
+
+
+def ranges(cheapest: Sequence[Cheapest]) -> list[tuple[Method, Sequence[Cheapest]]]:
+    """Return the front by method, each with its consecutive targets, the largest error first."""
+    groups = groupby(cheapest, key=lambda entry: entry.method)
+    return [(method, tuple(entries)) for method, entries in groups]
+
+
+def _reaches(point: Point, kind: ErrorKind, target: float) -> bool:
+    return point.flaw(kind) in (None, "rounding") and point.error(kind) <= target
+
+
+NUDGE = 1e-9  # relative; small even near the separatrix, but far above the exact swing's error
+
+
+def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
+    """Return the rounding error of energy (relative) and theta [rad] per square root of steps.
+
+    A step changes the energy at random by a relative epsilon (Brouwer, Astron. J. 46 (1937) 149),
+    or by more where theta has grown by many turns and its last digit is coarse.  Theta responds to
+    a change of energy as the exact swing to passing the bottom a little slower: the more the later,
+    and steeply near the separatrix.  The floor is an upper estimate: RK4 at tiny steps errs by
+    0.005 to 0.6 times it.
+    """
+    epsilon = sys.float_info.epsilon
+    exact = scene.exact()
+    if exact.regime == "equilibrium":
+        return epsilon, epsilon
+    swing = ((exact.period or time) * sample / 400 for sample in range(401))
+    start = max(map(exact.at, swing), key=lambda state: abs(state.omega))
+    moving = scene.altered(theta=start.theta, omega=start.omega).exact()
+    slower = scene.altered(theta=start.theta, omega=start.omega * (1 - NUDGE)).exact()
+    times = [time * sample / 400 for sample in range(401)]
+    widest = max(abs(exact.at(t).theta) for t in times)
+    fastest = max(abs(exact.at(t).omega) for t in times)
+    # not the root of a square, which underflows for 1e-170
+    pace = scene.w0 * math.sqrt(widest) * math.sqrt(min(widest, 1.0)) / fastest
+    # twice, so that nearly all errors above the floor are due to the method
+    energy = 2 * epsilon * max(1.0, pace * pace)
+    response = [(moving.at(t).theta - slower.at(t).theta) / NUDGE for t in times]
+    # energy changes at any time of the run
+    return energy, energy * math.sqrt(fmean(r * r for r in response))

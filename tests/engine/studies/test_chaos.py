@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.methods import SYMPLECTIC_EULER, VELOCITY_VERLET
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.stability.chaos import GREENE_Z, is_chaotic, parting
+from pendu_tui.engine.studies.stability import GREENE_Z, is_chaotic, parting
 
 SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
 

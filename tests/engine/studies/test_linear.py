@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import GENERAL
-from pendu_tui.engine.stability.linear import amplification, wobble
+from pendu_tui.engine.studies.stability import amplification, wobble
 
 BY_KEY = {method.key: method for method in GENERAL}
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
-from pendu_tui.engine.models.linear import LinearOscillator
-from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.phase_space.section import (
+from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
+from pendu_tui.engine.studies.section import (
     iterate,
     kind_of,
     least_lyapunov,

@@ -2,9 +2,8 @@
 
 import pytest
 
-from pendu_tui.engine.accuracy.front import cost_at, front, ranges
-from pendu_tui.engine.accuracy.study import Flaws, Point
 from pendu_tui.engine.methods import TAYLOR_20, method_of
+from pendu_tui.engine.studies.accuracy import Flaws, Point, cost_at, front, ranges
 
 RK4, BM6 = method_of("rk4"), method_of("blanes_moan_6")
 

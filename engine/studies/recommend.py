@@ -7,7 +7,10 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from pendu_tui.engine.accuracy.study import (
+from pendu_tui.engine.methods import Method
+from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
+from pendu_tui.engine.scenes import Z_LIMITS, SceneError
+from pendu_tui.engine.studies.accuracy import (
     FITTED_BELOW,
     Clock,
     ErrorKind,
@@ -15,9 +18,6 @@ from pendu_tui.engine.accuracy.study import (
     Study,
     timed,
 )
-from pendu_tui.engine.methods import Method
-from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
-from pendu_tui.engine.scenes import Z_LIMITS, SceneError
 
 MAX_EVALUATIONS = 20_000_000  # of a run: some seconds in plain Python
 MAX_TIMES = 300  # force evaluations over the cheapest method's, above which a search ends

@@ -8,15 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.accuracy.rounding import rounding_floor
-from pendu_tui.engine.accuracy.study import Study, ladder, orders, timed
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.run import compiled
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.scenes import SCENES, SceneError
+from pendu_tui.engine.studies.accuracy import Study, ladder, orders, rounding_floor, timed
 
 E, S, V, R = USUAL_CAST
-LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
+LOOPS = compiled if available() else PlainLoops  # the same bits
 DRIFT = SCENES["drift"]
 STEPS = ladder(20.0, 0.2, 0.0005, 9)
 

@@ -1,8 +1,8 @@
-"""Where methods fail: the limits of small swings, and what becomes of whole ones."""
+"""Studies: what speed costs, where methods fail, and what a step does to neighbouring starts."""
 
 BAND = 0.5
 """The fraction by which energy may leave its range on the linear oscillator, which is
-engine.stability.linear.wobble."""
+engine.studies.stability.wobble."""
 
 LOST = f"""\
 A swing is lost if it goes over the top, if it is chaotic and 10 % wider than on the linear

@@ -1,1 +1,0 @@
-"""Speed against accuracy: errors, costs, the cheapest methods, recommendations."""

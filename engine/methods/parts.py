@@ -1,0 +1,245 @@
+"""Methods for friction: where in a step it acts decides the order and how area shrinks.
+
+They take the pendulum's force and its friction, gamma [s⁻¹], separately.
+"""
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+from typing import Any
+
+from pendu_tui.engine.methods.method import HAIRER, Method, Phases
+from pendu_tui.engine.methods.verlet import velocity_verlet
+from pendu_tui.engine.models.damped import DampedParts
+from pendu_tui.engine.models.mean_field import MeanField, strang
+from pendu_tui.engine.models.model import Phase
+from pendu_tui.engine.models.spring import SpringParts
+
+
+def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
+    """Velocity Verlet, with omega times exp(-gamma h/2) before and after each step.
+
+    Area shrinks by exp(-gamma h) exactly.
+    """
+    force, friction = parts
+    theta, omega = phase
+    half = h / 2
+    damping = math.exp(-friction * h / 2)
+    a = force(theta)
+    while True:
+        omega_half = omega * damping + half * a
+        theta = theta + h * omega_half
+        a = force(theta)
+        omega = (omega_half + half * a) * damping
+        yield theta, omega
+
+
+def lagged_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
+    """Velocity Verlet with friction taken from the omega before each half kick.
+
+    It is of order 1 only, because the second half kick depends on the omega that it leads to.
+    """
+    force, friction = parts
+    theta, omega = phase
+    a = force(theta)
+    while True:
+        omega_half = omega + h / 2 * (a - friction * omega)
+        theta = theta + h * omega_half
+        a = force(theta)
+        omega = omega_half + h / 2 * (a - friction * omega_half)
+        yield theta, omega
+
+
+LAGGED_VERLET = Method(
+    key="lagged_verlet",
+    label="Lagged Verlet",
+    letter="l",
+    phases=lagged_verlet,
+    formula="velocity Verlet with half kicks h/2 (a - gamma omega), omega from before the kick",
+    order=1,
+    force_evaluations=1,
+    first_same_as_last=True,
+    other_names=("velocity Verlet with lagged damping",),
+    reference="McLachlan & Quispel, Acta Numerica 11 (2002) 341",
+    used=None,
+    note="Without friction it is velocity Verlet, of order 2.",
+    models=("damped",),
+    takes_parts=True,
+)
+
+CONFORMAL_VERLET = Method(
+    key="conformal_verlet",
+    label="Conformal Verlet",
+    letter="c",
+    phases=conformal_verlet,
+    formula="omega times exp(-gamma h/2), a step of velocity Verlet, omega times exp(-gamma h/2)",
+    order=2,
+    force_evaluations=1,
+    first_same_as_last=True,
+    other_names=("conformally symplectic Verlet",),
+    reference="Bhatt, Floyd & Moore, J. Sci. Comput. 66 (2016) 1234",
+    used=None,
+    note="It shrinks area by exp(-gamma h), as the motion does, wherever it is.",
+    models=("damped",),
+    takes_parts=True,
+)
+
+FRICTION = (LAGGED_VERLET, CONFORMAL_VERLET)
+
+
+def respa(inner: Phases, n: int) -> Phases:
+    """r-RESPA, the impulse method: n steps with the fast force between half kicks of the slow."""
+
+    def impulse(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
+        z, w = phase
+        slow = parts.slow(z)
+        while True:
+            w = w + h / 2 * slow
+            z, w = next(islice(inner(parts.fast, (z, w), h / n), n - 1, None))
+            slow = parts.slow(z)
+            w = w + h / 2 * slow
+            yield z, w
+
+    return impulse
+
+
+def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
+    """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
+
+    It is stable at any h because it damps every motion.
+    """
+    z, w = phase
+    while True:
+        following = parts.solve(z + h * (w + h * parts.slow(z)), h * h)
+        z, w = following, (following - z) / h
+        yield z, w
+
+
+def mean_field_splitting(parts: MeanField, phase: Phase, h: float) -> Iterator[Phase]:
+    """Half a drift; the exact flow of the rest, with theta fixed; half a drift.  |s| stays."""
+    while True:
+        phase = strang(parts, phase, h)
+        yield phase
+
+
+INNER = 10
+
+RESPA = Method(
+    key="respa",
+    label="RESPA",
+    letter="p",
+    phases=respa(velocity_verlet, INNER),
+    formula=f"w + h/2 slow;  {INNER} steps of velocity Verlet with h/{INNER} and the fast force;  "
+    "w + h/2 slow",
+    order=2,
+    force_evaluations=INNER + 1,
+    symplectic=True,
+    reversible=True,
+    other_names=("impulse method", "IVI"),
+    reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
+    used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, "
+    "MTSIntegrator]",
+    note="Its kicks resonate if h is a multiple of the fast motion's period. Counted are "
+    "evaluations of its parts.",
+    models=("spring",),
+    takes_parts=True,
+)
+
+IMEX_EULER = Method(
+    key="imex_euler",
+    label="IMEX Euler",
+    letter="u",
+    phases=imex_euler,
+    formula="w' = w + h (fast(z') + slow(z));  z' = z + h w'",
+    order=1,
+    force_evaluations=1,
+    other_names=("implicit-explicit Euler",),
+    reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
+    used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK "
+    "Methods]",
+    note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then "
+    "out of the swing.",
+    models=("spring",),
+    takes_parts=True,
+)
+
+MEAN_FIELD_SPLITTING = Method(
+    key="mean_field_splitting",
+    label="Exact splitting",
+    letter="x",
+    phases=mean_field_splitting,
+    formula="theta + h/2 omega;  s turned by nu h about b(theta), omega kicked by it;  theta + h/2 "
+    "omega",
+    order=2,
+    force_evaluations=1,
+    symplectic=True,
+    reversible=True,
+    other_names=("Strang splitting",),
+    reference=f"{HAIRER}, II.5",
+    used=None,
+    note="Counted are its kicks, each of which moves the two levels exactly over the whole step.",
+    models=("mean_field",),
+    takes_parts=True,
+    any_numbers=False,
+)
+
+FAST_AND_SLOW = (RESPA, IMEX_EULER, MEAN_FIELD_SPLITTING)
+
+
+ORDER = 20
+
+
+def taylor(parts: Any, phase: Phase, h: float) -> Iterator[Phase]:
+    """The Taylor polynomial of theta and omega; `parts.w0_squared` [s⁻²] is all that it takes.
+
+    With u = w0² cos theta the motion is theta' = omega, omega'' = -omega u, u' = omega omega'.  The
+    energy is not used, so nothing cancels near the separatrix.
+    """
+    theta, omega = phase
+    w = [0.0] * (ORDER + 1)  # the coefficients of omega
+    u = [0.0] * ORDER
+    while True:
+        w[0] = omega
+        w[1] = -parts.w0_squared * math.sin(theta)
+        u[0] = parts.w0_squared * math.cos(theta)
+        for k in range(ORDER - 1):
+            square = 0.0
+            for j in range((k + 1) // 2):
+                square += w[j] * w[k - j]
+            if k % 2 == 0:
+                square += w[k // 2] * w[k // 2] / 2
+            if k:
+                u[k] = square
+            product = 0.0
+            for j in range(k + 1):
+                product += w[j] * u[k - j]
+            w[k + 2] = -product / ((k + 1) * (k + 2))
+        turned = 0.0
+        faster = 0.0
+        for k in range(ORDER, 0, -1):
+            turned = (turned + w[k - 1] / k) * h
+            faster = (faster + w[k]) * h
+        theta = theta + turned
+        omega = omega + faster
+        yield theta, omega
+
+
+TAYLOR_20 = Method(
+    key="taylor_20",
+    label="Taylor, order 20",
+    letter="t",
+    phases=taylor,
+    formula="the first 20 derivatives of theta and omega, by recurrence",
+    order=ORDER,
+    force_evaluations=0,
+    reference="Jorba & Zou, Exp. Math. 14 (2005) 99",
+    used="astronomy and spacecraft: heyoka [bluescarni.github.io, heyoka]",
+    models=("pendulum",),
+    takes_parts=True,
+    any_numbers=False,
+)
+
+WHY_NOT = (
+    "the Taylor series needs the pendulum's derivatives and has no force evaluations to count; see "
+    "it with pendu-tui accuracy --cost seconds --methods taylor_20,rk4"
+)

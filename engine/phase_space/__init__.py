@@ -1,1 +1,0 @@
-"""What one step does to neighbouring starts, and what many steps do to many starts."""

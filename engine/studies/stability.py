@@ -1,0 +1,367 @@
+"""Which swings of the pendulum a method holds, for how long, and how it loses them.
+
+A swing starts at rest at an amplitude theta and depends on z = h·w0 only; here w0 = 1 and h = z.
+engine.studies.LOST says when a swing is lost.
+"""
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run import verdicts
+from pendu_tui.engine.run.levels import CHAOTIC_SEPARATION
+from pendu_tui.engine.run.loops import available
+from pendu_tui.engine.run.tangent import at_bottom, tangent_map
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.studies import BAND
+from pendu_tui.engine.studies.ensemble import Floats as Floats
+from pendu_tui.engine.studies.ensemble import Watched, compiled, plain
+
+PARKED = 1 / 8  # share of an ensemble's swings: when so many are lost, it goes on without them
+
+FATES = (
+    *("holds", "over the top", verdicts.GROWS, verdicts.LOSES),
+    *("holds, wobbling", "holds elsewhere", verdicts.CHAOTIC),
+)
+"""What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
+band upwards or downwards; it stays, but swings wider; it stays beyond a symplectic method's linear
+limit, as around the two places between which velocity Verlet then jumps; neighbouring swings
+separate exponentially.
+"""
+
+HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, ELSEWHERE, CHAOTIC = range(len(FATES))
+HELD = (HOLDS, WOBBLES, ELSEWHERE)
+UNKNOWN = 255  # not computed
+
+CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
+"""Steps survived, largest relative energy error before the swing was lost, index into FATES."""
+
+Cells = NDArray[Any]  # of CELL
+
+
+def is_lost(cells: Cells) -> NDArray[np.bool_]:
+    """Return which swings a method loses; UNKNOWN cells do not count."""
+    return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
+
+
+def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Floats, ...]:
+    """Return how far a held swing's energy may rise and fall, and theta's largest value [rad]."""
+    distinct, where = np.unique(z, return_inverse=True)
+    wobbles = np.array([wobble(method, value) for value in distinct.tolist()]).T
+    lowest, highest, widest = wobbles[:, where]
+    up = ((1 + BAND) * highest - 1) * start
+    down = (1 - (1 - BAND) * lowest) * start
+    if method.symplectic:
+        up[:] = down[:] = math.inf  # its energy comes back
+    return up, down, widest * theta
+
+
+@np.errstate(all="ignore")  # lost swings may overflow
+def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
+    """Return the outcome of each of many swings within `steps` steps; `fast`: compiled by Numba.
+
+    theta [rad], between 0 and pi, and z are one-dimensional and of one length, as are the CELLs
+    returned.  No cell depends on the others.
+    """
+    model = Pendulum(1.0)
+    watch = (compiled if fast else plain)(method, model)
+    h = z
+    rest = np.zeros(len(theta))
+    phase = (theta, rest)
+    start: Floats = model.energy(np.sin)(phase)
+    up, down, reach = _bounds(method, theta, z, start)
+    band = np.minimum(up, down)
+    watched = Watched(start, band, rest + math.pi, rest.copy(), rest.copy(), theta.copy())
+    index: NDArray[Any] = np.arange(len(theta))
+    cells = np.zeros(len(theta), CELL)
+    cells["steps"] = steps
+    begun = 0
+    while begun < steps and len(index):
+        parked = np.zeros(len(index), np.bool_)
+        for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
+            over = np.abs(phase[0]) > watched.top
+            above = watched.off > up
+            lost = over | above | (watched.off < -down)
+            now = index[lost]
+            cells["steps"][now] = begun + done - 1
+            cells["error"][now] = watched.worst[lost] / watched.start[lost]
+            cells["fate"][now] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
+            parked |= lost
+            for limit in (watched.band, watched.top, up, down):
+                limit[lost] = math.inf
+            if np.count_nonzero(parked) > PARKED * len(parked):
+                break
+        begun = begun + done
+        kept = ~parked
+        index, h, up, down = (each[kept] for each in (index, h, up, down))
+        phase = (phase[0][kept], phase[1][kept])
+        watched = Watched(*(each[kept] for each in watched))
+    cells["error"][index] = watched.worst / watched.start
+    if method.symplectic and len(index):
+        wobbling = index[(watched.width > 1.1 * reach[index]) | (z[index] > method.linear_limit)]
+        if len(wobbling):
+            cells["fate"][wobbling] = _unsteady(method, theta[wobbling], z[wobbling], steps)
+    return cells
+
+
+def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
+    """Return the fates of held swings that are too wide or beyond the linear limit."""
+    chaotic = is_chaotic(method, theta, z, min(steps, 2000))
+    steady = np.where(z > method.linear_limit, ELSEWHERE, WOBBLES)
+    return np.where(chaotic, CHAOTIC, steady)
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The smallest z tried at which a method loses the swing."""
+
+    z: float
+    steps: int  # survived
+    reason: str  # over the top | grows | loses | chaotic
+
+
+def first_failure(z: Floats, cells: Cells) -> Failure | None:
+    """Return the first failure on an ascending ladder of z; None if the swing is held on all of it.
+
+    `cells` are the outcomes on the ladder.  Bisection would not do, because above the first failure
+    there are windows of z where the swing is held again.
+    """
+    lost = is_lost(cells)
+    if not lost.any():
+        return None
+    first = int(np.argmax(lost))
+    return Failure(float(z[first]), int(cells["steps"][first]), FATES[cells["fate"][first]])
+
+
+def amplification(method: Method, z: float) -> float:
+    """Return the largest |eigenvalue| of the Jacobian of a step at the bottom.
+
+    Below a symplectic method's limit it is 1 to rounding, 1e-15; at the limit two eigenvalues meet,
+    and the error is the square root of rounding, 1e-8.
+    """
+    a, b, c, d = at_bottom(method, z)
+    mean = (a + d) / 2
+    spread = cmath.sqrt((a - d) ** 2 / 4 + b * c)
+    return max(abs(mean + spread), abs(mean - spread))
+
+
+class Wobble(NamedTuple):
+    """The range of a bounded linear swing from rest, relative to its start."""
+
+    lowest: float  # energy
+    highest: float
+    widest: float  # |theta|
+
+
+def wobble(method: Method, z: float) -> Wobble:
+    """Return the energy's range and the largest amplitude of a linear swing from rest.
+
+    A symplectic step with the Jacobian ((a, b), (c, d)) at w0 = 1 keeps a swing on the ellipse
+    -c theta² + (a - d) theta omega + b omega² = -c theta0².  The squares of its half axes are the
+    energy's extremes: (1 - z²/4, 1, 1) for velocity Verlet, (1/(1 + z/2), 1/(1 - z/2),
+    1/sqrt(1 - z²/4)) for symplectic Euler, (1, 1, 1) for explicit Euler and RK4.  Beyond its limit
+    a symplectic step has no ellipse: (0, 1, 1), as for velocity Verlet at its limit.
+    """
+    a, b, c, d = at_bottom(method, z)
+    skew = (a - d) ** 2 / 4 + b * c
+    if skew >= 0:
+        return Wobble(0.0, 1.0, 1.0)
+    mean = (b - c) / 2
+    spread = math.hypot((b + c) / 2, (a - d) / 2)
+    return Wobble(-c / (mean + spread), -c / (mean - spread), math.sqrt(b * c / skew))
+
+
+GREENE_Z = math.sqrt(0.971635)  # Greene's K
+
+
+def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
+    """Return ln of the growth of neighbours' distance after so many steps, with w0 = 1.
+
+    The displacement is rescaled to length 1 after each step: Benettin et al., Meccanica 15 (1980)
+    9.  It grows in proportion to the steps on regular orbits, exponentially on chaotic ones.  The
+    logarithm per step tends to the largest Lyapunov exponent, for K >= 10 ln(K/2): Chirikov, Phys.
+    Rep. 52 (1979) 263.
+    """
+    phases = method.on(Pendulum(1.0), np.sin)
+    along = 1.0 + 0.0 * theta
+    across = 0.0 * theta
+    total = 0.0 * theta
+    for _ in range(steps):
+        (theta, omega), (along, across) = tangent_map(phases, (theta, omega), (along, across), z)
+        growth = np.hypot(along, across)
+        along = along / growth
+        across = across / growth
+        total = total + np.log(growth)
+    return total
+
+
+def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
+    """Return whether swings from rest at theta [rad] are chaotic within `steps` steps.
+
+    Over a million steps neighbours on regular orbits separate by at most e^14, on chaotic ones by
+    e^28 within some thousand.  The exact swing from theta separates them by 1/cos²(theta/2), which
+    does not count.
+    """
+    return parting(method, theta, 0.0 * theta, z, steps) > CHAOTIC_SEPARATION + math.log(
+        steps
+    ) - 2 * np.log(np.cos(theta / 2))
+
+
+PART = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
+COMPILED_FROM = 100_000_000  # steps of a method: they take as long as importing and compiling
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """The amplitudes, steps and methods of a map, or of a part of one."""
+
+    theta: Floats  # rad, amplitudes between 0 and pi
+    z: Floats  # h·w0, above 0
+    steps: int
+    methods: Cast = USUAL_CAST
+    fast: bool | None = None  # compiled by Numba; None: where it is installed and pays
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """The shape of its cells: (z, methods, theta)."""
+        return len(self.z), len(self.methods), len(self.theta)
+
+    def cells(self) -> Cells:
+        """Return the outcome of every swing."""
+        z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
+        by_method = [
+            outcomes(method, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
+            for method in self.methods
+        ]
+        return np.stack(by_method, axis=1)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether Numba compiles the loops."""
+        if self.fast is None:
+            return len(self.theta) * len(self.z) * self.steps >= COMPILED_FROM and available()
+        return self.fast
+
+    def unknown(self) -> Cells:
+        """Return cells of unknown outcome."""
+        return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
+
+    def parts(self, width: int | None = None) -> list["Part"]:
+        """Return the grid cut into `width` z of one method; the cells are the same to the bit.
+
+        They depend on `sin`, that is on processor, libm and Numba, so all workers must be alike.
+        """
+        width = width or max(1, PART // len(self.theta))
+        whole = replace(self, fast=self.compiled)
+        zs = [slice(first, first + width) for first in range(0, len(self.z), width)]
+        return [
+            Part(z, index, replace(whole, z=self.z[z], methods=(method,)))
+            for z, (index, method) in product(zs, enumerate(self.methods))
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Some z of one method of a grid."""
+
+    z: slice
+    method: int  # index
+    grid: Grid  # of these alone
+
+    def cells(self) -> Cells:
+        """Return the outcomes by (z, theta)."""
+        return self.grid.cells()[:, 0]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A computed part of a map, and the share of the map that is done with its steps."""
+
+    part: Part
+    cells: Cells
+    done: float
+
+
+def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
+    """Yield the map in pieces of `width` z and one method, with the steps of each pass.
+
+    By default in NumPy, because compiling would delay the first piece.
+    """
+    for steps in passes:
+        parts = replace(grid, steps=steps, fast=bool(grid.fast)).parts(width)
+        for done, part in enumerate(parts, 1):
+            yield Piece(part, part.cells(), done / len(parts))
+
+
+THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
+
+LADDER = np.geomspace(1e-3, 3.2, 812)
+"""The z at which failures are searched, a rung every 1 %, to beyond every linear limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One method and one amplitude."""
+
+    method: Method
+    theta: float  # rad
+    failure: Failure | None  # None: holds on the whole ladder
+    here: Any  # the CELL at the scene's z
+
+
+def amplitude(scene: Scene) -> float | None:
+    """Return how far the scene's pendulum swings [rad]; None where it spins or rests."""
+    if scene.omega == 0 and 0 < abs(scene.theta) < math.pi:
+        return abs(scene.theta)
+    share = scene.equations.energy()((scene.theta, scene.omega)) / (2 * scene.w0_squared)
+    if share >= 1:
+        return None
+    angle = 2 * math.asin(math.sqrt(share))
+    return angle if 0 < angle < math.pi else None
+
+
+def ladder_of(
+    scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
+) -> Grid:
+    """Return a table's grid: amplitudes [rad] on a ladder of z that includes the scene's own."""
+    rungs = np.union1d(LADDER if zs is None else zs, [scene.z])
+    if thetas is None:
+        thetas = list(THETAS)
+        if own := amplitude(scene):
+            others = [theta for theta in THETAS if not np.isclose(theta, own, rtol=0.01)]
+            thetas = sorted([own, *others])
+    return Grid(np.array(thetas), rungs, steps, scene.cast)
+
+
+def map_of(
+    scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
+) -> Grid:
+    """Return the grid of a map, by default of 100 amplitudes [rad] up to pi and 200 z up to 3.
+
+    If a method of the cast is stable at 3, as BM4 is, z goes up to 3.5.
+    """
+    if not thetas:
+        thetas = ((np.arange(100) + 0.5) * math.pi / 100).tolist()
+    if not zs:
+        stable_at_3 = any((method.linear_limit or 0) >= 3 for method in scene.cast)
+        largest = 3.5 if stable_at_3 else 3.0
+        zs = ((np.arange(200) + 0.5) * largest / 200).tolist()
+    return Grid(np.array(thetas), np.array(zs), steps, scene.cast)
+
+
+def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:
+    """Return the first failure of each method at each amplitude, from the cells of a ladder."""
+    here = int(np.searchsorted(grid.z, scene.z))
+    rows = []
+    for (m, method), (t, theta) in product(enumerate(grid.methods), enumerate(grid.theta.tolist())):
+        column = cells[:, m, t]
+        rows.append(Row(method, theta, first_failure(grid.z, column), column[here]))
+    return rows
