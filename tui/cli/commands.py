@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 
 class Command(NamedTuple):
-    """A command; its module in tui/commands holds `run`."""
+    """A command, which `run` of the module of its name in tui/commands does."""
 
     about: str  # in pendu-tui --help
     text: str  # above its options
     options: tuple[str, ...]
     examples: str
+    place: str = ""  # MODULE:FUNCTION there, if it is another
 
 
 COMMANDS = {
@@ -28,6 +29,7 @@ COMMANDS = {
   pendu-tui live --scene crossover --equal-cost
   pendu-tui live --plain --no-record
 """,
+        place="lab:live",
     ),
     "tour": Command(
         "a tour of the lab: nine short steps, with questions",
@@ -39,6 +41,7 @@ COMMANDS = {
 
 Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
+        place="lab:tour",
     ),
     "replay": Command(
         "play a recording on the same screen",
@@ -52,6 +55,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
   pendu-tui replay drift --methods rk4,verlet
   pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """,
+        place="lab:replay",
     ),
     "snapshot": Command(
         "save the lab as an SVG image",
@@ -61,6 +65,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
 """,
+        place="lab:snapshot",
     ),
     "serve": Command(
         "the lab in a browser",
@@ -200,6 +205,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
   pendu-tui scenes crossover
   pendu-tui scenes --json | jq -r '.scenes[].name'
 """,
+        place="lists:scenes",
     ),
     "methods": Command(
         "list the methods with claimed and measured properties",
@@ -215,6 +221,7 @@ A method of your own has measured properties only.
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
   pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
 """,
+        place="lists:methods",
     ),
     "doctor": Command(
         "check the environment and suggest fixes",

@@ -12,7 +12,6 @@ from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
-from types import ModuleType
 from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
@@ -113,15 +112,16 @@ def _dispatch(arguments: list[str]) -> int:
         options = parser_of(name).parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
         return Exit.FINE
-    command: ModuleType = import_module(f"{ROOM}.{name}")
+    module, _, function = COMMANDS[name].place.partition(":")
+    run = getattr(import_module(f"{ROOM}.{module or name}"), function or "run")
     refuse_to_replace_inputs(options)
     if not getattr(options, "method", None):
-        return int(command.run(options))
+        return int(run(options))
     from pendu_tui.tui.cli.time_limit import watched
 
     keep_results_apart()
     with watched():
-        return int(command.run(options))
+        return int(run(options))
 
 
 def split(arguments: list[str]) -> tuple[str, list[str]]:

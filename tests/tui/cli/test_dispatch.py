@@ -77,7 +77,7 @@ def test_an_escape_sequence_is_not_printed_raw():
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", lambda _: 1 / 0)
+    monkeypatch.setattr("pendu_tui.tui.commands.lists.scenes", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         pendu("scenes")
 
@@ -95,7 +95,7 @@ def test_a_mistake_in_an_entry_of_a_list_is_one_sentence_with_its_line(monkeypat
         exec(compile(entry, "engine/scenes/listed.py", "exec"))
         raise AssertionError
 
-    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", listed)
+    monkeypatch.setattr("pendu_tui.tui.commands.lists.scenes", listed)
     line = f"engine/scenes/listed.py, line {entry.count(chr(10)) + 1}: "
     assert pendu("scenes").refused(2, line, words)
 
@@ -110,7 +110,7 @@ def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_i
         except KeyboardInterrupt:
             raise becomes("half imported") from None
 
-    monkeypatch.setattr("pendu_tui.tui.commands.scenes.run", interrupted)
+    monkeypatch.setattr("pendu_tui.tui.commands.lists.scenes", interrupted)
     outcome = pendu("scenes")
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 

@@ -7,7 +7,7 @@ import pytest
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import GROUPS, SCENES
-from pendu_tui.tui.commands.methods import MEASURED
+from pendu_tui.tui.commands.lists import MEASURED
 from pendu_tui.tui.words.cards import method_card, scene_card
 from tests.tui.command_line import pendu
 

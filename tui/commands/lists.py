@@ -1,7 +1,4 @@
-"""List the methods with their claimed and measured properties.
-
-A method of your own has measured properties only.
-"""
+"""Lists of the methods, with their claimed and measured properties, and of the scenes."""
 
 import argparse
 import math
@@ -10,12 +7,13 @@ from itertools import groupby
 from typing import Any
 
 from pendu_tui.engine.methods import METHODS, Cast, Method, family_of, simplified
-from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES
 from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.scene import scene_named
 from pendu_tui.tui.commands.report import Column, Report, fields_of, finite, publish
-from pendu_tui.tui.words.cards import method_card
+from pendu_tui.tui.words.cards import method_card, scene_card
 
 CLAIMS = (
     *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic"),
@@ -33,7 +31,7 @@ z limit: for the linear oscillator, z = h·w0; pendu-tui stability has those of 
 Row = dict[str, Any]
 
 
-def run(options: argparse.Namespace) -> int:
+def methods(options: argparse.Namespace) -> int:
     from pendu_tui.engine.methods.measure import no_order, yes
     from pendu_tui.engine.run.loops import available
 
@@ -134,3 +132,35 @@ def _known(row: Row, name: str) -> Any:
 
 def _limit(z: float) -> str:
     return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.3f}"
+
+
+SCENE_COLUMNS = (
+    Column("scene", lambda scene: scene.name),
+    Column("z", lambda scene: scene.z, ".3g"),
+    Column("what to watch", lambda scene: scene.watch),
+)
+
+
+def scenes(options: argparse.Namespace) -> int:
+    shown = list(SCENES.values())
+    if options.key:
+        shown = [scene_named(options.key)]
+    fields = {"scenes": [scene.fields() | {"speed": scene.speed} for scene in shown]}
+    report = Report(name="scenes", columns=SCENE_COLUMNS, rows=list(_by_group()), fields=fields)
+    if options.key:
+        (scene,) = shown
+        labels = ", ".join(method.label for method in scene.cast)
+        notes = [
+            f"{scene_card(scene)}\n  methods       {labels}",
+            f"\nSee it: pendu-tui {scene.name}",
+        ]
+        report = Report(name="scenes", notes=notes, fields=fields)
+    publish(report, options)
+    return Exit.FINE
+
+
+def _by_group() -> Iterator[Any]:
+    for group, members in GROUPS.items():
+        yield ""
+        yield group.upper()
+        yield from members

@@ -1,0 +1,90 @@
+"""The lab, and a tour, a replay and an image of it."""
+
+import argparse
+import asyncio
+import os
+from pathlib import Path
+
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.recordings.events import remember
+from pendu_tui.tui.cli.cast import cast_of, check_fits, own_methods
+from pendu_tui.tui.cli.errors import Exit, UserError, say
+from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.cli.scene import read_scenes, scene_of
+from pendu_tui.tui.playback import lesson as lessons
+from pendu_tui.tui.playback.lesson import Lesson
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.replay import Replay
+from pendu_tui.tui.screens import launch
+from pendu_tui.tui.terminal.options import terminal_options_of
+
+
+def live(options: argparse.Namespace) -> int:
+    scene = scene_of(options, lesson=True)
+    check_fits(scene.cast)
+    launch.check(options)
+    lab = Live(scene, options.speed or scene.speed)
+    if options.equal_cost:
+        lab.change(lab.stepping.toggled())
+    name = options.scene or options.scene_option or ""
+    lesson = None
+    if name.endswith(".toml"):
+        lesson = lesson_of(Path(name))
+    return launch.open_lab(lab, options, lesson)
+
+
+def lesson_of(file: Path) -> Lesson | None:
+    """Return the lesson in a scene file; None for a single scene without a question."""
+    pages = [*read_scenes(file).values()]
+    if len(pages) == 1 and not pages[0].shot.question:
+        return None
+    return Lesson("Page", pages)
+
+
+def tour(options: argparse.Namespace) -> int:
+    launch.check(options)
+    pages = lessons.tour()
+    return launch.open_lab(Live(pages.page), options, pages)
+
+
+def replay(options: argparse.Namespace) -> int:
+    path = resolve(options.file)
+    remember(own_methods(options))
+    only = None
+    if options.methods is not None:
+        only = cast_of(options, ())
+    launch.check(options)
+    played = Replay(launch.open_recording(path))
+    if not 0 <= options.start_at <= played.length:
+        raise UserError(
+            f"--start-at {options.start_at:g} is outside the recording; use 0 to "
+            f"{played.length:.2f} s."
+        )
+    if only is not None and not set(only) & set(played.scene.cast):
+        names = ", ".join(method.key for method in only)
+        raise UserError(f"--methods: the recording's first run has none of {names}.")
+    played.set_speed(options.speed)
+    played.looping = options.loop
+    played.seek(options.start_at)
+    played.pause(options.paused)
+    if options.plain:
+        return launch.print_sentences(played, only=only)
+    screen = launch.replay_screen(played, options.no_record)
+    if only is not None:
+        hidden = {method.key for method in (*METHODS, *played.scene.cast) if method not in only}
+        screen.shown = screen.shown._replace(hidden=frozenset(hidden))
+    return launch.show(screen, options)
+
+
+def snapshot(options: argparse.Namespace) -> int:
+    scene = scene_of(options)
+    check_fits(scene.cast)
+    display = terminal_options_of(options, os.environ, "utf-8")
+    path = options.output or Path(f"{scene.name}.svg")
+    with whole_file(path, options.force) as file:
+        svg = asyncio.run(launch.still(scene, options.time, options.size, display))
+        file.write_text(svg, encoding="utf-8")
+    if options.output is None:
+        say(f"saved {path}")
+    return Exit.FINE
