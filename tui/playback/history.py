@@ -6,21 +6,29 @@ current sample is the last point, whether it is a row or not.
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.playback.row import Row
 from pendu_tui.tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from pendu_tui.recordings.recording import Run
-    from pendu_tui.tui.playback.rows import (
-        Floats,
-        Rows,
-        Window,
-    )  # NumPy is imported after the first paint
+    from pendu_tui.tui.playback.rows import Floats, Ghost, Records, Rows, Window
+
+TRAIL = 300  # rows, ten seconds
+
+
+class Row(NamedTuple):
+    """A sample as charts and trails need it."""
+
+    step: int
+    x: float  # s, simulated time covered
+    t: float  # s, simulated
+    states: Sequence[Sequence[float]]  # of the methods and the exact motion: theta, omega
+    low: list[list[float]]  # of each quantity and method, since the row before
+    high: list[list[float]]
 
 
 def changes_of(run: "Run") -> list[SteppingChange]:
@@ -55,7 +63,6 @@ class History:
         self._current: Row | None = None
         self._last_row = -1  # the step of the last row
         self._waiting: list[Row] = []
-        self._trails: tuple[Row, Floats] | None = None
         self._rows: Rows | None = None
         self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
@@ -75,7 +82,7 @@ class History:
         """
         if self._current and sample.run != self.sample.run:
             self._last_row = sample.step - 1
-            self.rows.truncate(self._last_row)
+            self._filled.truncate(self._last_row)
             if self._returned and self._returned.step > self._last_row:
                 self._returned = None
         is_new = sample.step > self._last_row
@@ -89,8 +96,8 @@ class History:
         if is_row and is_new:
             self._last_row = sample.step
             self._waiting.append(row)
-            if len(self._waiting) >= 64:  # the first rows are shown without NumPy
-                _ = self.rows
+            if len(self._waiting) >= 64:  # the first paint does not wait for NumPy
+                _ = self._filled
 
     def _row(self, sample: Sample, with_extremes: bool) -> Row:
         """Return a row; without extremes, of the values at its end."""
@@ -149,7 +156,8 @@ class History:
         return energies
 
     @property
-    def rows(self) -> "Rows":
+    def _filled(self) -> "Rows":
+        """The rows, in NumPy's arrays."""
         if self._rows is None:
             from pendu_tui.tui.playback.rows import Rows
 
@@ -159,14 +167,19 @@ class History:
         self._waiting.clear()
         return self._rows
 
+    @property
+    def rows(self) -> "Records":
+        """The rows of the whole run up to the current sample."""
+        assert self._current is not None
+        return self._filled.until(self._current)
+
     def window(self, seconds: float | None = None) -> "Window":
         """Return the last `seconds` of simulated time and half a swing before, or the whole run."""
         from pendu_tui.tui.playback.rows import Window
 
-        assert self._current is not None
-        records = self.rows.until(self._current)
+        records = self.rows
         if seconds is not None:
-            records = records[records["x"] >= self._current.x - seconds - self._repeats]
+            records = records[records["x"] >= records["x"][-1] - seconds - self._repeats]
         low = self._named(records["low"])
         high = self._named(records["high"])
         return Window(records["x"], records["t"], low, high, self._repeats)
@@ -198,17 +211,22 @@ class History:
 
     @property
     def trails(self) -> "Floats":
-        """Theta [rad] and omega [rad/s] at the last 300 samples (ten seconds), oldest first.
+        """Theta [rad] and omega [rad/s] at the last 300 samples, oldest first.
 
         Its shape is (samples, methods + 1, 2); the exact motion is last.
         """
-        current = self._current
-        assert current is not None
-        if self._trails is None or self._trails[0] is not current:  # several panes read them
-            self._trails = current, self.rows.trails(current, 300)
-        return self._trails[1]
+        assert self._current is not None
+        return self._filled.recent_until(self._current)["states"][-TRAIL:]
 
     def thetas(self, index: int, length: int) -> list[float]:
         if self._rows is None:
             return [row.states[index][0] for row in self._waiting[-length:]]
         return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]
+
+    def ghost(self) -> "Ghost":
+        """Return this run to lay under another one."""
+        from pendu_tui.tui.playback.rows import Ghost
+
+        steps = dict.fromkeys(f"{abs(change.stepping.h):.4g}" for change in self.changes)
+        label = f"dim: before, h {', '.join(steps)} s"
+        return Ghost(self.scene, label, self.window(), self.rows)

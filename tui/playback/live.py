@@ -212,7 +212,7 @@ class Live(Source):
         before = self.history
         self.start(before.scene.altered(h=self.stepping.smallest))
         if self.scene != before.scene:
-            self._lay_under(before)
+            self.ghost = before.ghost()
 
     def lay_under(self, h: float, seconds: float) -> None:
         """Lay a run with another step size [s] under this one, from the start to `seconds`."""
@@ -223,12 +223,7 @@ class Live(Source):
         for _ in range(round(seconds / h)):
             run.forward(1)
             history.add(run.sample())
-        self._lay_under(history)
-
-    def _lay_under(self, history: History) -> None:
-        from pendu_tui.tui.playback.ghost import Ghost  # imports NumPy
-
-        self.ghost = Ghost(history)
+        self.ghost = history.ghost()
 
     @property
     def run_state(self) -> RunState:

@@ -1,17 +1,16 @@
-"""The rows of a history: the last ones as they were, and the whole run in merged ones.
+"""The rows of a history: the last ones as they were, those before merged into ever wider ones.
 
-As a run gets longer, its rows are merged into ever wider ones, so memory does not grow.  Rows are
-numbered from the start, and a wide row begins at a multiple of its width: what is merged depends on
-the run alone.
+Memory does not grow with the run, and no extreme is lost.
 """
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pendu_tui.tui.playback.row import Row
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.playback.shown import Quantity
 
 Floats = NDArray[np.float64]
@@ -39,105 +38,95 @@ class Window:
         return replace(self, x=self.x[rows], t=self.t[rows], low=low, high=high)
 
 
+class Ghost:
+    """The run before a restart, laid under the lab at the same simulated time."""
+
+    def __init__(self, scene: Scene, label: str, window: Window, rows: Records) -> None:
+        self.scene = scene
+        self.label = label
+        self._window = window
+        failed = ~np.isfinite(rows["high"][:, 0])
+        self._x = rows["x"]
+        self._thetas = np.where(failed, math.nan, rows["states"][:, :-1, 0])
+        self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
+        """The largest angle that it comes to [rad]."""
+
+    def rods(self, t: float) -> dict[str, float]:
+        """Return the angles [rad] at a time [s] by method key, without failed methods."""
+        row = int(np.searchsorted(self._x, t + 1e-9, "right")) - 1
+        if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
+            return {}
+        pairs = zip(self.scene.cast, self._thetas[row].tolist(), strict=True)
+        return {method.key: theta for method, theta in pairs if not math.isnan(theta)}
+
+    def window(self, until: float, seconds: float | None = None) -> Window:
+        """Return its errors up to a simulated time [s], of the last `seconds` or all."""
+        back = (seconds or math.inf) + self._window.repeats
+        return self._window.cut(until - back, until)
+
+
 class Rows:
-    """The rows of one run; `capacity` is even."""
+    """The rows of one run, in records with the fields of a `Row`; `capacity` is a power of 2."""
 
     def __init__(self, quantities: int, methods: int, capacity: int) -> None:
         extremes = (float, (quantities, methods))
         states = (float, (methods + 1, 2))
         row = [("step", int), ("x", float), ("t", float)]
         record = np.dtype([*row, ("states", *states), ("low", *extremes), ("high", *extremes)])
-        self.count = 0
-        self._capacity = capacity
-        self._first = 0  # number of the first recent row
-        self._width = 1  # rows merged into one
-        self._recent = np.zeros(capacity, record)  # a ring buffer
-        self._whole = np.zeros(capacity, record)
+        self._recent = np.zeros(capacity, record)
+        self._count = 0  # of recent rows
+        self._wide = np.zeros(0, record)
+        self._halvings = 0  # of the number of wide rows
 
-    def append(self, row: Row) -> None:
-        self._recent[self.count % self._capacity] = row
-        if self.count == self._capacity * self._width:
-            merged = _merged(self._whole[::2], self._whole[1::2])
-            self._whole[: len(merged)] = merged
-            self._width *= 2
-        self._add_to_whole(self.count)
-        self.count += 1
-        self._first = max(self._first, self.count - self._capacity)
+    def append(self, row: tuple[Any, ...]) -> None:
+        if self._count == len(self._recent):
+            self._widen()
+        self._recent[self._count] = row
+        self._count += 1
 
-    def _add_to_whole(self, number: int) -> None:
-        row = self._recent[[number % self._capacity]]
-        wide = self._whole[number // self._width :][:1]
-        if number % self._width:
-            row = _merged(wide, row)
-        wide[:] = row
+    def _widen(self) -> None:
+        """Merge the older half of the recent rows into wide ones."""
+        half = len(self._recent) // 2
+        leaving = self._recent[:half].copy()
+        for _ in range(self._halvings):
+            leaving = _halved(leaving)
+        self._wide = np.concatenate([self._wide, leaving])
+        if len(self._wide) > len(self._recent):
+            self._wide = _halved(self._wide)
+            self._halvings += 1
+        self._recent[:half] = self._recent[half:]
+        self._count -= half
 
     def truncate(self, step: int) -> None:
         """Drop the rows after a step; long ago, the whole wide row."""
-        number = self.number_after(step)
-        begin = number - number % self._width
-        if begin < self._first:
-            number = begin
-        self._first = min(self._first, number)
-        self.count = number
-        for each in range(begin, number):
-            self._add_to_whole(each)
+        self._wide = _up_to(step, self._wide)
+        self._count = len(_up_to(step, self._recent[: self._count]))
 
-    @property
-    def recent(self) -> Records:
-        return self._recent[self._slots(self._first, self.count)]
+    def until(self, current: tuple[Any, ...]) -> Records:
+        """Return the rows of the whole run up to the current sample."""
+        wide = _up_to(current[0], self._wide)
+        return np.concatenate([wide, self.recent_until(current)])
 
-    def number_after(self, step: int) -> int:
-        """Return the number of the first row after a step; long ago, of its wide row."""
-        if step >= self.last_step(self.count):
-            return self.count
-        recent = self._recent["step"][self._slots(self._first, self.count)]
-        number = self._first + int(np.searchsorted(recent, step, "right"))
-        if number > self._first or not self._first:
-            return number
-        steps = self._whole["step"][: self._first // self._width]
-        return int(np.searchsorted(steps, step, "right")) * self._width
-
-    def last_step(self, number: int) -> int:
-        if number > self._first:
-            return int(self._recent["step"][(number - 1) % self._capacity])
-        if not number:
-            return -1
-        return int(self._whole["step"][(number - 1) // self._width])
-
-    def until(self, current: Row) -> Records:
-        """Return the rows of the whole run up to the current sample.
-
-        The wide rows end where the recent ones begin, so every sample is in one row.
-        """
-        until = self.number_after(current.step)
-        wide = min(-(-self._first // self._width), until // self._width)
-        begin = max(wide * self._width, self._first)
-        if begin > wide * self._width and until == self.count:
-            wide += 1  # the one that has just begun
-            begin = until
-        recent = self._recent[self._slots(begin, until)]
-        return np.concatenate([self._whole[:wide], recent, self._between(current, until)])
-
-    def trails(self, current: Row, length: int) -> Floats:
-        """Return the last states up to the current sample, (rows, methods + 1, 2)."""
-        until = self.number_after(current.step)
-        slots = self._slots(max(until - length, self._first), until)
-        last = self._between(current, until)["states"]
-        return np.concatenate([self._recent["states"][slots], last])[-length:]
-
-    def _between(self, current: Row, until: int) -> Records:
-        """Return the current sample as a row, unless row `until` - 1 is at its step."""
-        rows = [current]
-        if self.last_step(until) == current.step:
-            rows = []
-        return np.array(rows, self._recent.dtype)
-
-    def _slots(self, begin: int, end: int) -> NDArray[np.intp]:
-        return np.arange(begin, max(begin, end)) % self._capacity
+    def recent_until(self, current: tuple[Any, ...]) -> Records:
+        """Return the last rows, and the current sample if it is none of them."""
+        step = current[0]
+        rows = _up_to(step, self._recent[: self._count])
+        last = rows[-1:] if len(rows) else _up_to(step, self._wide)[-1:]
+        if step in last["step"]:
+            return rows
+        return np.append(rows, np.array([current], rows.dtype))
 
 
-def _merged(first: Records, last: Records) -> Records:
-    rows = last.copy()
-    rows["low"] = np.fmin(first["low"], last["low"])
-    rows["high"] = np.fmax(first["high"], last["high"])
-    return rows
+def _up_to(step: int, rows: Records) -> Records:
+    return rows[: np.searchsorted(rows["step"], step, "right")]
+
+
+def _halved(rows: Records) -> Records:
+    """Merge neighbours in pairs; an odd last row stays as it is."""
+    pairs = len(rows) // 2 * 2
+    first = rows[:pairs:2]
+    last = rows[1:pairs:2]
+    merged = last.copy()
+    merged["low"] = np.fmin(first["low"], last["low"])
+    merged["high"] = np.fmax(first["high"], last["high"])
+    return np.concatenate([merged, rows[pairs:]])

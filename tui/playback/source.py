@@ -16,7 +16,7 @@ from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback.history import History
 
 if TYPE_CHECKING:
-    from pendu_tui.tui.playback.ghost import Ghost
+    from pendu_tui.tui.playback.rows import Ghost
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@ import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.picture import faint, ink_of
-from pendu_tui.tui.playback.ghost import Ghost
+from pendu_tui.tui.playback.rows import Ghost
 from pendu_tui.tui.views.lab import TimeChart
 from pendu_tui.tui.views.stage import Stage
 from tests.tui.drawn import inks
@@ -17,7 +17,7 @@ OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 @pytest.fixture(scope="module")
 def found() -> Ghost:
     """The ghost of a run of 15 s."""
-    return Ghost(after(OTHER_H, 15.0).history)
+    return after(OTHER_H, 15.0).history.ghost()
 
 
 def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(found):

@@ -152,7 +152,7 @@ def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name, size)
     own = {inks(scene.cast)[place] for place in shown.places(scene.cast)}
     rows = [row for (row, _), (_, ink) in cells(picture).items() if ink >= 0 and ink % FAINT in own]
     beyond = [row for row in rows if not top - 1 <= row <= bottom + 1]
-    fastest = abs(seen.live.history.rows.recent["states"][:, 1:3, 1]).max(axis=0) / shown.line.value
+    fastest = abs(seen.live.history.rows["states"][:, 1:3, 1]).max(axis=0) / shown.line.value
     if name == "chaos-fenced":
         assert all(0.5 < each < 1 for each in fastest)
         assert not beyond
