@@ -5,15 +5,13 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from traceback import walk_tb
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from textual.app import App, ScreenStackError
 from textual.binding import Binding, BindingType
-from textual.events import Event
 from textual.filter import LineFilter
-from textual.screen import ModalScreen, Screen
+from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
 from pendu_tui.recordings.files import printable
@@ -32,46 +30,14 @@ HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
 """Classes for the style sheet, each from so many columns or rows on."""
 
 
-Result = TypeVar("Result")
-FAULTY = {"textual.command", "textual.widgets._option_list"}
-
-
-class ForgivingApp(App[Result]):
-    """Closes a palette or list that raises, where Textual would end the app.
-
-    They raise when keys come faster than they open, fill and close, in Textual 8.2, too:
-    https://github.com/Textualize/textual/issues/3714
-    """
-
-    async def on_event(self, event: Event) -> None:
-        try:
-            await super().on_event(event)
-        except Exception as error:
-            if not is_of_palette(error):
-                raise
-            self._handle_exception(error)
-
-    def _handle_exception(self, error: Exception) -> None:
-        if not is_of_palette(error):
-            super()._handle_exception(error)
-        elif isinstance(self.screen, ModalScreen):
-            self.call_later(self.screen.dismiss)
-
-
-def is_of_palette(error: BaseException) -> bool:
-    """Return whether an error, maybe of a worker, was raised in Textual's palette or list."""
-    raised = getattr(error, "error", error)
-    modules = {frame.f_globals["__name__"] for frame, _ in walk_tb(raised.__traceback__)}
-    return not modules.isdisjoint(FAULTY)
-
-
-class PenduApp(ForgivingApp[Exit | BaseException]):
+class PenduApp(App[Exit | BaseException]):
     """Returns the exit code, the error that ended it, or None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
     CSS_PATH = Path(__file__).with_name("app.tcss")  # subclasses use it, too
     TITLE = "pendu"
+    ENABLE_COMMAND_PALETTE = False  # ctrl+p opens our own
     ALLOW_SELECT = False  # with selection, a click on a notice raises in Textual
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(
@@ -112,7 +78,7 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
         """End with this error, in place of Textual's traceback; a test raises it."""
         if isinstance(error, ScreenStackError):
             return  # the screens are already gone
-        if self.is_headless or is_of_palette(error):
+        if self.is_headless:
             super()._handle_exception(error)
         elif self.return_code is None:  # else it is ending already
             self.exit(error)
@@ -142,12 +108,6 @@ class PenduApp(ForgivingApp[Exit | BaseException]):
     def action_suspend_process(self) -> None:
         if not self.is_web:
             self._watchdog.hear(STOP)
-
-    def action_command_palette(self) -> None:
-        from pendu_tui.tui.screens.palette import Commands, LabCommands
-
-        if self.screen is self.lab:
-            self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name

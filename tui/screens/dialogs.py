@@ -1,15 +1,16 @@
-"""Dialogs: texts, forms, and the help, which is made from BINDINGS."""
+"""Dialogs: texts, forms, the finder, and the help, which is made from BINDINGS."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby, zip_longest
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from rich.table import Table
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
 from textual.await_complete import AwaitComplete
-from textual.binding import Binding, BindingType
+from textual.binding import ActiveBinding, Binding, BindingType
 from textual.containers import Container, Horizontal, VerticalScroll
 from textual.dom import DOMNode
 from textual.screen import ModalScreen, ScreenResultType
@@ -19,8 +20,10 @@ from textual.widgets.option_list import Option
 from pendu_tui.engine.methods import METHODS, Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene, SceneError
+from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.lines import SizedScreen, key_text
+from pendu_tui.tui.terminal.options import CHARACTER_SETS
 from pendu_tui.tui.words.cards import glossary, method_card, scene_card
 from pendu_tui.tui.words.numbers import counted, z_text
 from pendu_tui.tui.words.plain_text import step_text
@@ -113,6 +116,111 @@ def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> st
 # Forms
 
 
+class Choices(OptionList):
+    """A list that bears keys and clicks which come faster than it is filled and drawn.
+
+    Textual's raises: https://github.com/Textualize/textual/issues/3714
+    """
+
+    def on_click(self, event: events.Click) -> None:
+        if event.style.meta.get("option", 0) >= self.option_count:
+            event.prevent_default()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Do nothing before there is something to move in."""
+        return self.virtual_size.height > 0
+
+
+class Entry(NamedTuple):
+    """Something that can be done, its key, and a sentence about it."""
+
+    action: str
+    text: str
+    key: str = ""
+    about: str = ""
+
+
+def entries(scenes: Iterable[Scene], bindings: Iterable[ActiveBinding]) -> Iterator[Entry]:
+    """Yield themes, pixels and scenes, then what keys do, each once."""
+    for name in PALETTES:
+        yield Entry(f"app.use_theme({name!r})", f"theme {name}")
+    for name in CHARACTER_SETS:
+        yield Entry(f"app.use_pixels({name!r})", f"pixels {name}")
+    for scene in scenes:
+        yield Entry(f"start_scene({scene.name!r})", f"scene {scene.name}", about=scene.watch)
+    done: set[str] = set()
+    for node, binding, enabled, _ in bindings:
+        ours = {each.action for each in bindings_of(type(node))}
+        if enabled and binding.action in ours - done:
+            done.add(binding.action)
+            press = f"app.simulate_key({binding.key!r})"
+            yield Entry(press, purpose(binding), key_text(binding))
+
+
+class Finder(Form[str]):
+    """Returns the action of an entry that has words beginning with each word typed."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,ctrl+p", "dismiss(None)", priority=True),
+        *(
+            Binding(key, f"move('{name}')", priority=True)
+            for key, name in (
+                ("up", "cursor_up"),
+                ("down", "cursor_down"),
+                ("pageup", "page_up"),
+                ("pagedown", "page_down"),
+            )
+        ),
+    ]
+
+    def __init__(self, entries: Iterable[Entry]) -> None:
+        super().__init__()
+        self.entries = list(entries)
+        self.found = self.entries
+
+    def compose(self) -> ComposeResult:
+        with Container(id="finder") as form:
+            form.border_title = "Find a scene, a theme, a key …"
+            form.border_subtitle = "Enter does it, Esc cancels"
+            yield Input()
+            yield Choices()
+
+    @on(Input.Changed)
+    def fill(self, event: Input.Changed) -> None:
+        patterns = [rf"(?i)(?<!\w){re.escape(word)}" for word in event.value.split()]
+
+        def places(entry: Entry) -> list[int]:
+            text = f"{entry.text} {entry.about}"
+            return [found.start() for each in patterns if (found := re.search(each, text))]
+
+        found = [each for each in self.entries if len(places(each)) == len(patterns)]
+        self.found = sorted(found, key=lambda each: sum(places(each)))
+        listed = self.query_one(Choices)
+        listed.clear_options()
+        listed.add_options(self._line(each, patterns) for each in self.found)
+        listed.highlighted = 0
+
+    def _line(self, entry: Entry, patterns: Iterable[str]) -> Table:
+        line = Table.grid("text", "key", expand=True)
+        line.columns[1].justify = "right"
+        for words, key in ((entry.text, entry.key), (entry.about, "")):
+            text = Text(words)
+            for each in patterns:
+                text.highlight_regex(each, "bold underline")
+            if words:
+                line.add_row(text, key)
+        return line
+
+    async def action_move(self, name: str) -> None:
+        await self.query_one(Choices).run_action(name)
+
+    async def on_input_submitted(self) -> None:
+        await self.action_move("select")
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(self.found[event.option_index].action)
+
+
 class SceneList(Form[str]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)")]
 
@@ -121,7 +229,7 @@ class SceneList(Form[str]):
         self._current = current
 
     def compose(self) -> ComposeResult:
-        listed = OptionList(id="scenes", markup=False)
+        listed = Choices(id="scenes", markup=False)
         listed.border_title = "Scenes, with what to watch"
         listed.border_subtitle = "Enter starts, Esc cancels"
         for group, scenes in GROUPS.items():
@@ -156,7 +264,7 @@ class CastForm(Form[Scene]):
         self.cast = scene.cast
 
     def compose(self) -> ComposeResult:
-        listed = OptionList(*map(self._line, self._methods), id="cast")
+        listed = Choices(*map(self._line, self._methods), id="cast")
         listed.border_title = f"Methods for the model {self._scene.model}, one to {MAX_METHODS}"
         listed.border_subtitle = "Space takes or leaves a method, Enter starts, Esc cancels"
         yield listed

@@ -63,11 +63,10 @@ KEYS: list[BindingType] = [
     Binding("E,shift+e", "events", "list all events", show=False),
     Binding("d", "describe", "describe it in words", show=False),
     Binding("s", "screenshot", "save a screenshot", show=False),
+    Binding("S,shift+s", "save_scene", "save it as a scene file", show=False),
     Binding("u", "undo", "Undo", tooltip="undo the last change"),
     Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
-    Binding(
-        "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
-    ),
+    Binding("ctrl+p", "find", "Find", True, "ctrl+p", True, "find scenes, themes, …"),
     Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
     Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
 ]

@@ -394,6 +394,13 @@ class LabScreen(SizedScreen[None]):
 
         self.app.push_screen(form, answered)
 
+    def action_find(self) -> None:
+        from pendu_tui.tui.screens.dialogs import Finder, entries
+
+        pages = {page.name: page for page in self.lesson.pages}
+        found = entries({**SCENES, **pages}.values(), self.active_bindings.values())
+        self._ask(Finder(found), self.run_action)
+
     def action_scenes(self) -> None:
         from pendu_tui.tui.screens.dialogs import SceneList
 

@@ -12,7 +12,7 @@ from textual.message_pump import MessagePump
 
 import pendu_tui.tui
 
-MEANT = {name: {"_handle_exception"} for name in ("PenduApp", "ForgivingApp")}
+MEANT = {"PenduApp": {"_handle_exception"}}
 """What replaces Textual's own, by class."""
 
 for module in pkgutil.walk_packages(pendu_tui.tui.__path__, "pendu_tui.tui."):

@@ -1,0 +1,110 @@
+"""The finder finds everything that can be done, and what it finds works."""
+
+import re
+
+import pytest
+from textual.widgets import Input
+
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.cli.scene import read_scenes
+from pendu_tui.tui.drawing.picture import PALETTES
+from pendu_tui.tui.screens.dialogs import Choices
+from pendu_tui.tui.terminal.options import CHARACTER_SETS
+from tests.tui.harness import Theatre, lab
+
+
+async def found(theatre: Theatre, words: str) -> list[str]:
+    """Type words into the finder, and return the texts of what it lists."""
+    await theatre.press("ctrl+p")
+    theatre.app.screen.query_one(Input).value = words
+    await theatre.pilot.pause()
+    return [entry.text for entry in theatre.app.screen.found]
+
+
+async def test_it_has_themes_pixels_and_scenes_first_then_keys_each_once():
+    async with lab(size=(100, 30)) as theatre:
+        texts = await found(theatre, "")
+        first = [f"theme {name}" for name in PALETTES]
+        first += [f"pixels {name}" for name in CHARACTER_SETS]
+        first += [f"scene {name}" for name in SCENES]
+        assert texts[: len(first)] == first
+        keys = {entry.text: entry.key for entry in theatre.app.screen.found[len(first) :]}
+        assert (keys["larger step h"], keys["view: Phase space"]) == ("+", "F3")
+        assert len(texts) == len(set(texts))
+        assert not any("Textual" in text or "Focus" in text for text in texts)
+
+
+@pytest.mark.parametrize(
+    ("words", "first", "number"),
+    [
+        ("scene prob", "scene mean-field", 1),  # "of the probability is gone"
+        ("PIXELS half", "pixels half", 1),
+        ("double", "double speed", None),  # before scenes in whose sentences it stands
+        ("ouble speed", None, 0),
+        ("half block", None, 0),
+    ],
+)
+async def test_words_are_found_by_their_beginnings_in_names_and_sentences(words, first, number):
+    async with lab(size=(100, 30)) as theatre:
+        texts = await found(theatre, words)
+        assert number in (None, len(texts))
+        assert first in (None, *texts[:1])
+
+
+async def test_pixels_are_switched_on_the_running_screen():
+    async with lab(size=(100, 30)) as theatre:
+        await theatre.run(1)
+        assert "⣿" in theatre.app.export_screenshot()
+        await found(theatre, "pixels half")
+        await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
+
+
+async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+
+    async def do(words, *keys):
+        await found(theatre, words)
+        await theatre.press(*keys, "enter")
+        await theatre.pilot.pause()
+        assert theatre.app.screen is theatre.stage
+
+    async with lab(size=(100, 30)) as theatre:
+        await do("scene crossover")
+        assert theatre.source.scene == SCENES["crossover"]
+        assert not theatre.source.playhead.paused
+        await do("theme", "down", "down", "up", "pageup", "down")
+        assert theatre.app.theme == "light"
+        await found(theatre, "double speed")
+        await theatre.pilot.click(Choices, offset=(3, 0))
+        await theatre.pilot.pause()
+        assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed
+        await theatre.press("e", "1", "-")
+        await do("scene file")
+        (scene,) = read_scenes(tmp_path / "scene.toml").values()
+        assert (scene.h, scene.cast) == (0.1, SCENES["crossover"].cast)
+        front = [scene.cast[place].key for place in theatre.stage.shown.places(scene.cast)]
+        assert (scene.shot.quantity, [*scene.shot.front]) == ("theta_error", front)
+        assert len(front) < len(scene.cast)
+
+
+async def test_keys_and_clicks_that_are_faster_than_the_list_do_no_harm(monkeypatch):
+    async with lab(size=(100, 30)) as theatre:
+        for opening in ("ctrl+p", "P", "M"):
+            await theatre.press(opening, "pagedown", "pageup", "escape")
+        await found(theatre, "no such thing")
+        await theatre.press("pagedown", "down", "enter")
+        choices = theatre.app.screen.query_one(Choices)
+        choices.add_options(["one", "two"])
+        choices.highlighted = 0
+        for move in ("page_up", "page_down"):
+            choices._line_cache.clear()  # as before it is drawn
+            choices.virtual_size = choices.virtual_size.with_height(0)
+            await choices.run_action(move)
+        await theatre.press("escape")
+        await found(theatre, "theme")
+        # the list is emptied between a click and its arrival
+        monkeypatch.setattr(type(choices), "option_count", 0)
+        await theatre.pilot.click(Choices, offset=(3, 1))
+        assert theatre.app.screen is not theatre.stage
