@@ -171,12 +171,11 @@ def pictures() -> Iterator[tuple[str, str]]:
     """Draw every view at three sizes."""
     from pendu_tui.engine.scenes import DEFAULT_SCENE
     from pendu_tui.tui.screens.launch import still
-    from tests.tui.conftest import text_of
 
     for view, keys in VIEWS.items():
         for size in SIZES:
             picture = asyncio.run(still(DEFAULT_SCENE, 12.0, size, keys=keys))
-            yield f"picture {view} {size[0]}x{size[1]}", text_of(picture)
+            yield f"picture {view} {size[0]}x{size[1]}", picture
 
 
 def everything() -> Iterator[tuple[str, str]]:

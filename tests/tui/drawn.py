@@ -1,4 +1,11 @@
-"""The contents of a picture, cell by cell."""
+"""The contents of a picture, or of the whole screen, cell by cell."""
+
+import string
+from itertools import chain, count
+from typing import Any
+
+from rich.style import Style
+from textual.app import App
 
 from pendu_tui.tui.drawing.picture import Picture
 
@@ -28,3 +35,30 @@ def size(picture: Picture) -> tuple[int, int]:
     widths = {sum(len(text) for text, _ in row) for row in picture.rows}
     assert len(widths) <= 1
     return max(widths, default=0), len(picture.rows)
+
+
+def screen(app: App[Any]) -> list[list[tuple[str, Style]]]:
+    """Return the rows of cells on the screen, as they are sent to the terminal."""
+    return [
+        [(each, segment.style or Style()) for segment in strip for each in segment.text]
+        for strip in app.screen._compositor.render_strips()
+    ]
+
+
+def looks(app: App[Any]) -> str:
+    """Write the screen as text, below it a letter for each cell's style, and the styles."""
+    styles: dict[str, str] = {}
+    names = chain(string.ascii_letters + string.digits, map(chr, count(0x100)))
+
+    def letter(character: str, style: Style) -> str:
+        parts = [style.bgcolor, style.reverse and "reverse"]
+        if character != " ":
+            parts += [style.color, style.bold and "bold"]
+        look = " ".join(getattr(each, "name", each) for each in parts if each)
+        return styles[look] if look in styles else styles.setdefault(look, next(names))
+
+    rows = screen(app)
+    lines = ["".join(character for character, _ in row) for row in rows]
+    lines += ["".join(letter(*cell) for cell in row) for row in rows]
+    lines += [f"{name}: {look}" for look, name in styles.items()]
+    return "\n".join(line.rstrip() for line in lines) + "\n"

@@ -130,8 +130,8 @@ def small_studies(library: Path) -> Iterator[None]:
         stack.enter_context(patch.dict("os.environ", PENDU_RECORDINGS=str(library)))
         for name, value in (
             ("background.computed", computed_here),
-            ("accuracy.pane.usual", lambda scene, all: (5.0, few)),
-            ("stability.pane.PASSES", (2, 6)),
+            ("accuracy.usual", lambda scene, all: (5.0, few)),
+            ("stability.PASSES", (2, 6)),
         ):
             stack.enter_context(patch(f"pendu_tui.tui.views.{name}", value))
         yield

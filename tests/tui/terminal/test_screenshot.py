@@ -1,7 +1,6 @@
 """Where the screen is saved."""
 
 from pendu_tui.recordings import files
-from tests.tui.conftest import text_of
 from tests.tui.harness import lab
 
 
@@ -10,7 +9,7 @@ async def test_s_saves_a_picture_among_the_recordings_or_reports_why_not(tmp_pat
     async with lab(size=(80, 24)) as theatre:
         await theatre.press("s")
         (picture,) = (tmp_path / "new").iterdir()
-        assert "t 0.00 s" in text_of(picture.read_text(encoding="utf-8"))
+        assert ">scene</text>" in picture.read_text(encoding="utf-8")
         assert files.listing(tmp_path / "new") == []  # a picture is no recording
         monkeypatch.setenv("PENDU_RECORDINGS", str(picture / "below"))
         await theatre.press("s")
