@@ -237,13 +237,13 @@ def measure(step: "Phases") -> "Measured":
     `step(force, phase, h)` is a generator function that yields the phase (q, p) after one step of
     h, after two, and so on; q'' = force(q).
     """
-    from pendu_tui.engine.methods.examine import properties
+    from pendu_tui.engine.methods.examine import measured_function
     from pendu_tui.engine.methods.own import OwnMethodError
 
     if not callable(step):
         raise ValueError(f"{step!r} is no function; give a generator function (force, phase, h).")
     try:
-        return properties(step)
+        return measured_function(step)
     except OwnMethodError as error:
         raise ValueError(str(error)) from None
 

@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
@@ -18,8 +18,7 @@ else:
 _ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 ENDING = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
 """The signals that ask for an end."""
-STOP: int | None = getattr(signal, "SIGTSTP", None)
-CONTINUE: int | None = getattr(signal, "SIGCONT", None)
+CAN_STOP = hasattr(signal, "SIGTSTP")
 PLAIN_SCREEN = b"\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
 """Escape sequences that leave the alternate screen and stop mouse reports."""
 LOCKED = 0x7FFFFFFF  # on Windows; a byte behind all data, because a locked one cannot be read
@@ -109,6 +108,15 @@ def restore_terminal(state: Any) -> None:
         os.write(2, PLAIN_SCREEN)
 
 
+def is_gone() -> bool:
+    """Return whether the terminal has been closed; writing would fail or block for ever."""
+    try:
+        os.get_terminal_size(2)
+    except OSError:
+        return True
+    return False
+
+
 def give_way() -> None:
     """Let other processes go first."""
     if sys.platform != "win32":
@@ -119,6 +127,13 @@ def stop() -> None:
     """Stop this process until it is continued."""
     if sys.platform != "win32":
         os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def when_continued(handler: Callable[..., object]) -> None:
+    """Call a handler after each stop, which signals cause as usual."""
+    if sys.platform != "win32":
+        signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        signal.signal(signal.SIGCONT, handler)
 
 
 def is_stopped(process: int) -> bool:

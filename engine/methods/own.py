@@ -1,17 +1,17 @@
-"""A user's own method: a generator function from a file, measured, its numbers checked in use.
+"""A user's own method: a generator function from a file, whose numbers are checked in use.
 
 Its code is executed like any Python.  Other processes receive the text and compile it again.
 """
 
-import copyreg
+import linecache
 import math
+import reprlib
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, wraps
-from inspect import CO_GENERATOR
-from numbers import Complex, Real
+from inspect import isgeneratorfunction, unwrap
+from traceback import format_exception_only, walk_tb
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.engine.methods.method import Method, Phases
@@ -21,6 +21,8 @@ if TYPE_CHECKING:  # it brings NumPy
     from pendu_tui.engine.methods.measure import Measured
 
 MAX_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
+MAX_TIME = 3.0  # s, for a step
+FORM = "write `while True:` with the formulas and `yield theta, omega`"
 
 
 class OwnMethodError(Exception):
@@ -30,29 +32,32 @@ class OwnMethodError(Exception):
 class TooLongError(BaseException):
     """A user's code takes too long.  It is no Exception, which that code might catch."""
 
-    why = ""  # continues a sentence: takes more than 3 s for a step
-
     def __str__(self) -> str:
-        return self.why
+        return f"takes more than {MAX_TIME:g} s"
 
 
 class _UserCode:
-    """A context in which a user's code runs, and writes to stderr, since stdout is for results."""
+    """A context in which a user's code runs, and writes to stderr, since stdout is for results.
+
+    Contexts within another are part of it.
+    """
 
     def __init__(self) -> None:
-        self.is_running = False
-        self.steps = 0  # begun
+        self.depth = 0
+        self.count = 0  # of contexts begun
         self._stdout = sys.stdout
 
     def __enter__(self) -> None:
-        self._stdout = sys.stdout
-        sys.stdout = sys.stderr
-        self.steps += 1
-        self.is_running = True
+        if self.depth == 0:
+            self.count += 1
+            self._stdout = sys.stdout
+            sys.stdout = sys.stderr
+        self.depth += 1
 
     def __exit__(self, *_: object) -> None:
-        self.is_running = False
-        sys.stdout = self._stdout
+        self.depth -= 1
+        if self.depth == 0:
+            sys.stdout = self._stdout
 
 
 USER_CODE = _UserCode()
@@ -72,6 +77,10 @@ class OwnMethod(Method):
         import hashlib  # slow
 
         return hashlib.sha256(self.source.encode()).hexdigest()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the text, because executed functions have no module."""
+        return own_method, (self.source, self.key, self.letter, self.file, self.measured)
 
 
 @cache
@@ -102,20 +111,13 @@ def own_method(source: str, key: str, letter: str, file: str, measured: "Measure
     )
 
 
-# Methods are pickled as text, because executed functions have no module.
-copyreg.pickle(
-    OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured))
-)
-
-
 def takes_rates(function: Phases) -> bool:
     """Return whether a user's function takes the rates of a phase in place of the force.
 
     It calls its first parameter `rates`; `rates(phase)` are the derivatives of theta and omega.
     """
-    wrapped = getattr(function, "__wrapped__", function)
-    code = getattr(wrapped, "__code__", None)
-    return code is not None and code.co_varnames[:1] == ("rates",)
+    first: tuple[str, ...] = unwrap(function).__code__.co_varnames[:1]
+    return first == ("rates",)
 
 
 def on_force(function: Phases) -> Phases:
@@ -136,6 +138,11 @@ def on_force(function: Phases) -> Phases:
 @cache
 def own_function(source: str, name: str, file: str) -> Phases:
     """Return the guarded generator function of this name in a text.  Raises OwnMethodError."""
+    if len(source) > MAX_SOURCE:
+        raise OwnMethodError(
+            f"{file} is too long; use a file of at most {MAX_SOURCE:,} characters."
+        )
+    linecache.cache[file] = (len(source), None, source.splitlines(), file)
     namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file}
     try:
         with USER_CODE:
@@ -145,93 +152,59 @@ def own_function(source: str, name: str, file: str) -> Phases:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        raise OwnMethodError(_sentence(error, source, file, file)) from None
+        raise OwnMethodError(_sentence(error, file, file)) from None
     function = namespace.get(name)
-    if not callable(function) or isinstance(function, type):
-        why = f"{file} has no function {name!r}"
-        others = (key for key, value in namespace.items() if callable(value))
-        if functions := [key for key in others if key[:1] != "_"]:
-            why += f"; it has {', '.join(functions[:6])}"
-        raise OwnMethodError(f"{why}.")
-    return guarded(function, name, source, file)
+    if not callable(function):
+        others = [key for key, value in namespace.items() if callable(value) and key[0] != "_"]
+        has = f"; it has {', '.join(others[:6])}" if others else ""
+        raise OwnMethodError(f"{file} has no function {name!r}{has}.")
+    return guarded(function, file)
 
 
-def guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
-    """Return the function wrapped to raise OwnMethodError for errors and for wrong values."""
-    where = file
-    form = _FORM
-    if code := getattr(function, "__code__", None):
-        where = f"{file}, line {code.co_firstlineno}"
-        if not code.co_flags & CO_GENERATOR:
-            taken = ", ".join(code.co_varnames[: code.co_argcount])
-            form = f"it takes ({taken}); make it a generator function (force, phase, h): {_FORM}"
+def guarded(function: Phases, file: str) -> Phases:
+    """Return the function wrapped to raise OwnMethodError for errors and for wrong values.
+
+    `file` is the name that it is compiled with.  Raises OwnMethodError.
+    """
+    inner = unwrap(function)
+    name = getattr(inner, "__name__", "it")
+    if not isgeneratorfunction(inner):
+        what = f"{file}: {name} is no generator function"
+        raise OwnMethodError(f"{what}; make it one that takes (force, phase, h): {FORM}.")
+    where = f"{file}, line {inner.__code__.co_firstlineno}"
 
     @wraps(function)
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        floats = type(phase[0]) is float
-        following: Any = None
-        while True:
-            try:
+        try:
+            with USER_CODE:
+                following = function(force, phase, h)
+            while True:
                 with USER_CODE:
-                    if following is None:
-                        following = function(force, phase, h)
-                        if not hasattr(following, "__next__"):
-                            what = f"{where}: {name} returns {_short(following)}"
-                            raise OwnMethodError(f"{what}; {form}.")
                     value = next(following)
-            except StopIteration:
-                break
-            except (OwnMethodError, OverflowError, KeyboardInterrupt):
+                yield _phase(value, phase[0], f"{where}: {name}")
+        except StopIteration:
+            raise OwnMethodError(f"{where}: {name} ends while the run goes on; {FORM}.") from None
+        except (OwnMethodError, OverflowError, KeyboardInterrupt, GeneratorExit):
+            raise
+        except BaseException as error:
+            if _is_of_force(error, force):
                 raise
-            except BaseException as error:
-                if _is_of_force(error, force):
-                    raise
-                what = _sentence(error, source, file, where)
-                if following is None and form != _FORM:
-                    what = f"{what.rstrip('.')}; {form}."
-                raise OwnMethodError(what) from None
-            if floats and type(value) is tuple and [*map(type, value)] == FLOATS:
-                yield value
-            else:
-                yield _phase(value, phase, f"{where}: {name}")
-        raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
+            raise OwnMethodError(_sentence(error, file, where)) from None
 
     return phases
 
 
-FLOATS = [float, float]
-_FORM = "write `while True:` with the formulas and `yield theta, omega`"
-
-
-def _phase(value: Any, start: Phase, who: str) -> Phase:
+def _phase(value: Any, like: Any, who: str) -> Phase:
     """Return the yielded value as a phase, in the kind of numbers of the start."""
     try:
-        theta, omega = (_number(number, like) for number, like in zip(value, start, strict=True))
+        theta, omega = value
+        if isinstance(like, float | complex):
+            return type(like)(theta), type(like)(omega)
+        if theta.shape == omega.shape == like.shape:
+            return theta, omega
     except Exception:  # also of the user's __iter__ or __float__
-        raise OwnMethodError(f"{who} yields {_short(value)}; {_FORM}.") from None
-    return theta, omega
-
-
-def _number(value: Any, like: Any) -> Any:
-    kinds: tuple[tuple[Any, Any], ...] = ((Real, float), (Complex, complex))
-    for kind, make in kinds:
-        if isinstance(like, kind) and not hasattr(value, "shape"):
-            if not isinstance(value, kind):
-                raise TypeError
-            return make(value)
-    if getattr(value, "shape", ()) != getattr(like, "shape", ()):
-        raise TypeError
-    return value
-
-
-def _short(value: object) -> str:
-    try:
-        text = _line(repr(value))
-    except Exception:  # the user's __repr__
-        text = f"a {type(value).__name__}"
-    if len(text) > 40:
-        return f"a {type(value).__name__}"
-    return text
+        pass
+    raise OwnMethodError(f"{who} yields {_line(reprlib.repr(value))}; {FORM}.")
 
 
 def _line(text: str) -> str:
@@ -243,24 +216,20 @@ def _is_of_force(error: BaseException, force: Force) -> bool:
     """Return whether the force raised it, as the sine of infinity does: the run has diverged."""
     if not isinstance(error, ValueError | ArithmeticError):
         return False
-    return any(frame.f_code is getattr(force, "__code__", None) for frame, _ in _frames(error))
+    codes = [frame.f_code for frame, _ in walk_tb(error.__traceback__)]
+    return getattr(force, "__code__", None) in codes
 
 
-def _frames(error: BaseException) -> Iterator[tuple[Any, int]]:
-    trace = error.__traceback__
-    while trace:
-        yield trace.tb_frame, trace.tb_lineno
-        trace = trace.tb_next
+def place(file: str, line: int) -> str:
+    """Return where something happens in a user's file, with the text of the line."""
+    return f"{file}, line {line}: `{_line(linecache.getline(file, line))[:60]}`"
 
 
-def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
+def _sentence(error: BaseException, file: str, where: str) -> str:
     """Return the error with the user's line in its traceback, or else with `where`."""
-    lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
-    if lines:
-        where = f"{file}, line {lines[-1]}: `{_line(source.splitlines()[lines[-1] - 1])[:60]}`"
+    for frame, line in walk_tb(error.__traceback__):
+        if frame.f_code.co_filename == file:
+            where = place(file, line)
     if isinstance(error, TooLongError):
         return f"{where} {error}."
-    what = ""
-    with suppress(Exception):  # of the user's __str__
-        what = _line(str(error))[:200]
-    return f"{where} raises {type(error).__name__}{what and f': {what}'}."
+    return f"{where} raises {_line(format_exception_only(error)[-1])[:250]}."

@@ -151,7 +151,7 @@ class RewindableRun:
         before = self._copy()
         try:
             yield
-        except Exception:
+        except BaseException:  # such as TooLongError
             self._lockstep, self._applied = before
             raise
 

@@ -11,10 +11,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
-from pendu_tui.engine.methods.examine import load
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live
+from tests.own_methods import load
 from tests.recordings.examples import SCENE
 
 FRAME = 1 / 30  # s
@@ -27,7 +27,7 @@ def my_heun(force, phase, h):
         theta, omega = theta + h / 2 * (2 * omega + h * a), omega + h / 2 * (a + b)
         yield theta, omega
 """
-OWN = (load(HEUN, "my_heun", "h", "mine.py"),)
+OWN = (load(HEUN, "my_heun"),)
 KEYS = (
     *[lambda live: live.pause(not live.playhead.paused)] * 4,
     *[lambda live: live.step(1)] * 8,

@@ -1,10 +1,10 @@
 """The options --methods and --method, which choose built-in methods and the user's own."""
 
 import argparse
-import os
 import signal
 import string
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -114,17 +114,10 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
-    from multiprocessing import get_context
-
     from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.tui.cli.workers import received
+    from pendu_tui.tui.cli.workers import received, started
 
-    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
-    context = get_context("spawn")
-    results, sending = context.Pipe(duplex=False)
-    process = context.Process(target=_try, args=(sending, source, key, file), daemon=True)
-    process.start()
-    sending.close()
+    process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
         found: Measured | OwnMethodError = received(results, process, MAX_SECONDS)
@@ -143,20 +136,18 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
 def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
-    from pendu_tui.engine.methods.examine import examined
-    from pendu_tui.engine.methods.own import OwnMethodError, TooLongError
-    from pendu_tui.tui.cli.time_limit import watch
+    from pendu_tui.engine.methods.examine import measured_text
+    from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.tui.cli.watchdog import watchdog
 
-    def refuse(why: object) -> None:
-        results.send(OwnMethodError(f"{file}: {key} {why}."))
-        os._exit(0)
+    def tell(sentence: str) -> None:
+        results.send(OwnMethodError(sentence))
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    watch().end = lambda _: refuse(TooLongError.why)
+    watchdog().tell = tell
     results.send(None)
-    try:
-        results.send(examined(source, key, file))
-    except OwnMethodError as error:
-        results.send(error)
-    except KeyboardInterrupt:
-        refuse("raises KeyboardInterrupt")
+    with suppress(KeyboardInterrupt):  # only a user's code raises it
+        try:
+            results.send(measured_text(source, key, file))
+        except OwnMethodError as error:
+            results.send(error)

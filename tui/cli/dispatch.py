@@ -117,7 +117,7 @@ def _dispatch(arguments: list[str]) -> int:
     refuse_to_replace_inputs(options)
     if not getattr(options, "method", None):
         return int(run(options))
-    from pendu_tui.tui.cli.time_limit import watched
+    from pendu_tui.tui.cli.watchdog import watched
 
     keep_results_apart()
     with watched():

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from multiprocessing import active_children, get_context
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -27,6 +27,20 @@ from pendu_tui.tui.cli.files import interruptible
 
 Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
+
+
+def started(function: Callable[..., object], *arguments: object) -> tuple[BaseProcess, Connection]:
+    """Call a function in another process, with a connection to this one before its arguments.
+
+    Return the process, which ends with this one, and the connection to it.
+    """
+    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
+    context = get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=function, args=(there, *arguments), daemon=True)
+    process.start()
+    there.close()
+    return process, here
 
 
 def received(results: Any, process: BaseProcess, seconds: float | None = None) -> Any:

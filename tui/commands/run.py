@@ -25,7 +25,7 @@ from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
-from pendu_tui.tui.cli.time_limit import watch
+from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.cli.workers import workers_of
 from pendu_tui.tui.commands.report import (
     Column,
@@ -294,7 +294,7 @@ class Task:
 
     def rows(self) -> list[Row]:
         lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
-        watch()  # in a worker, too
+        watchdog()  # in a worker, too
         for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
             last = sample
         return [self.start | row for row in rows_of(self.scene, last, lockstep, is_whole=True)]

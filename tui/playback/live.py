@@ -18,7 +18,7 @@ from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import Event, EventKind, noticed
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.watchdog import limited
 from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, RunState, Source
 

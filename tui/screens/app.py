@@ -1,9 +1,11 @@
 """PenduApp: themes, signals, errors, and the screen of the lab."""
 
+import asyncio
 import html
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -15,15 +17,14 @@ from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
 from pendu_tui.recordings.files import printable
-from pendu_tui.recordings.system import STOP
+from pendu_tui.recordings.system import CAN_STOP, is_gone, stop, when_continued
 from pendu_tui.tui.cli.errors import Exit
+from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.drawing.picture import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
-from pendu_tui.tui.terminal.check import is_gone
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
 from pendu_tui.tui.terminal.paste import limit_pastes
-from pendu_tui.tui.terminal.watchdog import Watchdog
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]
@@ -59,7 +60,8 @@ class PenduApp(App[Exit | BaseException]):
         self.character_filter = CharacterSetFilter(terminal.character_set)
         self.lab = screen
         self._last_notice = ""
-        self._watchdog = Watchdog(self, self.action_interrupt, self.finish)
+        self._watchdog = watchdog()
+        self._was_stopped = False
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
@@ -69,10 +71,24 @@ class PenduApp(App[Exit | BaseException]):
         return self.lab
 
     def on_mount(self) -> None:
-        """Handle signals from now on, and repaint after a stop."""
+        """Handle signals from now on, and repaint after a stop.
+
+        Textual's own handlers would run in the middle of whatever Python does.  If that is a write
+        to the terminal, their own write would wait for it for ever.
+        """
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
-        if not self.is_headless:
-            self._watchdog.begin()
+        if self.is_headless:
+            return
+        loop = asyncio.get_running_loop()
+        self._watchdog.guard(loop, self.action_interrupt, self.finish)
+
+        def continued(*_: object) -> None:
+            self._was_stopped = True
+            with suppress(RuntimeError):  # the loop is closed: the program is ending
+                loop.call_soon_threadsafe(self._take_terminal)
+
+        if not self.is_web:
+            when_continued(continued)
 
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it."""
@@ -106,8 +122,17 @@ class PenduApp(App[Exit | BaseException]):
         self.exit(Exit.INTERRUPTED)
 
     def action_suspend_process(self) -> None:
-        if not self.is_web:
-            self._watchdog.hear(STOP)
+        if CAN_STOP and not self.is_web:
+            with self.suspend():
+                stop()
+            self._was_stopped = False
+
+    def _take_terminal(self) -> None:
+        """Take it back after a stop without notice, when a shell may have used it."""
+        if self._was_stopped:
+            with self.suspend():
+                pass
+            self._was_stopped = False
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name

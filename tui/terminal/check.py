@@ -22,15 +22,6 @@ def check_terminal() -> None:
         raise UserError(f"{why} xterm-256color.", Exit.TERMINAL_UNSUITABLE)
 
 
-def is_gone() -> bool:
-    """Return whether the terminal has been closed; writing would fail or block for ever."""
-    try:
-        os.get_terminal_size(2)
-    except OSError:
-        return True
-    return False
-
-
 def is_writing(app: Any) -> bool:
     """Return whether frames still wait to be written; on a slow line more would only add delay.
 

@@ -13,8 +13,8 @@ from typing import Any
 
 from pendu_tui.recordings.system import give_way
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.time_limit import watch
-from pendu_tui.tui.cli.workers import received
+from pendu_tui.tui.cli.watchdog import watchdog
+from pendu_tui.tui.cli.workers import received, started
 
 
 async def computed(
@@ -25,13 +25,8 @@ async def computed(
     The process is killed when this task is cancelled, and ends with this process.  Raises
     UserError if something else ends it, and what the function raises.
     """
-    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
-    context = multiprocessing.get_context("spawn")
-    results, sending = context.Pipe(duplex=False)
-    process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
     with redirect_stderr(sys.__stderr__):  # Textual's replacement has no file number
-        process.start()
-    sending.close()
+        process, results = started(_send_all, function, arguments)
     try:
         while (result := await asyncio.to_thread(received, results, process)) is not None:
             if isinstance(result, Exception):
@@ -53,7 +48,7 @@ def _send_all(
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream)  # nothing may write across the screen
     give_way()
     Thread(target=_end_with_parent, daemon=True).start()
-    watch()
+    watchdog()
     try:
         for item in function(*arguments):
             results.send(item)

@@ -18,7 +18,7 @@ from pendu_tui.engine.models.model import Model, State
 from pendu_tui.engine.quantities import Head
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.cli.time_limit import limited
+from pendu_tui.tui.cli.watchdog import limited
 from pendu_tui.tui.drawing.picture import TEXT, Picture, inks
 from pendu_tui.tui.playback.live import has_own
 from pendu_tui.tui.playback.source import Source
