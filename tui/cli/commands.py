@@ -1,7 +1,7 @@
 """The commands: what each does, the names of its options, and examples.
 
-The names are those of OPTIONS in tui/commands/options.py.  This module imports nothing, because
-`pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
+The names are those of OPTIONS, or in capitals of GROUPS, in tui/commands/options.py.  This module
+imports nothing, because `pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ COMMANDS = {
     "live": Command(
         "the lab: methods side by side, their errors, a recording",
         "The lab: methods side by side, their errors over time, and a recording.",
-        ("scene", "live --speed", "--equal-cost", "recording", "terminal"),
+        ("SCENE", "live --speed", "--equal-cost", "RECORDING", "TERMINAL"),
         """\
   pendu-tui
   pendu-tui live --scene crossover
@@ -34,7 +34,7 @@ COMMANDS = {
     "tour": Command(
         "a tour of the lab: nine short steps, with questions",
         "A tour of the lab: nine short steps, with questions and their answers.",
-        ("tour --no-record", "terminal"),
+        ("NO RECORDING", "TERMINAL"),
         """\
   pendu-tui tour
   pendu-tui tour --plain --no-record
@@ -47,8 +47,8 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
         "play a recording on the same screen",
         "Replay a recording in the lab: pause, step, seek, loop, play backwards, or continue live.",
         (
-            *("recording file", "--start-at", "cast of a recording", "replay --speed"),
-            *("--loop", "--paused", "replay --no-record", "terminal"),
+            *("recording file", "--start-at", "CAST of a recording", "replay --speed"),
+            *("--loop", "--paused", "replay --no-record", "TERMINAL"),
         ),
         """\
   pendu-tui replay latest
@@ -60,7 +60,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     "snapshot": Command(
         "save the lab as an SVG image",
         "Save the lab as an SVG image, with the same bytes each time.",
-        ("scene", "snapshot --time", "--size", "picture", "snapshot -o", "--force"),
+        ("SCENE", "snapshot --time", "--size", "PICTURE", "snapshot -o", "--force"),
         """\
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
@@ -70,7 +70,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     "serve": Command(
         "the lab in a browser",
         "Show the lab in a browser, for a class without terminals; each tab gets its own lab.",
-        ("--port", "--host", "--at-most", "serve --record", "scene", "picture"),
+        ("--port", "--host", "--at-most", "serve --record", "SCENE", "PICTURE"),
         """\
   pendu-tui serve --port 8080 --scene crossover
   pendu-tui serve --at-most 30 --record recorded/
@@ -83,8 +83,8 @@ Ctrl+C ends it.
         "speed against accuracy: which method, which h, at what cost",
         "Chart speed against accuracy over a ladder of h; find the cheapest method and h.",
         (
-            *("scene", "--all", "accuracy --time", "--h-values", "--error", "--cost"),
-            *("--target", "--no-compiled", "workers", "report figures"),
+            *("SCENE", "--all", "accuracy --time", "--h-values", "--error", "--cost"),
+            *("--target", "--no-compiled", "WORKERS", "REPORT and figures"),
         ),
         """\
   pendu-tui accuracy --target 1e-6 --time 100
@@ -100,8 +100,8 @@ Exit code 1: no method reaches the target.
         "where each method becomes unstable",
         "Find the step size at which each method becomes unstable, in theory and as measured.",
         (
-            *("scene", "--theta-values", "--z-values", "stability --steps"),
-            *("report figures", "workers"),
+            *("SCENE", "--theta-values", "--z-values", "stability --steps"),
+            *("REPORT and figures", "WORKERS"),
         ),
         """\
   pendu-tui stability --theta 120deg --h 0.3
@@ -118,8 +118,8 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
         "run a scene without the screen and judge each method; for CI",
         "Simulate a scene as fast as possible, without the TUI, and judge each method.",
         (
-            *("scene lists", "run --time", "run --record", "--sample-every", "run --fail-if"),
-            *("--no-compiled", "report figures", "workers"),
+            *("SCENES", "run --time", "run --record", "--sample-every", "run --fail-if"),
+            *("--no-compiled", "REPORT and figures", "WORKERS"),
         ),
         """\
   pendu-tui run --time 100
@@ -149,7 +149,7 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
         (
             *("judge files", "judge --time", "--energy", "--table", "--step", "--units"),
             *("--from", "--to", "--scale", "--atoms", "--temperature", "judge --steps"),
-            *("judge --fail-if", "report"),
+            *("judge --fail-if", "REPORT"),
         ),
         """\
   pendu-tui judge energy.xvg
@@ -165,7 +165,7 @@ verdicts:
     "verify": Command(
         "re-simulate recordings and compare every bit",
         "Simulate recordings again from their inputs, and compare every number bit for bit.",
-        ("recording files", "cast of a recording", "--max-steps", "report"),
+        ("recording files", "CAST of a recording", "--max-steps", "REPORT"),
         """\
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
@@ -189,7 +189,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     "recordings": Command(
         "list the recordings, show or recover one",
         "List the recordings, show the contents of one, or recover a damaged one.",
-        ("verb", "recordings file", "report", "recover"),
+        ("verb", "recordings file", "REPORT", "RECOVER"),
         """\
   pendu-tui recordings
   pendu-tui recordings show latest
@@ -199,7 +199,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     "scenes": Command(
         "list the scenes, with what to watch",
         "List the scenes and what to watch in them, or show one scene and its numbers.",
-        ("scene name", "report"),
+        ("scene name", "REPORT"),
         """\
   pendu-tui scenes
   pendu-tui scenes crossover
@@ -214,7 +214,7 @@ List the methods with their claimed and measured properties.
 
 A method of your own has measured properties only.
 """,
-        ("method names", "cast of all", "methods --fail-if", "report"),
+        ("method names", "CAST of all", "methods --fail-if", "REPORT"),
         """\
   pendu-tui methods
   pendu-tui methods rk4 verlet
@@ -226,7 +226,7 @@ A method of your own has measured properties only.
     "doctor": Command(
         "check the environment and suggest fixes",
         "Check the terminal, its colours, the recordings folder and versions, and suggest fixes.",
-        ("report",),
+        ("REPORT",),
         """\
   pendu-tui doctor
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'

@@ -75,17 +75,6 @@ class Suggestions(list[str]):
         return True
 
 
-def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -> None:
-    """Add an option that the tab key completes to a file."""
-    parser.add_argument(*names, **settings).complete = "file"  # type: ignore[attr-defined]
-
-
-def add_recording(parser: argparse.ArgumentParser, name: str = "file", **settings: Any) -> None:
-    """Add an argument for `resolve`."""
-    usual = {"metavar": "FILE|latest|NAME", "help": "a file, latest, or a name such as drift"}
-    add_file(parser, name, **(usual | settings))
-
-
 def resolve(name: str) -> Path:
     """Return the path of a recording: a file, `latest`, one of the library, or a bundled one.
 

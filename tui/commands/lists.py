@@ -35,8 +35,8 @@ def methods(options: argparse.Namespace) -> int:
     from pendu_tui.engine.methods.measure import no_order, yes
     from pendu_tui.engine.run.loops import available
 
-    if options.keys:
-        options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
+    if options.names:
+        options.methods = ",".join((*options.names, *filter(None, [options.methods])))
     cast = cast_of(options, () if options.method else METHODS)
     gate = None
     if options.fail_if:
@@ -60,7 +60,7 @@ def methods(options: argparse.Namespace) -> int:
         name="methods",
         columns=columns,
         rows=list(_by_family(rows)),
-        notes=[NOTE, *_notes(cast, wrong, bool(options.keys))],
+        notes=[NOTE, *_notes(cast, wrong, bool(options.names))],
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
@@ -143,11 +143,11 @@ SCENE_COLUMNS = (
 
 def scenes(options: argparse.Namespace) -> int:
     shown = list(SCENES.values())
-    if options.key:
-        shown = [scene_named(options.key)]
+    if options.name:
+        shown = [scene_named(options.name)]
     fields = {"scenes": [scene.fields() | {"speed": scene.speed} for scene in shown]}
     report = Report(name="scenes", columns=SCENE_COLUMNS, rows=list(_by_group()), fields=fields)
-    if options.key:
+    if options.name:
         (scene,) = shown
         labels = ", ".join(method.label for method in scene.cast)
         notes = [

@@ -15,7 +15,7 @@ from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
 from pendu_tui.tui.cli.errors import Exit
-from pendu_tui.tui.commands.options import OPTIONS
+from pendu_tui.tui.commands import options
 from tests.tui.command_line import PENDU, pendu
 
 ONE_SECOND = ("--time", "1", "--json")
@@ -161,8 +161,25 @@ def test_every_option_is_explained_and_the_parser_takes_the_examples(name):
         parser_of(word).parse_args(words)
 
 
-def test_every_option_in_the_table_belongs_to_a_command():
-    assert {name for each in COMMANDS.values() for name in each.options} == {*OPTIONS}
+class Asked(dict):
+    """A table that notes which of its rows are asked for."""
+
+    def __init__(self, table):
+        super().__init__(table)
+        self.names = set()
+
+    def __getitem__(self, name):
+        self.names.add(name)
+        return super().__getitem__(name)
+
+
+@pytest.mark.parametrize("table", ["OPTIONS", "GROUPS"])
+def test_every_row_of_the_table_belongs_to_a_command(monkeypatch, table):
+    rows = Asked(getattr(options, table))
+    monkeypatch.setattr(options, table, rows)
+    for name in COMMANDS:
+        parser_of(name)
+    assert rows.names == {*rows}
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
