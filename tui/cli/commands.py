@@ -10,17 +10,21 @@ from typing import NamedTuple
 class Command(NamedTuple):
     """A command, which `run` of the module of its name in tui/commands does."""
 
-    about: str  # in pendu-tui --help
-    text: str  # above its options
+    about: str  # in pendu-tui --help, and the first sentence above its options
     options: tuple[str, ...]
     examples: str
-    place: str = ""  # MODULE:FUNCTION there, if it is another
+    more: str = ""  # above its options
+    place: str = ""  # MODULE:FUNCTION in tui/commands, if it is another
+
+    @property
+    def text(self) -> str:
+        """The sentences above its options."""
+        return f"{self.about[0].upper()}{self.about[1:]}.\n\n{self.more}".strip()
 
 
 COMMANDS = {
     "live": Command(
         "the lab: methods side by side, their errors, a recording",
-        "The lab: methods side by side, their errors over time, and a recording.",
         ("SCENE", "live --speed", "--equal-cost", "RECORDING", "TERMINAL"),
         """\
   pendu-tui
@@ -32,8 +36,7 @@ COMMANDS = {
         place="lab:live",
     ),
     "tour": Command(
-        "a tour of the lab: nine short steps, with questions",
-        "A tour of the lab: nine short steps, with questions and their answers.",
+        "a tour of the lab: nine short steps, with questions and their answers",
         ("NO RECORDING", "TERMINAL"),
         """\
   pendu-tui tour
@@ -45,7 +48,6 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     ),
     "replay": Command(
         "play a recording on the same screen",
-        "Replay a recording in the lab: pause, step, seek, loop, play backwards, or continue live.",
         (
             *("recording file", "--start-at", "CAST of a recording", "replay --speed"),
             *("--loop", "--paused", "replay --no-record", "TERMINAL"),
@@ -55,11 +57,11 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
   pendu-tui replay drift --methods rk4,verlet
   pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """,
+        more="Pause, step, seek, loop, play backwards, or continue live.",
         place="lab:replay",
     ),
     "snapshot": Command(
-        "save the lab as an SVG image",
-        "Save the lab as an SVG image, with the same bytes each time.",
+        "save the lab as an SVG image, with the same bytes each time",
         ("SCENE", "snapshot --time", "--size", "PICTURE", "snapshot -o", "--force"),
         """\
   pendu-tui snapshot --time 12 -o lab.svg
@@ -68,8 +70,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
         place="lab:snapshot",
     ),
     "serve": Command(
-        "the lab in a browser",
-        "Show the lab in a browser, for a class without terminals; each tab gets its own lab.",
+        "the lab in a browser, for a class without terminals; each tab gets its own",
         ("--port", "--host", "--at-most", "serve --record", "SCENE", "PICTURE"),
         """\
   pendu-tui serve --port 8080 --scene crossover
@@ -81,7 +82,6 @@ Ctrl+C ends it.
     ),
     "accuracy": Command(
         "speed against accuracy: which method, which h, at what cost",
-        "Chart speed against accuracy over a ladder of h; find the cheapest method and h.",
         (
             *("SCENE", "--all", "accuracy --time", "--h-values", "--error", "--cost"),
             *("--target", "--no-compiled", "WORKERS", "REPORT and figures"),
@@ -97,8 +97,7 @@ Exit code 1: no method reaches the target.
 """,
     ),
     "stability": Command(
-        "where each method becomes unstable",
-        "Find the step size at which each method becomes unstable, in theory and as measured.",
+        "where each method becomes unstable, in theory and as measured",
         (
             *("SCENE", "--theta-values", "--z-values", "stability --steps"),
             *("REPORT and figures", "WORKERS"),
@@ -116,7 +115,6 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
     ),
     "run": Command(
         "run a scene without the screen and judge each method; for CI",
-        "Simulate a scene as fast as possible, without the TUI, and judge each method.",
         (
             *("SCENES", "run --time", "run --record", "--sample-every", "run --fail-if"),
             *("--no-compiled", "REPORT and figures", "WORKERS"),
@@ -139,13 +137,6 @@ verdicts:
     ),
     "judge": Command(
         "judge the energies of another program, from a file or stdin; for CI",
-        """\
-Judge the energies of another program: does its integrator gain or lose energy?
-
-FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
-.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
-certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
-""",
         (
             *("judge files", "judge --time", "--energy", "--table", "--step", "--units"),
             *("--from", "--to", "--scale", "--atoms", "--temperature", "judge --steps"),
@@ -161,10 +152,14 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
 verdicts:
 {verdicts of judge}
 """,
+        more="""\
+FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
+.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
+certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
+""",
     ),
     "verify": Command(
         "re-simulate recordings and compare every bit",
-        "Simulate recordings again from their inputs, and compare every number bit for bit.",
         ("recording files", "CAST of a recording", "--max-steps", "REPORT"),
         """\
   pendu-tui verify latest
@@ -178,8 +173,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 """,
     ),
     "export": Command(
-        "convert a recording to CSV",
-        "Write a recording as CSV, one row per sample and method.",
+        "write a recording as CSV, a row for each sample and method",
         ("recording file", "export -o", "--force"),
         """\
   pendu-tui export latest -o latest.csv
@@ -188,7 +182,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "recordings": Command(
         "list the recordings, show or recover one",
-        "List the recordings, show the contents of one, or recover a damaged one.",
         ("verb", "recordings file", "REPORT", "RECOVER"),
         """\
   pendu-tui recordings
@@ -198,7 +191,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "scenes": Command(
         "list the scenes, with what to watch",
-        "List the scenes and what to watch in them, or show one scene and its numbers.",
         ("scene name", "REPORT"),
         """\
   pendu-tui scenes
@@ -209,11 +201,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "methods": Command(
         "list the methods with claimed and measured properties",
-        """\
-List the methods with their claimed and measured properties.
-
-A method of your own has measured properties only.
-""",
         ("method names", "CAST of all", "methods --fail-if", "REPORT"),
         """\
   pendu-tui methods
@@ -221,11 +208,11 @@ A method of your own has measured properties only.
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
   pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
 """,
+        more="A method of your own has measured properties only.",
         place="lists:methods",
     ),
     "doctor": Command(
-        "check the environment and suggest fixes",
-        "Check the terminal, its colours, the recordings folder and versions, and suggest fixes.",
+        "check the terminal, its colours, the recordings folder and versions; suggest fixes",
         ("REPORT",),
         """\
   pendu-tui doctor
