@@ -7,7 +7,7 @@ wrong, the intact chunks are searched for.  All work is proportional to the file
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import SEEK_END, BytesIO
 from itertools import chain
@@ -28,16 +28,14 @@ MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
-_INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map after it
-_INDEX_MAP = struct.Struct("<HQ")  # channel, offset of its index
+_INDEX = struct.Struct("<BQQQQQI")  # opcode, length, start, end [ns], offset, size, that of its map
+_CHUNK_INDEX = int(Opcode.CHUNK_INDEX)
+_IN_MAP = 10  # bytes of a channel's number, of which the lowest is the first, and its offset
 _CHUNK = struct.Struct("<BQQQQI8sQ")  # see _Head
 _ZSTD = b"\x04\x00\x00\x00zstd"
 _BEFORE_ZSTD = 37  # bytes of a chunk's record
 _MAX_HEAD = _CHUNK.size + 18  # with the largest head of a zstd frame
 _BLOCK = 1 << 16
-
-ShowProgress = Callable[[int, int], None]
-"""Called with the bytes done and those in all."""
 
 
 class Group(NamedTuple):
@@ -68,7 +66,7 @@ class Place(NamedTuple):
     offset: int
     start: int  # ns, log_time of its first message
     end: int  # ns, log_time of its last message
-    has_events: bool
+    may_have_events: bool
     is_after_gap: bool = False  # entries before it are lost
 
 
@@ -97,9 +95,7 @@ class Contents:
         self.topics[channel.id] = channel.topic
 
 
-def read_contents(
-    stream: BinaryIO, check: bool = False, progress: ShowProgress | None = None
-) -> Contents:
+def read_contents(stream: BinaryIO, check: bool = False) -> Contents:
     """Find the chunks of a file by its summary, or by a search if that is missing or wrong.
 
     With `check`, the checksum of the whole file is verified.
@@ -109,11 +105,11 @@ def read_contents(
         raise RecordingError("the file is empty")
     summary = _read_summary(stream, size)
     if summary is None:
-        contents = _search(stream, size, {}, progress)
+        contents = _search(stream, size, {})
     else:
         contents, data_end, crc = summary
         if check and _checksum(stream, data_end) != crc:
-            contents = _search(stream, size, contents.topics, progress)
+            contents = _search(stream, size, contents.topics)
             contents.damage("its checksum is wrong")
     if EVENTS not in contents.topics.values() and not contents.reason:
         raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
@@ -145,23 +141,27 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
 def _read_index(data: bytes) -> Contents:
     """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
+    events: set[int] = set()  # the lowest bytes of their channels
     chunks_end = 0  # chunks that overlap could take for ever
     at = 0
     while at < len(data):
-        opcode, length = _RECORD.unpack_from(data, at)
-        begin = at + _RECORD.size
-        at = begin + length
-        if opcode == Opcode.CHANNEL:
-            contents.add(Channel.read(ReadDataStream(BytesIO(data[begin:at]))))
-        elif opcode == Opcode.CHUNK_INDEX:
-            start, end, offset, size, map_length = _INDEX.unpack_from(data, begin)
+        if data[at] == _CHUNK_INDEX:
+            _, length, start, end, offset, size, map_size = _INDEX.unpack_from(data, at)
             if offset < chunks_end or not start <= end <= MAX_TIME:
                 raise ValueError
             chunks_end = offset + size
-            begin += _INDEX.size
-            indexed = _INDEX_MAP.iter_unpack(data[begin : begin + map_length])
-            has_events = any(contents.topics[number] == EVENTS for number, _ in indexed)
-            contents.places.append(Place(offset, start, end, has_events))
+            begin = at + _INDEX.size
+            may_have_events = not events.isdisjoint(data[begin : begin + map_size : _IN_MAP])
+            contents.places.append(Place(offset, start, end, may_have_events))
+        else:
+            opcode, length = _RECORD.unpack_from(data, at)
+            begin = at + _RECORD.size
+            if opcode == Opcode.CHANNEL:
+                channel = Channel.read(ReadDataStream(BytesIO(data[begin : begin + length])))
+                contents.add(channel)
+                if channel.topic == EVENTS:
+                    events.add(channel.id % 256)
+        at += _RECORD.size + length
     return contents
 
 
@@ -244,9 +244,7 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
     return declared, groups
 
 
-def _search(
-    stream: BinaryIO, size: int, topics: dict[int, str], progress: ShowProgress | None
-) -> Contents:
+def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
     """Find the intact chunks of a file, and by their sequence numbers what is lost between them."""
     contents = Contents(topics)
     sequence = 0  # of the next entry
@@ -264,8 +262,6 @@ def _search(
         has_events = any(contents.topics.get(number) == EVENTS for number in used)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)
-        if progress:
-            progress(offset, size)
     stream.seek(0)
     start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:

@@ -4,7 +4,7 @@ import sys
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from io import SEEK_END
 from math import inf
 from operator import attrgetter
@@ -24,7 +24,7 @@ from pendu_tui.recordings.format import (
     decode_readings,
     topics_of,
 )
-from pendu_tui.recordings.reader import Contents, Group, ShowProgress, read_chunk, read_contents
+from pendu_tui.recordings.reader import Contents, Group, read_chunk, read_contents
 
 CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two
 
@@ -85,7 +85,6 @@ class Recording:
         self._places = contents.places
         self._topics = contents.topics
         self._models: dict[str, str] = {}  # by topic
-        self._others = 0  # entries that are no samples, in chunks with events
         self._topics_of = lru_cache(maxsize=32)(self._named)
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._find_runs()
@@ -93,7 +92,7 @@ class Recording:
         self.length = _clock(self._places[-1].end)
 
     @classmethod
-    def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
+    def open(cls, path: Path, check: bool = False) -> Self:
         """Open a recording; with `check`, verify the checksum of every byte.
 
         Raises RecordingError if it has another format or no run.
@@ -101,7 +100,7 @@ class Recording:
         with named(path):
             stream = open_file(path)
             try:
-                return cls(path, stream, read_contents(stream, check, progress))
+                return cls(path, stream, read_contents(stream, check))
             except BaseException:
                 stream.close()
                 raise
@@ -120,14 +119,10 @@ class Recording:
         """Whether it was finished, and nothing is damaged."""
         return self.reason is None
 
-    @property
+    @cached_property
     def samples(self) -> int:
-        """The number of samples."""
-        try:
-            last = read_chunk(self._stream, self._places[-1].offset)[1][-1]
-        except (RecordingError, OSError):
-            return 0
-        return last.sequence + 1 - self.entries_lost - self._others
+        """The number of samples that can be read."""
+        return sum(1 for _ in self.samples_between())
 
     def at(self, clock: float) -> SamplePlace | None:
         """Return the last sample at or before that time, or else the first one."""
@@ -180,17 +175,15 @@ class Recording:
             if isinstance(value, Sample):
                 yield clock, value
 
-    def run_of(self, number: int) -> Run | None:
-        return self._runs.get(number)
-
-    def methods_of(self, number: int) -> tuple[str, ...]:
-        return tuple(method.key for method in self._runs[number].scene.cast)
+    def run_of(self, number: int) -> Run:
+        """Return the run of an entry."""
+        return self._runs[number]
 
     def _find_runs(self) -> None:
         """Read all events, and the last sample of each run."""
         chunks_to_read: list[int] = []  # with a start, and the last
         for chunk, place in enumerate(self._places):
-            if not place.has_events:
+            if not place.may_have_events:
                 continue
             for clock, event in self._entries(chunk, only_events=True):
                 if isinstance(event, Event):
@@ -198,7 +191,7 @@ class Recording:
                     self._runs[event.run].events.append((clock, event))
                     if event.kind == "start":
                         chunks_to_read.append(chunk)
-            if self._others > MAX_EVENTS:
+            if len(self.events) > MAX_EVENTS:
                 raise RecordingError(f"it has more than {MAX_EVENTS} events")
         if not self._runs:
             raise RecordingError(self.reason or "it has no runs")
@@ -239,13 +232,10 @@ class Recording:
         for _, log_time, channels, data in groups:
             clock = _clock(log_time)
             topics = self._topics_of(tuple(channels))
-            is_sample = topics[0] in self._models
-            if only_events and not is_sample:
-                self._others += 1
             value: Event | Sample
             if topics == (EVENTS,):
                 value = self._event(data[0], clock)
-            elif is_sample and not only_events:
+            elif topics[0] in self._models and not only_events:
                 value = self._sample(data, topics)
             else:
                 continue

@@ -5,9 +5,9 @@ recovery: save the intact chunks of a damaged or unfinished recording as a compl
 """
 
 import math
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import groupby, takewhile
+from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,6 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.recordings.files import RecordingError, named
 from pendu_tui.recordings.format import differences
-from pendu_tui.recordings.reader import ShowProgress
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording, Run
 
@@ -61,29 +60,36 @@ class Verification:
 
 def verify(
     path: Path,
-    progress: ShowProgress | None = None,
+    progress: Callable[[float, float], None] = lambda done, total: None,
     max_steps: int | None = None,
     only: Collection[str] | None = None,
 ) -> Verification:
     """Verify a recording up to the first damage, all methods or `only` those of these keys.
 
-    Raises RecordingError if it has no samples, or more than `max_steps` steps.
+    `progress` is called with the seconds done and those in all.  Raises RecordingError if the
+    recording has no samples, or more than `max_steps` steps.
     """
     result = Verification(path)
-    with Recording.open(path, check=True, progress=progress) as recording, named(path):
+    with Recording.open(path, check=True) as recording, named(path):
         steps = sum(run.steps for run in recording.runs)
-        limit = max_steps or max(MAX_STEPS, MAX_STEPS_PER_SAMPLE * recording.samples)
+        limit = max_steps or MAX_STEPS
+        if steps > limit and max_steps is None:
+            limit = max(limit, MAX_STEPS_PER_SAMPLE * recording.samples)
         if steps > limit:
             raise RecordingError(
                 f"it claims {steps} steps, more than the limit of {limit}; if you trust the file,"
                 f" use --max-steps {steps}"
             )
-        values = (value for _, value in recording.entries())
-        intact: Iterator[Any] = takewhile(lambda value: value is not None, values)
-        for number, group in groupby(intact, attrgetter("run")):
-            run = recording.run_of(number)
-            assert run is not None
-            _rerun(run, group, result, only)
+
+        def intact() -> Iterator[Event | Sample]:
+            for clock, value in recording.entries():
+                if value is None:
+                    return
+                progress(clock, recording.length)
+                yield value
+
+        for number, values in groupby(intact(), attrgetter("run")):
+            _rerun(recording.run_of(number), values, result, only)
         if result.samples == 0:
             raise RecordingError(recording.reason or "it has no samples")
         result.complete = recording.complete
@@ -153,9 +159,7 @@ def _is_close(a: float | None, b: float | None) -> bool:
     return math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
 
 
-def recover(
-    path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False
-) -> dict[str, Any]:
+def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
     """Write what is intact of `path` to `out`, which appears only when it is complete.
 
     No number is repaired, guessed or changed, but the extremes of the first sample after a gap: the
@@ -163,7 +167,7 @@ def recover(
     `runs_lost` counts runs whose start is lost.  Raises RecordingError if nothing can be saved,
     DiskError if `out` cannot be written.
     """
-    with Recording.open(path, check=True, progress=progress) as recording:
+    with Recording.open(path, check=True) as recording:
         recorder = Recorder(out, None, overwrite)
         try:
             for clock, value in recording.entries():

@@ -26,7 +26,7 @@ def ten_seconds(path):
 def spoil(path, *numbers):
     """Change a byte in each of these chunks."""
     with path.open("rb") as stream:
-        places = read_contents(stream, check=True, progress=None).places
+        places = read_contents(stream, check=True).places
     data = bytearray(path.read_bytes())
     for number in numbers:
         data[places[number].offset + 80] ^= 0xFF

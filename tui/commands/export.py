@@ -3,30 +3,22 @@
 import argparse
 from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
-from typing import TYPE_CHECKING
 
+from pendu_tui.recordings.format import EXTRA, MOMENT, READING
+from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.cli.errors import Exit, progress, warn
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.commands.report import write_csv
 from pendu_tui.tui.words.numbers import file_size
 
-if TYPE_CHECKING:
-    from pendu_tui.recordings.recording import Recording
-
-Rows = Iterator[tuple[object, ...]]
-
 
 def run(options: argparse.Namespace) -> int:
-    from pendu_tui.recordings.recording import Recording
-
     path = resolve(options.file)
     with Recording.open(path) as recording, progress(path.name) as show:
         columns = columns_of({run.scene.model: None for run in recording.runs})
-        rows = _rows(recording, show)
         with text_file(options.output, options.force) as out:
-            # NaN, because readers take an empty column for text
-            write_csv(out, columns, (["NaN" if x is None else x for x in row] for row in rows))
+            write_csv(out, columns, _rows(recording, show))
         if recording.reason:
             warn(f"{path}: {recording.reason}; the rest is exported.")
     if options.output:
@@ -37,25 +29,23 @@ def run(options: argparse.Namespace) -> int:
 
 def columns_of(models: Iterable[str]) -> tuple[str, ...]:
     """Return the columns, names with units; energies are per unit m·L²."""
-    from pendu_tui.recordings.format import EXTRA, MOMENT, READING
-
     moment = [field.column for field in MOMENT]
     extra = dict.fromkeys(field.column for model in models for field in EXTRA[model])
     return "clock_s", *moment, "method", *(field.column for field in READING), *extra
 
 
-def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
-    from pendu_tui.recordings.format import EXTRA, READING
-
+def _rows(
+    recording: Recording, show: Callable[[float, float], None]
+) -> Iterator[tuple[object, ...]]:
     extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])
     scalars_of = attrgetter(*(field.name for field in READING))
-    for count, (clock, sample) in enumerate(recording.samples_between(), 1):
-        methods = recording.methods_of(sample.run)
-        for method, reading in zip(methods, sample.readings, strict=True):
-            place = (clock, sample.run, sample.step, sample.t, method)
+    for clock, sample in recording.samples_between():
+        show(clock, recording.length)
+        cast = recording.run_of(sample.run).scene.cast
+        for method, reading in zip(cast, sample.readings, strict=True):
+            place = (clock, sample.run, sample.step, sample.t, method.key)
             values = [*scalars_of(reading), *map(reading.extra.get, extra)]
             if reading.diverged_at is not None:  # a recording repeats the last finite numbers
                 values = [value if value == reading.diverged_at else None for value in values]
-            yield *place, *values
-        if count % 1000 == 0:
-            show(count, recording.samples)
+            # NaN, because readers take an empty column for text
+            yield *place, *("NaN" if value is None else value for value in values)

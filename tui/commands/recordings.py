@@ -2,24 +2,19 @@
 
 import argparse
 import time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from pendu_tui.recordings import files
 from pendu_tui.recordings.files import RecordingError
-from pendu_tui.tui.cli.errors import Exit, UserError, progress
+from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.verification import recover
+from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.commands.report import Column, Form, Report, Table, fields_of
+from pendu_tui.tui.commands.report import Column, Report, Table, fields_of
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
 
-if TYPE_CHECKING:
-    from pendu_tui.recordings.files import Item
-    from pendu_tui.recordings.recording import Recording
-
-OPTIONS = {
-    "file": ("show", "recover"),
-    "output": ("recover",),
-    "force": ("recover",),
-}
+OPTIONS = {"file": ("show", "recover"), "output": ("recover",), "force": ("recover",)}
 """Option -> the verbs that take it."""
 
 
@@ -30,22 +25,16 @@ def run(options: argparse.Namespace) -> int:
             raise UserError(f"{option} belongs to pendu-tui recordings {' or '.join(verbs)}.")
     if options.verb in OPTIONS["file"] and options.file is None:
         raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
-    reports = {"list": _list, "show": _show, "recover": _recover}
-    form: Form = "table"  # -o names a recording
-    if options.json:
-        form = "json"
-    reports[options.verb](options).show(form)
+    report = {"list": _list, "show": _show, "recover": _recover}[options.verb](options)
+    report.show("json" if options.json else "table")  # -o names a recording
     return Exit.FINE
 
 
 def _list(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings import files
-
     rows = [_facts(item) for item in files.listing()]
-    folder = files.folder()
     notes = [f"recording now: {path.with_suffix('')}" for path in files.being_made()]
     if not (rows or notes):
-        notes = [f"No recordings in {folder} yet; start pendu-tui to make one."]
+        notes = [f"No recordings in {files.folder()} yet; start pendu-tui to make one."]
     columns = (
         Column("recording, newest first", "file"),
         Column("last written", "modified", _date),
@@ -57,7 +46,7 @@ def _list(options: argparse.Namespace) -> Report:
         name="recordings",
         columns=columns if rows else (),
         rows=rows,
-        fields={"folder": str(folder), "recordings": rows},
+        fields={"folder": str(files.folder()), "recordings": rows},
         notes=notes,
     )
 
@@ -71,31 +60,26 @@ def _date(when: float) -> str:
     return time.strftime("%Y-%m-%d %H:%M", time.localtime(when))
 
 
-def _facts(item: "Item") -> dict[str, Any]:
-    from pendu_tui.recordings.recording import Recording
-
+def _facts(item: files.Item) -> dict[str, Any]:
     facts = {"file": str(item.path), "bytes": item.bytes, "modified": item.modified}
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            facts |= {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
+            return facts | {
+                "seconds": recording.length,
+                "scenes": scenes,
+                "reason": recording.reason,
+            }
     except RecordingError as error:
-        facts |= {"seconds": None, "scenes": [], "reason": str(error)}
-    return facts
+        return facts | {"seconds": None, "scenes": [], "reason": str(error)}
 
 
 def _show(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings.recording import Recording
-
-    path = resolve(options.file)
-    with (
-        progress(path.name) as show,
-        Recording.open(path, check=True, progress=show) as recording,
-    ):
+    with Recording.open(resolve(options.file), check=True) as recording:
         return _contents(recording)
 
 
-def _contents(recording: "Recording") -> Report:
+def _contents(recording: Recording) -> Report:
     runs: list[dict[str, Any]] = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
         | {"seconds": run.end - run.begin, "inputs": run.inputs}
@@ -106,12 +90,13 @@ def _contents(recording: "Recording") -> Report:
     more = []
     if len(runs) > MAX_RUNS:
         more = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
+    size = f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}"  # reads them all
     health = recording.reason or "complete"
     facts = {
         "file": str(recording.path),
         "health": f"damaged: {health}" if recording.damaged else health,
         "length": seconds(recording.length),
-        "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
+        "size": size,
         "methods": ", ".join(cast),
     }
     fields = {"file": facts["file"], "runs": runs, "seconds": recording.length, "methods": cast}
@@ -139,16 +124,13 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    from pendu_tui.recordings.verification import recover
-
     if options.output is None:
         raise UserError("name the file to write: -o OUT.")
     path = resolve(options.file)
     check_free(options.output, options.force)
     if options.output.exists() and path.samefile(options.output):
         raise UserError(f"{path} is read by this command; choose another name to write.")
-    with progress(path.name) as show:
-        result = recover(path, options.output, show, options.force)
+    result = recover(path, options.output, options.force)
     notes = [f"{result['out']}: {counted(result['samples_kept'], 'sample')} saved."]
     if result["reason"]:
         notes.append(f"Problem: {result['reason']}.")

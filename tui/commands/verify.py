@@ -5,36 +5,33 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from pendu_tui.recordings import files
-from pendu_tui.recordings.files import RecordingError
+from pendu_tui.engine.run import NUMERICS
+from pendu_tui.recordings.events import remember
+from pendu_tui.recordings.files import GOLDEN, PART, RecordingError
+from pendu_tui.recordings.verification import Verification, verify
 from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit, progress, say, warn
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.commands.report import Report, publish
+from pendu_tui.tui.commands.report import Report
 from pendu_tui.tui.words.numbers import counted
 
 
 def run(options: argparse.Namespace) -> int:
-    from pendu_tui.recordings.events import remember
-
     remember(own_methods(options))
     only = None
     if options.methods is not None:
         only = [method.key for method in cast_of(options, ())]
     rows = []
-    for name in options.files:
-        for path in _files(name):
-            row = _row(path, only, options.max_steps)
-            rows.append(row)
-            if options.json:
-                continue
-            if row["error"]:
-                warn(row["error"])
-            else:
-                say(_sentence(row))
+    for path in (path for name in options.files for path in _files(name)):
+        row = _row(path, only, options.max_steps)
+        rows.append(row)
+        if row["error"] and not options.json:
+            warn(row["error"])
+        elif not options.json:
+            say(_sentence(row))
     passed = sum(row["passes"] for row in rows)
     if options.json:
-        publish(Report(name="verify", fields={"files": rows}), options)
+        Report(name="verify", fields={"files": rows}).show("json")
     elif len(rows) > 1:
         say(f"{len(rows)} recordings, {passed} identical")
     if any(row["error"] for row in rows):
@@ -48,13 +45,11 @@ def _files(name: str) -> list[Path]:
     """Return the recordings that an argument stands for, or its path."""
     path = Path(name)
     if name == "golden" and not path.exists():
-        path = files.GOLDEN
+        path = GOLDEN
     return sorted(path.rglob("*.mcap")) or [path]
 
 
 def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str, Any]:
-    from pendu_tui.recordings.verification import Verification, verify
-
     result = Verification(path)
     error = None
     try:
@@ -65,14 +60,11 @@ def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str,
             result = verify(result.file, show, max_steps, only)
     except RecordingError as caught:
         error = str(caught)
-    is_part = result.file.suffix == files.PART
-    passes = result.identical and (result.complete or is_part)
+    passes = result.identical and (result.complete or result.file.suffix == PART)
     return asdict(result) | {"file": str(result.file), "passes": passes, "error": error}
 
 
 def _sentence(row: dict[str, Any]) -> str:
-    from pendu_tui.engine.run import NUMERICS
-
     text = f"{counted(row['samples'], 'sample')} in {counted(row['runs'], 'run')}"
     if not row["complete"]:
         text += f"; {row['reason']}"
@@ -84,8 +76,7 @@ def _sentence(row: dict[str, Any]) -> str:
     if row["changed_sources"]:
         text += f"; the source of {' and '.join(row['changed_sources'])} is not the recorded one"
     verdict = "damaged"
-    first = row["first_difference"]
-    if first:
+    if first := row["first_difference"]:
         verdict = "different"
         place = f"run {first['run']}, step {first['step']}, t = {first['t']:g} s"
         text += f"\n  first in {first['field']} at {place}, {first['method'] or 'all methods'}:"

@@ -186,9 +186,7 @@ class Replay(Source):
         clock, sample = self.recording.sample(place)
         assert isinstance(sample, Sample)
         if jump or sample.run != self.run.number:
-            run = self.recording.run_of(sample.run)
-            assert run is not None
-            self.run = run
+            run = self.run = self.recording.run_of(sample.run)
             self.history = History(run.scene, changes_of(run))
             for _ in self._read(self.history, max(run.begin, clock - 1.0), clock, sample.step):
                 pass

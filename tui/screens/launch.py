@@ -19,7 +19,7 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
 from pendu_tui.recordings.system import environment
-from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
 from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.lesson import Lesson
@@ -86,8 +86,7 @@ def open_recording(path: Path) -> "Recording":
     """Open a recording to replay it.  Raises UserError if it is empty."""
     from pendu_tui.recordings.recording import Recording  # mcap, which a lab needs later
 
-    with progress(f"reading {path.name}") as show_progress:
-        recording = Recording.open(path, progress=show_progress)
+    recording = Recording.open(path)
     if recording.at(0.0) is None:
         recording.close()
         raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
