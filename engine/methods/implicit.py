@@ -120,7 +120,7 @@ IMPLICIT_MIDPOINT = Method(
     label="Implicit midpoint",
     letter="i",
     phases=implicit(0.5),
-    on_parts={"spring": implicit_midpoint_of_spring},
+    others={"parts": implicit_midpoint_of_spring},
     formula="theta' = theta + h (omega + omega')/2;  omega' = omega + h a((theta + theta')/2)",
     order=2,
     force_evaluations=7,

@@ -87,7 +87,7 @@ def learned_hamiltonian(w0_squared: float) -> Rates:
 def _learned(*, note: str, **fields: Any) -> Method:
     return Method(
         **fields,
-        takes_parts=True,
+        takes="parts",
         any_numbers=False,
         models=("pendulum",),
         note=f"{note} Order and evaluations are those of the learned functions.",

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from pendu_tui.engine.models.model import Model, Phase, Rates, Sine
+from pendu_tui.engine.models.model import Model, Offer, Phase, Sine
 
 Phases = Callable[[Any, Phase, float], Iterator[Phase]]
 """(force, phase, h) -> the phases after one step of h [s], after two, and so on without end.
 
-Methods made for one model take its `parts` instead of the force.
+In place of the force, some take another `Offer` of the model.
 """
 
 BoundPhases = Callable[[Phase, float], Iterator[Phase]]
@@ -83,11 +83,9 @@ class Method:
     used: str | None  # a program that uses it, with its page in brackets; None if we know of none
     note: str = ""  # also tested
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
-    takes_parts: bool = False  # `phases` takes the parts of its model, not a force
-    # (rates, phase, h) -> phases: the same method for first-order systems
-    on_rates: Callable[[Rates, Phase, float], Iterator[Phase]] | None = None
-    # the same method with the parts of a model, by its key
-    on_parts: Mapping[str, Phases] = field(default_factory=dict, hash=False)
+    takes: Offer = "force"  # what `phases` takes of a model
+    # the same method for models that offer something else, or that first
+    others: Mapping[Offer, Phases] = field(default_factory=dict, hash=False)
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
@@ -100,25 +98,23 @@ class Method:
     @property
     def general(self) -> bool:
         """Whether it takes any force and any numbers, as maps and studies need."""
-        return self.any_numbers and not self.takes_parts
+        return self.any_numbers and self.takes == "force"
 
     def on(self, model: Model, sin: Sine = math.sin) -> BoundPhases:
         """Return the method's phases on a model, for numbers with this sine."""
-        phases = self.phases_from_parts(model)
-        if phases is not None:
-            return partial(phases, model.parts(sin))
-        if not model.second_order and self.on_rates is not None:
-            return partial(self.on_rates, model.rates(sin))
-        return partial(self.phases, model.force(sin))
+        takes, phases = self.phases_for(model)
+        return partial(phases, getattr(model, takes)(sin))
+
+    def phases_for(self, model: Model) -> tuple[Offer, Phases]:
+        """Return what it takes of a model, and its phases from that."""
+        known = {self.takes: self.phases, **self.others}
+        takes = next(offer for offer in model.offers if offer in known)
+        return takes, known[takes]
 
     @property
     def names(self) -> tuple[str, ...]:
         """All names that users may type."""
         return (self.key, self.label, *self.other_names)
-
-    def phases_from_parts(self, model: Model) -> Phases | None:
-        """Return its phases if it takes the parts of this model."""
-        return self.phases if self.takes_parts else self.on_parts.get(model.key)
 
     def step(self, force: Any, phase: Phase, h: float) -> Phase:
         """Return the phase after one step of h [s]."""

@@ -15,7 +15,7 @@ from traceback import format_exception_only, walk_tb
 from typing import TYPE_CHECKING, Any
 
 from pendu_tui.engine.methods.method import Method, Phases
-from pendu_tui.engine.models.model import Force, Phase
+from pendu_tui.engine.models.model import Force, Offer, Phase
 
 if TYPE_CHECKING:  # it brings NumPy
     from pendu_tui.engine.methods.measure import Measured
@@ -87,15 +87,17 @@ class OwnMethod(Method):
 def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
     """Return the method of a measured text, the same for equal texts."""
     function = own_function(source, key, file)
-    rates = function if takes_rates(function) else None
+    others: dict[Offer, Phases] = {}
+    if takes_rates(function):
+        others["rates"] = function
     name = key.replace("_", " ").strip()
     return OwnMethod(
         key=key,
         label=name[:1].upper() + name[1:],
         letter=letter,
         phases=on_force(function),
-        on_rates=rates,
-        models=("pendulum", "linear", "damped") if rates else ("pendulum", "linear"),
+        others=others,
+        models=("pendulum", "linear", "damped") if others else ("pendulum", "linear"),
         formula=(function.__doc__ or "").strip().partition("\n")[0],
         order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),

@@ -64,7 +64,7 @@ LAGGED_VERLET = Method(
     used=None,
     note="Without friction it is velocity Verlet, of order 2.",
     models=("damped",),
-    takes_parts=True,
+    takes="parts",
 )
 
 CONFORMAL_VERLET = Method(
@@ -81,7 +81,7 @@ CONFORMAL_VERLET = Method(
     used=None,
     note="It shrinks area by exp(-gamma h), as the motion does, wherever it is.",
     models=("damped",),
-    takes_parts=True,
+    takes="parts",
 )
 
 FRICTION = (LAGGED_VERLET, CONFORMAL_VERLET)
@@ -142,7 +142,7 @@ RESPA = Method(
     note="Its kicks resonate if h is a multiple of the fast motion's period. Counted are "
     "evaluations of its parts.",
     models=("spring",),
-    takes_parts=True,
+    takes="parts",
 )
 
 IMEX_EULER = Method(
@@ -160,7 +160,7 @@ IMEX_EULER = Method(
     note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then "
     "out of the swing.",
     models=("spring",),
-    takes_parts=True,
+    takes="parts",
 )
 
 MEAN_FIELD_SPLITTING = Method(
@@ -179,7 +179,7 @@ MEAN_FIELD_SPLITTING = Method(
     used=None,
     note="Counted are its kicks, each of which moves the two levels exactly over the whole step.",
     models=("mean_field",),
-    takes_parts=True,
+    takes="parts",
     any_numbers=False,
 )
 
@@ -235,7 +235,7 @@ TAYLOR_20 = Method(
     reference="Jorba & Zou, Exp. Math. 14 (2005) 99",
     used="astronomy and spacecraft: heyoka [bluescarni.github.io, heyoka]",
     models=("pendulum",),
-    takes_parts=True,
+    takes="parts",
     any_numbers=False,
 )
 

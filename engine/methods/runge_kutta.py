@@ -105,7 +105,7 @@ EXPLICIT_EULER = Method(
     reference=f"{HAIRER}, I.1.2",
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, "
     "Numerical integration]",
-    on_rates=explicit_euler_on_rates,
+    others={"rates": explicit_euler_on_rates},
     models=("pendulum", "linear", *FIRST_ORDER),
 )
 
@@ -123,7 +123,7 @@ RK4 = Method(
     other_names=("classical Runge-Kutta",),
     reference=f"{HAIRER}, II.1.1",
     used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
-    on_rates=rk4_on_rates,
+    others={"rates": rk4_on_rates},
     models=("pendulum", "linear", "spring", *FIRST_ORDER),
 )
 

@@ -45,7 +45,7 @@ class DampedPendulum(Pendulum):
         # beyond, the pendulum creeps, and its reference takes too many steps
         Number("friction", "s⁻¹", "friction in s⁻¹", 0.0, 100.0, max_over_w0=100),
     )
-    second_order = False
+    offers = ("parts", "rates")
     has_separatrix = False
     conserves_energy = False
     error = ENERGY_ERROR._replace(

@@ -62,8 +62,7 @@ class MeanField(Model):
         ),
     )
     turns = True
-    second_order = False
-    counted_parts = ("kick",)
+    offers = ("parts", "rates")
     variables = (
         Quantity("sx", about="of the Bloch vector"),
         Quantity("sy", about="of the Bloch vector"),

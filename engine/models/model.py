@@ -26,6 +26,9 @@ Rates = Callable[[Phase], Phase]
 
 Sine = Callable[[Any], Any]
 
+Offer = Literal["force", "rates", "parts"]
+"""What a method takes of a model: the name of the function that returns it."""
+
 
 class State(NamedTuple):
     """A point of phase space."""
@@ -187,15 +190,15 @@ COMMON = (
 class Model(ABC):
     """Equations of motion: a frozen dataclass of their parameters.
 
-    Most models are theta'' = force(theta).  For others `second_order` is False, and methods
-    integrate `rates`; methods made for one model take its `parts`.
+    `offers` names what methods can take of it, the best first: its `force`, if it is
+    theta'' = force(theta), its `rates` as a first-order system, or the `parts` of its equations.
     """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
     parameters: ClassVar[tuple[Number, ...]] = ()  # the fields after w0_squared, in order
     turns: ClassVar[bool]  # theta + 2 pi is the same place, and it can go over the top
-    second_order: ClassVar[bool] = True  # theta'' = force(theta)
+    offers: ClassVar[tuple[Offer, ...]] = ("force", "parts")
     counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, as force evaluations
     rigid: ClassVar[bool] = True  # the bob stays at one distance from the pivot
     variables: ClassVar[tuple[Quantity, ...]] = ()  # besides those of QUANTITIES
@@ -257,13 +260,7 @@ class Model(ABC):
 
     def rates(self, sin: Sine = math.sin) -> Rates:
         """Return the equations as a first-order system, for the same numbers."""
-        force = self.force(sin)
-
-        def second_order_rates(phase: Phase) -> Phase:
-            theta, omega = phase
-            return omega, force(theta)
-
-        return second_order_rates
+        raise NotImplementedError(f"the model {self.key} is described by a force")
 
     def parts(self, sin: Sine = math.sin) -> Any:
         """Return the parts of the equations for this model's methods."""

@@ -74,6 +74,7 @@ class Spring(Model):
             itemgetter("spring_energy"),
         ),
     )
+    offers = ("parts", "force")
     counted_parts = ("fast", "solve")
     rigid = False
     frequency_symbol = "omega_s"

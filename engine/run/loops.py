@@ -173,16 +173,14 @@ def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: i
 
         return counting
 
-    takes_parts = method.phases_from_parts(model)
-    if takes_parts is not None:
-        parts = model.parts()
-        replaced = {name: counted(getattr(parts, name)) for name in model.counted_parts}
-        phases = takes_parts(parts._replace(**replaced), phase, h)
-    elif not model.second_order and method.on_rates is not None:
-        phases = method.on_rates(counted(model.rates()), phase, h)
+    takes, phases = method.phases_for(model)
+    taken = getattr(model, takes)()
+    if takes == "parts":
+        replaced = {name: counted(getattr(taken, name)) for name in model.counted_parts}
+        taken = taken._replace(**replaced)
     else:
-        phases = method.phases(counted(model.force()), phase, h)
-    next(islice(phases, n - 1, None))
+        taken = counted(taken)
+    next(islice(phases(taken, phase, h), n - 1, None))
     return count
 
 

@@ -30,7 +30,7 @@ class Decaying(Model):
     equation = "theta'' = -w0² theta, u' = -decay u"
     parameters = (Number("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
     turns = False
-    second_order = False
+    offers = ("rates",)
     variables = (Quantity("u", about="decays"), Quantity("square", chart=Chart("u²")))
     extra_columns = (ExtraColumn("u²", "square", "the square of u", lambda extra: extra["square"]),)
     caption = "a projection, without u"
