@@ -4,11 +4,11 @@ They take the pendulum's force and its friction, gamma [s⁻¹], separately.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import islice
 from typing import Any
 
-from pendu_tui.engine.methods.method import HAIRER, Method, Phases
+from pendu_tui.engine.methods.method import COMPILABLE, HAIRER, Method, Phases
 from pendu_tui.engine.methods.verlet import velocity_verlet
 from pendu_tui.engine.models.damped import DampedParts
 from pendu_tui.engine.models.mean_field import MeanField, strang
@@ -187,48 +187,72 @@ FAST_AND_SLOW = (RESPA, IMEX_EULER, MEAN_FIELD_SPLITTING)
 
 
 ORDER = 20
+RECIPROCALS = tuple(1 / n for n in range(1, ORDER + 1))
 
 
-def taylor(parts: Any, phase: Phase, h: float) -> Iterator[Phase]:
-    """The Taylor polynomial of theta and omega; `parts.w0_squared` [s⁻²] is all that it takes.
+def taylor(zeros: Callable[[int], Any]) -> Phases:
+    """Return the Taylor polynomial of theta and omega; `zeros` makes room for coefficients.
 
     With u = w0² cos theta the motion is theta' = omega, omega'' = -omega u, u' = omega omega'.  The
-    energy is not used, so nothing cancels near the separatrix.
+    energy is not used, so nothing cancels near the separatrix.  Of the model it takes `w0_squared`
+    [s⁻²] alone.
     """
-    theta, omega = phase
-    w = [0.0] * (ORDER + 1)  # the coefficients of omega
-    u = [0.0] * ORDER
-    while True:
-        w[0] = omega
-        w[1] = -parts.w0_squared * math.sin(theta)
-        u[0] = parts.w0_squared * math.cos(theta)
-        for k in range(ORDER - 1):
-            square = 0.0
-            for j in range((k + 1) // 2):
-                square += w[j] * w[k - j]
-            if k % 2 == 0:
-                square += w[k // 2] * w[k // 2] / 2
-            if k:
-                u[k] = square
-            product = 0.0
-            for j in range(k + 1):
-                product += w[j] * u[k - j]
-            w[k + 2] = -product / ((k + 1) * (k + 2))
-        turned = 0.0
-        faster = 0.0
-        for k in range(ORDER, 0, -1):
-            turned = (turned + w[k - 1] / k) * h
-            faster = (faster + w[k]) * h
-        theta = theta + turned
-        omega = omega + faster
-        yield theta, omega
 
+    def series(parts: Any, phase: Phase, h: float) -> Iterator[Phase]:
+        theta, omega = phase
+        w = zeros(ORDER + 1)  # coefficients of h omega, times powers of h
+        u = zeros(ORDER)  # of h² u
+        while True:
+            w[0] = h * omega
+            w[1] = -h * h * parts.w0_squared * math.sin(theta)
+            u[0] = h * h * parts.w0_squared * math.cos(theta)
+            turned = 0.0
+            faster = 0.0
+            for k in range(ORDER - 1):
+                half = k // 2
+                square = 0.0
+                # the product of omega and u, from both ends: a processor adds up both at a time
+                low = 0.0
+                high = 0.0
+                for j in range(half):
+                    square += w[j] * w[k - j]
+                    low += w[j + 1] * u[k - 1 - j]
+                    high += w[k - j] * u[j]
+                if k % 2 == 1:
+                    square += w[half] * w[half + 1]
+                    low += w[half + 1] * u[half]
+                else:
+                    square += w[half] * w[half] / 2
+                if k > 0:
+                    u[k] = square
+                w[k + 2] = -(w[0] * u[k] + low + high) * RECIPROCALS[k] * RECIPROCALS[k + 1]
+                turned += w[k + 1] * RECIPROCALS[k + 1]
+                faster += w[k + 2]
+            # the largest terms last, because sums are rounded
+            theta = theta + (w[0] + turned)
+            omega = omega + (w[1] + faster) / h
+            yield theta, omega
+
+    return series
+
+
+TAYLOR = taylor(lambda size: [0.0] * size)
+"""The series for Python; Numba is faster with arrays."""
+
+
+def _taylor_on_arrays() -> Phases:
+    import numpy as np
+
+    return taylor(np.zeros)
+
+
+COMPILABLE[TAYLOR] = _taylor_on_arrays
 
 TAYLOR_20 = Method(
     key="taylor_20",
     label="Taylor, order 20",
     letter="t",
-    phases=taylor,
+    phases=TAYLOR,
     formula="the first 20 derivatives of theta and omega, by recurrence",
     order=ORDER,
     force_evaluations=0,
