@@ -48,7 +48,7 @@ def test_help_and_version_load_nothing_heavy(arguments):
 
 
 def test_the_first_paint_of_the_lab_does_not_wait_for_numpy_and_the_recorder():
-    work = "import pendu_tui.tui.commands.lab"
+    work = "import pendu_tui.tui.commands.lab, pendu_tui.tui.views.lab"
     assert loaded_after(work, "numpy", "mcap", "plotext", "numba") == []
 
 

@@ -25,7 +25,6 @@ from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.error_table import Column, ErrorTable
 from pendu_tui.tui.views.view import Chooser, Memo, StudyView
 from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
-from pendu_tui.tui.words.studies import sentence
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
@@ -249,6 +248,7 @@ class SectionPane(PhasePane):
 
     def _map(self, source: Source) -> Picture:
         from pendu_tui.tui.views.portrait import orbit_of
+        from pendu_tui.tui.words.studies import sentence
 
         method = self.cast[self.index]
         h = abs(source.stepping.own[self.index])
