@@ -44,6 +44,7 @@ def observe() -> None:
     points = Canvas.points
     scatter = Canvas.scatter
     picture = Canvas.picture
+    known = Canvas.dots
 
     def note(canvas: Canvas, dots: Iterable[tuple[float, float]], ink: int) -> None:
         for x, y in dots:
@@ -69,13 +70,22 @@ def observe() -> None:
         for right, down, each in zip(x, y, np.broadcast_to(ink, x.shape).tolist(), strict=True):
             note(canvas, [(right, down)], each)
 
+    def with_dots(canvas: Canvas, some: Iterable[tuple[int, int]], ink: int) -> None:
+        dots = [*some]
+        known(canvas, dots, ink)
+        for cell, bit in dots:
+            row, column = divmod(cell, canvas.columns)
+            if bit:
+                right, down = BITS[bit.bit_length() - 1]
+                TRUTH[canvas][2 * column + right, 4 * row + down].add(ink)
+
     def pictured(canvas: Canvas) -> Picture:
         shown = picture(canvas)
         DRAWN.append((shown, TRUTH[canvas]))
         return shown
 
-    changes = (begun, copied, with_points, with_scatter, pictured)
-    names = ("__init__", "copy", "points", "scatter", "picture")
+    changes = (begun, copied, with_points, with_scatter, with_dots, pictured)
+    names = ("__init__", "copy", "points", "scatter", "dots", "picture")
     for name, change in zip(names, changes, strict=True):
         setattr(Canvas, name, change)
 

@@ -6,9 +6,8 @@ drawn.  Pendulums have few dots: drawing them without NumPy is faster, and does 
 
 A cell of a terminal has one colour, so it shows the dots of one ink only, and each dot in the ink
 it was set in.  Methods come before their faint inks, and these before all others, whatever the
-order of drawing.  Equals of the upper two ranks take turns: first those that have no other cell in
-the column, and of these the ones hidden in most columns, so that none vanishes.  Of the others the
-one drawn first lies below.
+order of drawing.  Equals of the upper two ranks take turns, so that none vanishes.  Of the others
+the one drawn first lies below.
 """
 
 import codecs
@@ -35,6 +34,8 @@ _BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _FLAT = {0x09: 0x01, 0x12: 0x02, 0x24: 0x04, 0xC0: 0x40}
 """Both dots of a row of dots, and the left one of them."""
+STEPS = 16
+"""Steps of the share of columns in which an ink is shown: finer ones flicker."""
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
 """Cells of one ink and the blanks behind them, which look the same in any ink."""
 
@@ -150,7 +151,11 @@ class Canvas:
             first = np.floor(np.minimum(start, start + length)).clip(0)
             last = np.floor(np.maximum(start, start + length))
             last = last.clip(max=np.where(steep, self.height, self.width) - 1)
-            counts = np.where(np.isfinite(dx + dy), last - first + 1, 0).clip(0).astype(np.intp)
+            counts = (
+                np.where(np.isfinite(dx) & np.isfinite(dy), last - first + 1, 0)
+                .clip(0)
+                .astype(np.intp)
+            )
             line = np.repeat(np.arange(len(counts)), counts)  # the line of each dot
             nth = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
             at = first[line] + nth
@@ -160,19 +165,10 @@ class Canvas:
             self.scatter(right, down, ink)
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
-        """Set the dots within `radius` of (x, y); `hollow`: only the rim."""
-        if not (-radius < x < self.width + radius and -radius < y < self.height + radius):
-            return
-        most = radius * radius
-        least = -1.0
-        if hollow and radius > 1:
-            least = (radius - 1) ** 2
-        columns = range(floor(x - radius), floor(x + radius) + 1)
-        rows = range(floor(y - radius), floor(y + radius) + 1)
-        across = [(i, (i + 0.5 - x) ** 2) for i in columns]
-        along = [(j, (j + 0.5 - y) ** 2) for j in rows]
-        dots = [(i, j) for j, down in along for i, right in across if least < right + down <= most]
-        self.points(dots, ink)
+        """Set the dots within `radius` of the one at (x, y); `hollow`: only the rim."""
+        if -radius < x < self.width + radius and -radius < y < self.height + radius:
+            dots = _disc(radius, hollow)
+            self.points([(x + right, y + down) for right, down in dots], ink)
 
     def braille(self, column: int, row: int, lines: Iterable[str], ink: int) -> None:
         """Set the dots of braille characters, drawn elsewhere, from a cell on."""
@@ -260,29 +256,34 @@ class Canvas:
     def _take_turns(
         self, rank: Sequence[int], shared: bytes, dots: bytearray, colours: bytearray
     ) -> None:
-        """Give each shared cell to one of its inks.
+        """Give each shared cell to one of its inks, column by column from the left.
+
+        Inks without a cell in the column come first, and of these the one that has a cell in the
+        smallest share of its columns.  In steps of shares: what is added at the end of a chart
+        changes few turns.
 
         Flat lines at several heights of a cell become dotted: dashes that meet at their ends would
         look like the steps of one line.
         """
         columns = self.columns
         layers = {ink: self._layers[ink] for ink in rank}
-        kept: dict[int, bytearray] = {}  # by ink: the columns in which it has a cell
-        poor = set()  # inks with a cell in less than half of their columns
-        for ink, layer in layers.items():
-            kept[ink] = self._columns_of(colours.translate(_only(ink)))
-            missing = self._columns_of(layer).count(0)
-            if 2 * (columns - kept[ink].count(0)) < columns - missing:
-                poor.add(ink)
-        for cell in [found.start() for found in _FULL_CELLS.finditer(shared)]:
-            row, column = divmod(cell, columns)
+        shown = {ink: self._columns_of(colours.translate(_only(ink))) for ink in rank}
+
+        room = {ink: columns - self._columns_of(layer).count(0) for ink, layer in layers.items()}
+
+        def share(ink: int) -> int:
+            return STEPS * (columns - shown[ink].count(0)) // room[ink]
+
+        cells = [divmod(found.start(), columns)[::-1] for found in _FULL_CELLS.finditer(shared)]
+        for column, row in sorted(cells):
+            cell = row * columns + column
             inks = [ink for ink, layer in layers.items() if layer[cell]]
-            unseen = [ink for ink in inks if not kept[ink][column]]
-            turns = unseen or inks
-            if poor and (poorest := poor.intersection(unseen)):
-                turns = sorted(poorest)
-            ink = turns[(column + 3 * row // 5) % len(turns)]
-            kept[ink][column] = True
+            turn = (column + 3 * row // 5) % len(inks)
+            ink = inks[turn]
+            unseen = [each for each in inks[turn:] + inks[:turn] if not shown[each][column]]
+            if unseen:
+                ink = min(unseen, key=share)
+            shown[ink][column] = True
             own_dots = layers[ink][cell]
             colours[cell] = ink - NOBODY
             if own_dots in _FLAT and len({layers[other][cell] for other in inks}) > 1:
@@ -297,6 +298,16 @@ class Canvas:
             number |= number >> (8 * self.columns * rows)
             rows *= 2
         return bytearray((number & (1 << 8 * self.columns) - 1).to_bytes(self.columns, "little"))
+
+
+@lru_cache(maxsize=32)
+def _disc(radius: float, hollow: bool) -> list[tuple[int, int]]:
+    """Return the dots of a disc, to the right of its centre and down."""
+    least = 0.0
+    if hollow and radius > 1:
+        least = (radius - 1) ** 2
+    size = range(-floor(radius), floor(radius) + 1)
+    return [(i, j) for j in size for i in size if least <= i * i + j * j < radius * radius]
 
 
 _FULL = bytes([0, *[255] * 255])

@@ -45,7 +45,7 @@ class PhasePane(Chooser[State]):
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "screen.switch('ring')", "Ring", tooltip="ring of neighbours"),
     ]
-    MOVES = True
+    EVERY = 2  # in the lab it is small
     NEEDS_NUMPY = True
 
     def __init__(self) -> None:
@@ -207,6 +207,7 @@ class SectionPane(PhasePane):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("x", "section", "Map", tooltip="a method's own map")
     ]
+    EVERY = 1
 
     shows_section: var[bool] = var(False)
 

@@ -42,6 +42,7 @@ Floats = NDArray[np.float64]
 SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
 BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
 CHORDS = 24  # steps
+DISC = 2.2  # dots: discs on each other have a cell for each of four methods
 # where to write a letter, in columns and rows from its point
 BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 
@@ -174,11 +175,9 @@ def draw_points(canvas: Canvas, viewport: Viewport, points: Sequence[PhasePoint]
 
     Those outside are at the nearest edge.
     """
-    x = viewport.x(np.array([point.theta for point in points]))
-    y = viewport.y(np.array([point.omega for point in points]))
-    places = list(zip(points, x.tolist(), y.tolist(), strict=True))
+    places = [(point, viewport.x(point.theta), viewport.y(point.omega)) for point in points]
     for point, right, down in places:
-        canvas.disc(right, down, 1.6, point.ink, hollow=point.ink == EXACT)
+        canvas.disc(right, down, DISC, point.ink, hollow=point.ink == EXACT)
     for point, right, down in places:
         if math.isfinite(right) and math.isfinite(down):
             _write_letter(canvas, right, down, point)

@@ -246,7 +246,7 @@ class Lens(NamedTuple):
 
 
 class Stage(Pane):
-    MOVES = True
+    EVERY = 1
 
     def __init__(self) -> None:
         super().__init__()

@@ -85,6 +85,7 @@ class View(Box):
         self.sample = source.sample
         self._panes: list[Pane] = []
         self._is_painted = False
+        self._frames = 0
 
     def enter(self, source: Source) -> None:
         """Show another source."""
@@ -111,8 +112,10 @@ class View(Box):
             return
         self.sample = sample
         self.shown = shown
+        self._frames += 1
         for pane in self._panes:
-            if (read or pane.MOVES) and (self._is_painted or not pane.NEEDS_NUMPY):
+            is_due = read or (pane.EVERY and self._frames % pane.EVERY == 0)
+            if is_due and (self._is_painted or not pane.NEEDS_NUMPY):
                 pane.follow(sample, shown)
 
     def zoom(self, factor: float) -> None:
@@ -124,8 +127,8 @@ class View(Box):
 
 
 class Pane(CellWidget):
-    MOVES: ClassVar[bool] = False
-    """Whether it is drawn at every frame, not five times a second."""
+    EVERY: ClassVar[int] = 0
+    """It is drawn with every so many frames; 0: five times a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
     """Whether to draw after the first paint only: importing NumPy would double its time."""
 

@@ -123,12 +123,10 @@ class Viewport(NamedTuple):
         return 2 * (self.columns // 2) + 1, 4 * (self.rows // 2) + 2
 
     def x(self, theta: Any) -> Any:
-        import numpy as np  # not needed for the first paint
-
         x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
         if self.wrap:
             turn = math.tau / self.theta_per_dot
-            x = x - turn * np.round((x - self.columns) / turn)
+            x = x - turn * (((x - self.columns) / turn + 0.5) // 1)
         return x
 
     def y(self, omega: Any) -> Any:
