@@ -1,8 +1,11 @@
 """Run tasks in this process, in other processes, or on a Dask cluster.
 
-    with workers_of(options) as run:
-        for result in run(function, tasks):
-            ...
+    with work_of(options, "runs", len(tasks)) as work:
+        for result in work.run(function, tasks):
+            results.append(result)
+            work.step()
+    ...
+    return work.conclude()
 
 The function and the tasks are pickled.  Results come in the order of the tasks and are the same to
 the last bit wherever they are computed, because tasks are independent.
@@ -15,6 +18,7 @@ import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -22,8 +26,8 @@ from typing import Any
 
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.files import interruptible
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
+from pendu_tui.tui.cli.files import interruptible, keep_older
 
 Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
@@ -54,6 +58,50 @@ def received(results: Any, process: BaseProcess, seconds: float | None = None) -
     if results not in ready:
         raise EOFError
     return results.recv()
+
+
+@dataclass
+class Work:
+    """Work of which the parts that are done are kept if it is interrupted."""
+
+    run: Run
+    what: str
+    total: float
+    show: Callable[[float, float], None]
+    done: float = 0
+    ended: UserError | None = None  # by this
+
+    def step(self, amount: float = 1) -> None:
+        """Note that so much more is done."""
+        self.done += amount
+        self.show(self.done, self.total)
+
+    def conclude(self) -> Exit:
+        """Warn if the work was interrupted, and return the exit code."""
+        if self.ended is None:
+            return Exit.FINE
+        share = f"{100 * self.done / self.total:.0f} % of the {self.what} are done and kept"
+        warn(f"{str(self.ended).rstrip('.')}: {share}.")
+        return self.ended.code
+
+
+@contextmanager
+def work_of(options: argparse.Namespace, what: str, total: float) -> Iterator[Work]:
+    """Yield work that the workers of the options do.
+
+    If something is done, an interrupt, a lost worker or a user's method that fails ends the block,
+    not the command.
+    """
+    with progress(what) as show:
+        work = Work(map, what, total, show)
+        try:
+            with workers_of(options) as work.run:
+                yield work
+        except (KeyboardInterrupt, UserError, OwnMethodError) as error:
+            if not work.done:
+                raise
+            keep_older(options.output)
+            work.ended = explained(error)
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from pendu_tui.engine.studies.accuracy import (
     Z_LADDER,
     Cheapest,
     Clock,
+    ErrorKind,
     Order,
     Point,
     Study,
@@ -30,22 +31,22 @@ from pendu_tui.engine.studies.accuracy import (
     with_all_methods,
 )
 from pendu_tui.engine.studies.recommend import Advice, Attempt, least_cost
-from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
-from pendu_tui.tui.cli.files import keep_older
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.scene import general_scene_of
-from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.cli.workers import Work, work_of
 from pendu_tui.tui.commands.report import (
     Column,
+    Figure,
     Report,
     Table,
     check_output,
     console,
-    draw,
     fields_of,
     method_column,
     publish,
     scene_line,
 )
+from pendu_tui.tui.drawing.loglog import Series
 from pendu_tui.tui.drawing.picture import PALETTES, lines_of
 from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
@@ -53,8 +54,12 @@ from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, l
 MAX_STEPS = 10**10  # at the smallest h: half an hour, compiled
 CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows
 NUMBERS = (
-    *("h", "steps", "force_evaluations", "seconds", "spread"),
-    *("theta_error", "energy_error", "final_error"),
+    "h",
+    "steps",
+    "force_evaluations",
+    "seconds",
+    "spread",
+    *(f"{kind}_error" for kind in ERROR_LABELS),
 )
 
 
@@ -63,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     if options.cost == "seconds" and (options.workers > 1 or options.dask):
         raise UserError("seconds are measured in this process; use workers for evaluations only.")
-    is_figure = check_output(options)
+    check_output(options)
     scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:
         raise UserError(
@@ -71,28 +76,12 @@ def run(options: argparse.Namespace) -> int:
             "--omega."
         )
     results = Results(scene, options)
-    interrupted = False
-    try:
-        measure(results)
-    except KeyboardInterrupt:
-        interrupted = True
-        keep_older(options.output)
-    if is_figure:
-        kind = options.error
-        cast = results.scene.cast
-        series = accuracy_series(results.points, kind, options.cost, cast)
-        axes = (COSTS[options.cost], ERROR_LABELS[kind].partition(",")[0])
-        lines = [(each.mark, each.x, each.y) for each in series]
-        draw(options, cast, lines, axes, log="xy")
-    else:
-        publish(report(results, interrupted), options)
-    if interrupted:
-        warn("interrupted; partial results are kept.")
-        return Exit.INTERRUPTED
+    work = measure(results)
+    publish(report(results, interrupted=work.ended is not None), options)
     if results.advice and results.advice.point is None:
         warn(f"no method reaches the target over {results.time:g} s.")
         return Exit.CHECK_FAILED
-    return Exit.FINE
+    return work.conclude()
 
 
 class Results:
@@ -107,9 +96,7 @@ class Results:
         if options.all:
             self.scene = self.searched
         self.time: float = options.time or usual(scene)[0]  # s
-        self.clock: Clock | None = None
-        if options.cost == "seconds":
-            self.clock = time.perf_counter
+        self.kind: ErrorKind = options.error
         self.points: list[Point] = []
         self.orders: list[Order] = []
         self.advice: Advice | None = None  # with a target
@@ -117,40 +104,44 @@ class Results:
     @property
     def front(self) -> list[Cheapest]:
         """Return the cheapest method at each accuracy."""
-        return front(self.points, self.options.error, self.options.cost)
+        return front(self.points, self.kind, self.options.cost)
+
+    def series(self) -> list[Series]:
+        """Return the curves of the chart."""
+        return accuracy_series(self.points, self.kind, self.options.cost, self.scene.cast)
 
 
-def measure(results: Results) -> None:
+def measure(results: Results) -> Work:
     """Fill the results step by step, so that an interrupt keeps those that are there."""
     scene = results.scene
-    rungs = _ladder(results)
+    options = results.options
+    clock: Clock | None = None
+    if options.cost == "seconds":
+        clock = time.perf_counter
     study_loops: LoopsOf = loops.TieredLoops
     timed_loops: LoopsOf = loops.compiled
     # seconds compare methods only if all or none of them are compiled
-    fast = not results.options.no_compiled and (not results.clock or compilable(scene.cast))
-    if not fast:
+    if options.no_compiled or (clock and not compilable(scene.cast)):
         study_loops = timed_loops = loops.PlainLoops
-    if results.options.target is not None:
-        study = Study(results.searched, results.time, study_loops)
-        with progress("searching") as show:
+    rungs = _ladder(results)
+    tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
+    with work_of(options, "steps", len(scene.cast) * sum(rungs)) as work:
+        for point in work.run(partial(measured_point, scene, results.time, study_loops), tasks):
+            if clock:
+                point = timed(point, scene, clock, timed_loops)
+            results.points.append(point)
+            work.step(point.steps)
+        results.orders += orders(scene, results.time, study_loops)
+        if options.target is not None:
             results.advice = least_cost(
-                study,
-                kind=results.options.error,
-                target=results.options.target,
-                show=lambda share: show(share, 1),
-                clock=results.clock,
+                Study(results.searched, results.time, study_loops),
+                kind=results.kind,
+                target=options.target,
+                show=lambda share: work.show(share, 1),
+                clock=clock,
                 loops=timed_loops,
             )
-    tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
-    done = 0
-    with workers_of(results.options) as run, progress("measuring") as show:
-        for point in run(partial(measured_point, scene, results.time, study_loops), tasks):
-            if results.clock:
-                point = timed(point, scene, results.clock, timed_loops)
-            results.points.append(point)
-            done += point.steps
-            show(done, len(scene.cast) * sum(rungs))
-    results.orders += orders(scene, results.time, study_loops)
+    return work
 
 
 def _ladder(results: Results) -> list[int]:
@@ -177,14 +168,14 @@ def _ladder(results: Results) -> list[int]:
 
 
 def report(results: Results, interrupted: bool) -> Report:
-    kind = results.options.error
+    kind = results.kind
     points = list(_records(results))
     return Report(
         name="accuracy",
         title=f"{scene_line(results.scene)}, over {results.time:g} s\n{ERROR_LABELS[kind]}\n",
         columns=_columns(results),
         rows=_rungs(results),
-        notes=list(_notes(results)),
+        notes=_notes(results),
         records=points,
         fields={
             "scene": results.scene.fields(),
@@ -200,6 +191,13 @@ def report(results: Results, interrupted: bool) -> Report:
             "recommendation": results.advice and _advice_fields(results, results.advice),
             "interrupted": interrupted,
         },
+        figure=Figure(
+            results.scene.cast,
+            [(each.mark, each.x, each.y) for each in results.series()],
+            x_label=COSTS[results.options.cost],
+            y_label=ERROR_LABELS[kind].partition(",")[0],
+            log="xy",
+        ),
     )
 
 
@@ -213,7 +211,7 @@ def _order_fields(order: Order) -> dict[str, Any]:
 def _records(results: Results) -> Iterator[dict[str, Any]]:
     """Yield the points of all methods, for JSON and CSV."""
     for point in results.points:
-        flaw = point.flaw(results.options.error)
+        flaw = point.flaw(results.kind)
         record = {"method": point.method.key, **fields_of(point, *NUMBERS), "valid": flaw is None}
         record["force_evaluations"] = point.force_evaluations or None
         yield record | {"reason": flaw and REASONS[flaw]}
@@ -230,8 +228,8 @@ def _rungs(results: Results) -> list[dict[str, Any]]:
 
 def _columns(results: Results) -> list[Column]:
     def error(point: Point) -> str:
-        text = f"{point.error(results.options.error):.1e}{_seconds(point)}"
-        flaw = point.flaw(results.options.error)
+        text = f"{point.error(results.kind):.1e}{_seconds(point)}"
+        flaw = point.flaw(results.kind)
         return f"{MARKS[flaw]} {text}" if flaw else text
 
     columns = [
@@ -252,7 +250,7 @@ def _seconds(point: Point) -> str:
 
 
 def _notes(results: Results) -> Iterator[Any]:
-    kind = results.options.error
+    kind = results.kind
     cost = results.options.cost
     flaws = {point.flaw(kind) for point in results.points}
     yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
@@ -264,10 +262,8 @@ def _notes(results: Results) -> Iterator[Any]:
     ]
     yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
     yield ""
-    cast = results.scene.cast
-    series = accuracy_series(results.points, kind, cost, cast)
     columns, rows = CHART_SIZE
-    chart = accuracy_chart(series, kind, cost, min(console(columns).width, columns), rows)
+    chart = accuracy_chart(results.series(), kind, cost, min(console(columns).width, columns), rows)
     yield from lines_of(chart, PALETTES["dark"])
     if results.options.all and results.points:
         yield f"\n{front_words(results.front, cost)}"
@@ -278,7 +274,7 @@ def _notes(results: Results) -> Iterator[Any]:
 
 
 def _advice_notes(results: Results, advice: Advice) -> Iterator[Any]:
-    kind = results.options.error
+    kind = results.kind
     wish = f"{kind} error up to {results.options.target:g}"
     point = advice.point
     if point is None:
@@ -319,7 +315,7 @@ def _attempt_fields(results: Results, attempt: Attempt) -> dict[str, Any]:
     if point:
         fields |= fields_of(point, *numbers, "seconds")
         fields["force_evaluations"] = point.force_evaluations or None
-        fields["error"] = point.error(results.options.error)
+        fields["error"] = point.error(results.kind)
     return fields | {"times_the_cheapest": attempt.times, "why_not": attempt.why_not}
 
 

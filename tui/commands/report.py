@@ -1,15 +1,19 @@
 """What commands print or write: reports as tables, JSON, CSV or figures."""
 
 import argparse
+import csv
+import json
 import math
 import sys
-from argparse import Namespace
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import chain, cycle
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
+from typing import Any, Literal, NamedTuple, TextIO
+
+from rich.console import Console, RenderableType
+from rich.table import Table as RichTable
 
 from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
@@ -19,11 +23,26 @@ from pendu_tui.tui.cli.errors import MAX_CELL, UserError, say
 from pendu_tui.tui.cli.files import FIGURES, check_free, text_file, whole_file
 from pendu_tui.tui.drawing.picture import PALETTES, inks
 
-if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
-    from rich.table import Table as RichTable
+Form = Literal["table", "json", "csv", "figure"]
 
-Form = Literal["table", "json", "csv"]
+CM = 1 / 2.54  # inches
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
+STYLE = {
+    "font.size": 7,
+    "axes.titlesize": 7,
+    "figure.labelsize": 7,
+    "axes.linewidth": 0.5,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 2.5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 600,
+    "svg.fonttype": "path",  # outlines, which need no font
+    "svg.hashsalt": "pendu-tui",
+    "pdf.fonttype": 42,  # TrueType, which journals ask for
+}
+NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:
@@ -40,10 +59,8 @@ def scene_line(scene: Scene, *more: str) -> str:
     return f"{scene.name}{model}: {listed} (SI units)"
 
 
-def console(piped_width: int | None = None) -> "Console":
+def console(piped_width: int | None = None) -> Console:
     """Return a console as wide as the terminal, or `piped_width` wide without one."""
-    from rich.console import Console
-
     width = None if sys.stdout.isatty() else piped_width
     return Console(width=width, markup=False, emoji=False, highlight=False)
 
@@ -52,9 +69,8 @@ class Column(NamedTuple):
     """A column of a table: its head, and how to write a row's cell."""
 
     head: str
-    cell: str | int | Callable[[Any], Any]  # a field's name or index, or a function of the row
+    cell: str | Callable[[Any], Any]  # a field's name, or a function of the row
     form: str | Callable[[Any], str] = ""  # how to write a value; if given, aligned right
-    right: bool = False
 
     def text(self, row: Any) -> str:
         """Return the cell of a row, a dash for None."""
@@ -78,18 +94,54 @@ class Table:
     columns: Sequence[Column]
     rows: Iterable[Any]
 
-    def __rich__(self) -> "RichTable":
-        from rich.table import Table as RichTable
-
+    def __rich__(self) -> RichTable:
         headed = any(column.head for column in self.columns)
         table = RichTable(box=None, pad_edge=False, header_style="bold", show_header=headed)
         for number, column in enumerate(self.columns):
-            side: Literal["left", "right"] = "right" if column.right or column.form else "left"
+            side: Literal["left", "right"] = "right" if column.form else "left"
             table.add_column(column.head, justify=side, overflow="fold", no_wrap=number == 0)
         for row in self.rows:
             cells = [row] if isinstance(row, str) else [each.text(row) for each in self.columns]
             table.add_row(*cells)
         return table
+
+
+Line = tuple[str, Any, Any]
+"""The letter of a method or the name of a reference, and the numbers x and y."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A chart of lines, one column of a journal wide.
+
+    Methods differ in colour and in line style; references are dotted.
+    """
+
+    cast: Cast
+    lines: Iterable[Line]
+    x_label: str
+    y_label: str
+    log: str  # the logarithmic axes: "xy" or "y"
+
+    def draw(self, file: Path, suffix: str) -> None:
+        """Draw the figure by Matplotlib; the same lines give the same bytes."""
+        from matplotlib import figure as figures
+        from matplotlib import style  # an extra
+
+        colours = map(PALETTES["light"].colour, inks(self.cast))
+        looks = {
+            method.letter: {"color": ink, "linestyle": dashes, "label": method.label, "marker": "."}
+            for method, ink, dashes in zip(self.cast, colours, cycle(LINES))
+        }
+        reference = {"color": "grey", "linestyle": ":", "linewidth": 0.5}
+        with style.context(STYLE, after_reset=True):
+            figure = figures.Figure((8.5 * CM, 6 * CM))
+            axes = figure.add_subplot(xlabel=self.x_label, ylabel=self.y_label)
+            axes.set(**{f"{axis}scale": "log" for axis in self.log})
+            for mark, x, y in self.lines:
+                axes.plot(x, y, **looks.get(mark, reference))
+            figure.legend(loc="outside upper center", ncols=2)
+            figure.savefig(file, format=suffix[1:], metadata=NO_DATE[suffix])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,10 +156,11 @@ class Report:
     version: int = 1
     title: str = ""
     columns: Sequence[Column] = ()
-    rows: Sequence[Any] = ()
+    rows: Iterable[Any] = ()
     fields: Mapping[str, Any]
     records: Iterable[Mapping[str, Any]] | None = None
-    notes: Sequence["str | Table | RenderableType"] = ()
+    notes: Iterable[str | Table | RenderableType] = ()
+    figure: Figure | None = None
 
     def show(self, form: Form = "table", out: TextIO | None = None) -> None:
         """Print the report on `out`, by default stdout.
@@ -115,14 +168,14 @@ class Report:
         Raises ValueError for JSON of nan or inf.
         """
         if form == "json":
-            import json  # the lab needs none
-
             schema = f"pendu.{self.name}/{self.version}"
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
             print(text, file=out)
         elif form == "csv":
-            records = self.rows if self.records is None else self.records
-            write_records(records, out or sys.stdout)
+            records = iter(self.rows if self.records is None else self.records)
+            for first in records:
+                rows = (record.values() for record in chain([first], records))
+                write_csv(out or sys.stdout, list(first), rows)
         else:
             self._show_table()
 
@@ -149,17 +202,8 @@ def finite(row: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value if is_finite(value) else None for name, value in row.items()}
 
 
-def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
-    """Write CSV with the first record's fields as the header."""
-    rest = iter(records)
-    for first in rest:
-        write_csv(out, list(first), (record.values() for record in chain([first], rest)))
-
-
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
     """Write rows of CSV; every number reads back the same, and None is empty."""
-    import csv  # the lab needs none
-
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
@@ -169,86 +213,37 @@ def form_of(options: argparse.Namespace) -> Form:
     """Return the form that the options or the suffix of the -o file ask for."""
     path: Path | None = getattr(options, "output", None)
     suffix = path.suffix.lower() if path else ""
+    if suffix in FIGURES:
+        return "figure"
     if options.json or suffix == ".json":
         return "json"
     return "csv" if path or getattr(options, "csv", False) else "table"
 
 
+def check_output(options: argparse.Namespace) -> Form:
+    """Return the form of the output.
+
+    Raises DiskError if the name is taken, UserError for a figure without Matplotlib.
+    """
+    form = form_of(options)
+    if options.output:
+        check_free(options.output, options.force)
+    if form == "figure" and find_spec("matplotlib") is None:
+        suffix = options.output.suffix
+        raise UserError(f"{suffix} files need an extra: pip install 'pendu-tui[plot]'.")
+    return form
+
+
 def publish(report: Report, options: argparse.Namespace) -> None:
     """Print the report, or write it to the -o file in the form of its suffix."""
+    form = form_of(options)
     path: Path | None = getattr(options, "output", None)
     if path is None:
-        report.show(form_of(options))
-        return
-    with text_file(path, options.force) as out:
-        report.show(form_of(options), out)
-
-
-def check_output(options: argparse.Namespace) -> bool:
-    """Return whether the output is a figure.
-
-    Raises DiskError if the name is taken, UserError without Matplotlib.
-    """
-    path = options.output
-    if path is None:
-        return False
-    check_free(path, options.force)
-    is_figure = path.suffix.lower() in FIGURES
-    if is_figure and find_spec("matplotlib") is None:
-        raise UserError(f"{path.suffix} files need an extra: pip install 'pendu-tui[plot]'.")
-    return is_figure
-
-
-CM = 1 / 2.54  # inches
-LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
-STYLE = {
-    "font.size": 7,
-    "axes.titlesize": 7,
-    "figure.labelsize": 7,
-    "axes.linewidth": 0.5,
-    "lines.linewidth": 0.9,
-    "lines.markersize": 2.5,
-    "legend.frameon": False,
-    "legend.handlelength": 2.4,
-    "figure.constrained_layout.use": True,
-    "savefig.dpi": 600,
-    "svg.fonttype": "path",  # outlines, which need no font
-    "svg.hashsalt": "pendu-tui",
-    "pdf.fonttype": 42,  # TrueType, which journals ask for
-}
-NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
-
-
-Line = tuple[str, Any, Any]
-"""The letter of a method or the name of a reference, and the numbers x and y."""
-
-
-def draw(
-    options: Namespace, cast: Cast, lines: Iterable[Line], labels: tuple[str, str], log: str
-) -> None:
-    """Draw the lines of a chart one column wide and write the -o file by Matplotlib.
-
-    `labels` are those of x and y, `log` names the logarithmic axes: "xy", "y" or "".  Methods
-    differ in colour and in line style; references are dotted.  The same input gives the same bytes.
-    """
-    from matplotlib import style  # an extra
-    from matplotlib.figure import Figure
-
-    colours = map(PALETTES["light"].colour, inks(cast))
-    looks = {
-        method.letter: {"color": colour, "linestyle": line, "label": method.label, "marker": "."}
-        for method, colour, line in zip(cast, colours, cycle(LINES))
-    }
-    suffix = options.output.suffix.lower()
-    with (
-        style.context(STYLE, after_reset=True),
-        whole_file(options.output, options.force) as part,
-    ):
-        figure = Figure((8.5 * CM, 6 * CM))  # a column of a journal
-        axes = figure.add_subplot(xlabel=labels[0], ylabel=labels[1])
-        axes.set(**{f"{axis}scale": "log" for axis in log})
-        for mark, x, y in lines:
-            reference = {"color": "grey", "linestyle": ":", "linewidth": 0.5}
-            axes.plot(x, y, **looks.get(mark, reference))
-        figure.legend(loc="outside upper center", ncols=2)
-        figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
+        report.show(form)
+    elif form == "figure":
+        assert report.figure is not None
+        with whole_file(path, options.force) as part:
+            report.figure.draw(part, path.suffix.lower())
+    else:
+        with text_file(path, options.force) as out:
+            report.show(form, out)

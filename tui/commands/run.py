@@ -8,13 +8,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import Any
-
-import numpy as np
 
 from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
@@ -22,17 +20,19 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
-from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
+from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
 from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
 from pendu_tui.tui.cli.watchdog import watchdog
-from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.cli.workers import work_of
 from pendu_tui.tui.commands.report import (
     Column,
+    Figure,
+    Line,
     Report,
     check_output,
-    draw,
     fields_of,
+    form_of,
     method_column,
     publish,
     scene_line,
@@ -59,11 +59,15 @@ def run(options: argparse.Namespace) -> int:
         gate = parse(options.fail_if, cast=scenes.base.cast)
     for scene in scenes.corners():
         _check_time(scene, options.time)
-    is_figure = check_output(options)
-    if len(scenes) > 1:
-        return run_list(scenes, options, gate, is_figure)
-    (scene,) = scenes
-    return run_one(scene, options, gate, is_figure)
+    form = check_output(options)
+    if len(scenes) == 1:
+        (scene,) = scenes
+        return run_one(scene, options, gate)
+    if options.record:
+        raise UserError("--record is for one run; leave it out, or give each number one value.")
+    if form == "figure":
+        raise UserError("a figure shows one run; write a .csv, or give each number one value.")
+    return run_list(scenes, options, gate)
 
 
 def _check_time(scene: Scene, seconds: float) -> None:
@@ -75,14 +79,14 @@ def _check_time(scene: Scene, seconds: float) -> None:
         )
 
 
-def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+def run_one(scene: Scene, options: Namespace, gate: Gate | None) -> Exit:
     if options.record:
         check_fits(scene.cast)
         check_free(options.record, options.force)
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
     began = time.perf_counter()
-    samples = _simulate(lockstep, options, steps, is_figure)
+    samples = _simulate(lockstep, options, steps)
     wall_seconds = time.perf_counter() - began
     sample = samples[-1]
     is_whole = sample.step == steps
@@ -92,10 +96,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None, is_figure: bool
         warn(f"recorded {sample.t:g} s, {size}: {options.record}")
     if not is_whole:
         keep_older(options.output)
-    if is_figure:
-        _draw(options, scene, samples[1:] or samples)
-    else:
-        publish(_report(scene, sample, lockstep, rows, wall_seconds), options)
+    publish(_report(scene, samples, lockstep, rows, wall_seconds), options)
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -110,7 +111,7 @@ def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockste
     return Lockstep(scene, loops=tiered, judged=True)
 
 
-def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: bool) -> list[Sample]:
+def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample]:
     """Run to the end or until a signal; return the last sample, or for a figure all of them."""
     scene = lockstep.scene
     recorder: Any = nullcontext()
@@ -123,6 +124,7 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
         every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
     every = options.sample_every or every
+    is_figure = form_of(options) == "figure"
     if is_figure:
         every = min(every, math.ceil(steps / MAX_POINTS))
     samples: list[Sample] = []
@@ -140,19 +142,16 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int, is_figure: boo
     return samples
 
 
-def _draw(options: Namespace, scene: Scene, samples: Sequence[Sample]) -> None:
-    """Draw the largest energy error of each half swing, or of longer parts of a long run."""
-    t = np.array([sample.t for sample in samples])
-    error = scene.equations.error.name
-    errors = np.array([[getattr(each, error) for each in sample.readings] for sample in samples]).T
+def _lines(scene: Scene, samples: Sequence[Sample]) -> Iterator[Line]:
+    """Yield the largest energy error of each half swing, or of longer parts of a long run."""
     swing = scene.exact().period or math.tau / scene.w0
-    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
-    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
-    lines = [
-        (method.letter, t[first], np.fmax.reduceat(np.abs(row), first))
-        for method, row in zip(scene.cast, errors, strict=True)
-    ]
-    draw(options, scene.cast, lines, ("time / s", "largest |ΔE / E₀| of a half swing"), log="y")
+    count = max(1, min(MAX_PARTS, len(samples), round(2 * samples[-1].t / swing)))
+    ends = [len(samples) * part // count for part in range(count + 1)]
+    parts = [samples[begin:end] for begin, end in pairwise(ends)]
+    name = scene.equations.error.name
+    for place, method in enumerate(scene.cast):
+        errors = [max(abs(getattr(each.readings[place], name)) for each in part) for part in parts]
+        yield method.letter, [part[0].t for part in parts], errors
 
 
 def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
@@ -164,7 +163,7 @@ def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) ->
     for method, reading, judgement in methods:
         row = {"method": method.key, **fields_of(reading, *ALWAYS)}
         if not model.conserves_energy:
-            row[quantities.LOG_ENERGY_ERROR.name] = reading.energy_error
+            row[quantities.LOG_ENERGY_ERROR.name] = row[model.error.name]
         optional = fields_of(reading, *IF_KNOWN)
         row |= {name: value for name, value in optional.items() if value is not None}
         row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
@@ -205,8 +204,13 @@ def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
 
 
 def _report(
-    scene: Scene, sample: Sample, lockstep: Lockstep, rows: Sequence[Row], wall_seconds: float
+    scene: Scene,
+    samples: Sequence[Sample],
+    lockstep: Lockstep,
+    rows: Sequence[Row],
+    wall_seconds: float,
 ) -> Report:
+    sample = samples[-1]
     notes = [
         sentence(milestone_insight(milestone, scene.equations.conserves_energy))
         for milestone in lockstep.milestones
@@ -233,6 +237,13 @@ def _report(
             "methods": for_json(rows),
         },
         records=for_csv(rows),
+        figure=Figure(
+            scene.cast,
+            _lines(scene, samples[1:] or samples),
+            x_label="time / s",
+            y_label="largest |ΔE / E₀| of a half swing",
+            log="y",
+        ),
     )
 
 
@@ -315,34 +326,17 @@ def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
         yield Task(scene, options.time, steps, not options.no_compiled)
 
 
-def run_list(scenes: SceneList, options: Namespace, gate: Gate | None, is_figure: bool) -> Exit:
+def run_list(scenes: SceneList, options: Namespace, gate: Gate | None) -> Exit:
     """Run every combination and print the rows; an interrupt keeps those that are there."""
-    if options.record:
-        raise UserError("--record is for one run; leave it out, or give each number one value.")
-    if is_figure:
-        raise UserError("a figure shows one run; write a .csv, or give each number one value.")
-    runs = len(scenes)
     kept: list[Row] = []
     checks: list[Check] = []
-    ended = None
-    done = 0
-    try:
-        with workers_of(options) as run, progress(f"{runs:,} runs") as show:
-            for rows in run(Task.rows, _tasks(scenes, options)):
-                kept += rows
-                done += 1
-                show(done, runs)
-                checks.append(check_of(_place(scenes, rows[0]), rows, gate))
-    except (KeyboardInterrupt, UserError, OwnMethodError) as error:
-        if not done:
-            raise
-        ended = explained(error)
-        keep_older(options.output)
-    publish(_list_report(scenes, options.time, kept, is_whole=ended is None), options)
-    if ended is None:
-        return conclude(options.fail_if, checks)
-    warn(f"{str(ended).rstrip('.')}: {done} of {runs} runs are done and kept.")
-    return ended.code
+    with work_of(options, "runs", len(scenes)) as work:
+        for rows in work.run(Task.rows, _tasks(scenes, options)):
+            kept += rows
+            checks.append(check_of(_place(scenes, rows[0]), rows, gate))
+            work.step()
+    publish(_list_report(scenes, options.time, kept, is_whole=work.ended is None), options)
+    return work.conclude() or conclude(options.fail_if, checks)
 
 
 def _place(scenes: SceneList, row: Row) -> str:

@@ -26,18 +26,17 @@ from pendu_tui.engine.studies.stability import (
     map_of,
     table,
 )
-from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
-from pendu_tui.tui.cli.files import keep_older
+from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.scene import general_scene_of
-from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.cli.workers import work_of
 from pendu_tui.tui.commands.report import (
     Column,
+    Figure,
+    Line,
     Report,
     Table,
     check_output,
-    draw,
     finite,
-    form_of,
     method_column,
     publish,
 )
@@ -50,30 +49,25 @@ A pendulum's depend on the amplitude: pendu-tui stability drift"""
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
-    is_figure = check_output(options)
-    is_map = form_of(options) == "csv" and not is_figure
-    grid = grid_of(scene, options, is_map)
+    form = check_output(options)
+    grid = grid_of(scene, options, is_map=form == "csv")
     if grid is None:
         publish(report(scene, options.steps, []), options)
         return Exit.FINE
-    cells, ended = compute(grid, options)
-    if ended:
-        keep_older(options.output)
-    if is_map:
-        publish(map_report(grid, cells), options)
-    else:
-        rows = table(scene, grid, cells)
-        if ended:  # the others may fail at a z not yet computed
-            rows = [row for row in rows if row.failure]
-        if is_figure:
-            axes = ("amplitude / °", "z = h ω₀ from which a swing is lost")
-            draw(options, scene.cast, _lines(scene, rows), axes, log="y")
-        else:
-            publish(report(scene, options.steps, rows, is_whole=ended is None), options)
-    if ended is None:
-        return Exit.FINE
-    warn(str(ended))
-    return ended.code
+    cells = grid.unknown()
+    parts = grid.parts()
+    with work_of(options, "swings", len(parts)) as work:
+        for part, computed in zip(parts, work.run(Part.cells, parts), strict=True):
+            cells[part.z, part.method] = computed
+            work.step()
+    if form == "csv":
+        publish(Report(name="map", fields={}, records=_swings(grid, cells)), options)
+        return work.conclude()
+    rows = table(scene, grid, cells)
+    if work.ended:  # the others may fail at a z not yet computed
+        rows = [row for row in rows if row.failure]
+    publish(report(scene, options.steps, rows, is_whole=work.ended is None), options)
+    return work.conclude()
 
 
 def grid_of(scene: Scene, options: Namespace, is_map: bool) -> Grid | None:
@@ -108,30 +102,6 @@ def _check(what: str, numbers: Sequence[float], limits: tuple[float, float]) -> 
             )
 
 
-def compute(grid: Grid, options: Namespace) -> tuple[Cells, UserError | None]:
-    """Return the grid's cells, and what interrupted the computation, if anything.
-
-    Raises the interruption if no cells were computed.
-    """
-    cells = grid.unknown()
-    parts = grid.parts()
-    done = 0
-    try:
-        with workers_of(options) as run, progress("stability") as show:
-            for computed in run(Part.cells, parts):
-                part = parts[done]
-                cells[part.z, part.method] = computed
-                done += 1
-                show(done, len(parts))
-    except (KeyboardInterrupt, UserError) as error:
-        if not done:
-            raise
-        ended = explained(error)
-        kept = f"{100 * done / len(parts):.0f} % of the swings are computed and kept"
-        return cells, UserError(f"{str(ended).rstrip('.')}; {kept}.", ended.code)
-    return cells, None
-
-
 def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True) -> Report:
     """Return the report on the linear limits and, with rows, on the pendulum's."""
     linear = [_linear(scene, method) for method in scene.cast]
@@ -159,20 +129,22 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
             "pendulum": [_row_fields(row) | {"at_scene": _cell_fields(row.here)} for row in rows],
             "interrupted": not is_whole,
         },
+        figure=Figure(
+            scene.cast,
+            _lines(scene, rows),
+            x_label="amplitude / °",
+            y_label="z = h ω₀ from which a swing is lost",
+            log="y",
+        ),
     )
 
 
-def _lines(scene: Scene, rows: Sequence[Row]) -> Iterator[tuple[str, list[float], list[float]]]:
+def _lines(scene: Scene, rows: Sequence[Row]) -> Iterator[Line]:
     """Yield each method's letter, amplitudes [°] and limits."""
     for method in scene.cast:
         lost = [row for row in rows if row.method == method and row.failure]
         limits = [row.failure.z for row in lost if row.failure]
         yield method.letter, [math.degrees(row.theta) for row in lost], limits
-
-
-def map_report(grid: Grid, cells: Cells) -> Report:
-    """Return the report of a map: a line of CSV for each swing that is known."""
-    return Report(name="map", fields={}, records=_swings(grid, cells))
 
 
 def _linear(scene: Scene, method: Method) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import argparse
 import os
 import signal
 import sys
+from contextlib import nullcontext
 
 import pytest
 
@@ -23,6 +24,34 @@ def small_parts(monkeypatch):
 @pytest.mark.parametrize("command", [(*STABILITY, "--csv"), (*RUNS, "--csv")], ids=lambda c: c[0])
 def test_the_answer_is_the_same_to_the_bit_in_other_processes(command, small_parts):
     assert pendu(*command, "--workers", 2).out == pendu(*command).out
+
+
+LOST = UserError("the workers are lost.", Exit.INPUT_UNREADABLE)
+ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
+
+
+@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (LOST, 3)], ids=str)
+@pytest.mark.parametrize(
+    ("command", "rows", "share"),
+    [(RUNS, 4, "17 % of the runs"), (STABILITY, 6, "6 % of the swings"), (ACCURACY, 1, "4 % of")],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_an_interrupt_and_lost_workers_keep_what_is_done(
+    monkeypatch, tmp_path, small_parts, command, rows, share, error, code
+):
+    def run(function, tasks):
+        yield function(next(iter(tasks)))
+        raise error
+
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.workers_of", lambda _: nullcontext(run))
+    outcome = pendu(*command, "--csv")
+    assert (outcome.code, outcome.out.count("\n")) == (code, 1 + rows)
+    assert share in outcome.err
+    assert pendu(*command, "--json").json["interrupted"]
+    older = tmp_path / "older.csv"
+    older.write_text("precious", encoding="utf-8")
+    assert pendu(*command, "-o", older, "--force").refused(130, "stays as it was")
+    assert older.read_text(encoding="utf-8") == "precious"
 
 
 @pytest.mark.slow

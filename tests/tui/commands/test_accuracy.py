@@ -1,7 +1,6 @@
 """`pendu-tui accuracy`: a table, a recommendation, JSON and CSV with all digits."""
 
 import csv
-from itertools import count
 
 import pytest
 
@@ -86,26 +85,6 @@ def test_extreme_starts_print_numbers_and_no_nan(start):
     quick = ("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", start)
     assert len(pendu(*quick, "--json").json["points"]) == 12  # its parser refuses nan
     assert pendu(*quick).code == 0
-
-
-def test_ctrl_c_keeps_what_is_done_and_an_older_file(monkeypatch, tmp_path):
-    measured = Study.run
-    calls = count()
-
-    def interrupted(study, *arguments):
-        if next(calls) == 5:
-            raise KeyboardInterrupt
-        return measured(study, *arguments)
-
-    monkeypatch.setattr(Study, "run", interrupted)
-    outcome = pendu(*QUICK, "--json")
-    assert (outcome.code, outcome.err.count("interrupted; partial results")) == (130, 1)
-    assert (outcome.json["interrupted"], len(outcome.json["points"])) == (True, 5)
-    older = tmp_path / "points.csv"
-    older.write_text("precious", encoding="utf-8")
-    calls = count()
-    assert pendu(*QUICK, "-o", older, "--force").refused(130, "stays as it was")
-    assert older.read_text(encoding="utf-8") == "precious"
 
 
 @pytest.mark.slow

@@ -29,7 +29,7 @@ def printed(report, form, capsys):
 
 
 def test_a_table_has_a_line_for_each_row_between_title_and_notes(capsys):
-    more = Table([Column("twice", lambda h: str(2 * h), right=True)], [0.25])
+    more = Table([Column("twice", lambda h: 2 * h, "g")], [0.25])
     text = printed(report(title="a title", notes=["a note", more]), "table", capsys)
     title, head, first, second, *notes = [line.split() for line in text.splitlines()]
     assert (title, head[:2]) == (["a", "title"], ["method", "largest"])

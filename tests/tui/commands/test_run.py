@@ -7,7 +7,6 @@ import re
 import signal
 import subprocess
 import time
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -18,7 +17,6 @@ from pendu_tui.engine.run.loops import count_evaluations
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.words.numbers import about, file_size
 from tests.tui.command_line import PENDU, needs_signals, pendu
 
@@ -163,7 +161,6 @@ def test_other_models_have_the_numbers_and_the_heads_of_their_own():
     assert "ln(E/E_true)" in pendu("run", *damped).out
 
 
-LOST = UserError("the workers are lost.", Exit.INPUT_UNREADABLE)
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
 
 
@@ -177,19 +174,6 @@ def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run(tmp_pat
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
     assert single.items() <= rows[-1].items()
     assert pendu(*LIST).out.split()[:3] == ["start_theta", "h", "method"]  # which vary
-
-
-@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (LOST, 3)])
-def test_an_interrupt_and_lost_workers_keep_the_rows_that_are_done(monkeypatch, error, code):
-    def run(function, tasks):
-        yield function(next(tasks))
-        raise error
-
-    workers = "pendu_tui.tui.commands.run.workers_of"
-    monkeypatch.setattr(workers, lambda options: nullcontext(run))
-    outcome = pendu(*LIST, "--csv")
-    assert (outcome.code, outcome.out.count("\n")) == (code, 1 + 2)
-    assert "1 of 4 runs" in outcome.err
 
 
 def test_the_gate_is_that_of_every_run():

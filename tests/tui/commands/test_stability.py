@@ -2,29 +2,16 @@
 
 import csv
 import io
-from contextlib import nullcontext
 
 import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.studies.stability import FATES, Grid
-from pendu_tui.tui.cli.errors import Exit, UserError
 from tests.tui.command_line import pendu
 
 SMALL = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 KEYS = [method.key for method in USUAL_CAST]
-
-
-def stops_after_a_part(monkeypatch, error):
-    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 10)  # swings: 5 z of a method
-
-    def run(function, tasks):
-        yield function(tasks[0])
-        raise error
-
-    workers = "pendu_tui.tui.commands.stability.workers_of"
-    monkeypatch.setattr(workers, lambda options: nullcontext(run))
 
 
 def line_of(out, *words):
@@ -64,17 +51,6 @@ def test_csv_repeats_the_engine_with_a_line_for_each_swing(tmp_path):
     assert [row["fate"] for row in rows] == [FATES[fate] for fate in cells["fate"].flat]
     assert [int(row["steps_survived"]) for row in rows] == cells["steps"].ravel().tolist()
     assert [float(row["max_energy_error"]) for row in rows] == cells["error"].ravel().tolist()
-
-
-def test_ctrl_c_and_lost_workers_keep_the_part_that_is_done(monkeypatch):
-    stops_after_a_part(monkeypatch, KeyboardInterrupt())
-    outcome = pendu(*SMALL, "--csv")
-    assert outcome.code == 130
-    assert "8 % of the swings" in outcome.err  # one part of three z ranges by four methods
-    assert len(rows_of(outcome.out)) == 5 * 2
-    stops_after_a_part(monkeypatch, UserError("the workers are lost.", Exit.INPUT_UNREADABLE))
-    outcome = pendu(*SMALL, "--json")
-    assert (outcome.code, outcome.json["interrupted"]) == (3, True)
 
 
 @pytest.mark.parametrize(
