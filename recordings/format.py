@@ -9,12 +9,12 @@ missing optional ones are None; anything else unexpected raises RecordingError.
 import math
 from collections.abc import Iterator, Sequence
 from operator import attrgetter
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import msgspec
 
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
-from pendu_tui.engine.quantities import EXTREMES, RECORDED
+from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
 from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
@@ -51,6 +51,7 @@ class Field(NamedTuple):
     about: str = ""  # shown by viewers in place of a unit
     type: str = "number"  # in JSON
     required: bool = True
+    values: tuple[str, ...] = ()  # all that it may have
 
     @property
     def column(self) -> str:
@@ -63,15 +64,16 @@ class Field(NamedTuple):
     @property
     def member(self) -> tuple[Any, ...]:
         """Its name, type and, unless it is required, the default None, for a struct of msgspec."""
+        type = Literal[self.values] if self.values else TYPES[self.type]
         if self.required:
-            return self.name, TYPES[self.type]
-        return self.name, TYPES[self.type], None
+            return self.name, type
+        return self.name, type, None
 
     @property
     def schema(self) -> dict[str, Any]:
         """Its JSON Schema, with one type and no references, as the simplest viewers require."""
         schema: dict[str, Any] = {"type": self.type}
-        if about := self.unit or self.about:
+        if about := self.unit or self.about or " ".join(self.values):
             schema["description"] = about
         if self.type == "array":
             schema["items"] = {"type": "string"}
@@ -102,7 +104,7 @@ EXTRA = {
 """The additional variables of each model."""
 
 EVENT = (
-    Field("kind", about=" ".join(get_args(EventKind)), type="string"),
+    Field("kind", type="string", values=get_args(EventKind)),
     *_optional("string", "scene", "model", "watch"),
     *(Field(each.name, _ascii(each.unit), required=False) for each in NUMBERS.values()),
     *_optional("array", "methods", "sources"),  # source code of a user's own methods
@@ -111,7 +113,7 @@ EVENT = (
     *_optional("boolean", "equal_cost"),
     Field("speed", about="times real time", required=False),
     *_optional("string", "text", "milestone", "method", "verdict", "other"),
-    Field("energy_error", about="(E - E0) / E0", required=False),
+    Field(ENERGY_ERROR.name, about=ENERGY_ERROR.about, required=False),
     Field("trend", "s^-1", required=False),
     Field("lyapunov", "s^-1", required=False),
 )
@@ -175,7 +177,7 @@ def encode_readings(sample: Sample) -> list[bytes]:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t, **reading._asdict()}
         del fields["extra"]
         for name in EXTREMES:
-            if fields[name] == reading.energy_error:
+            if fields[name] == fields[ENERGY_ERROR.name]:
                 del fields[name]
         messages.append(_dumps(fields | dict(reading.extra)))
     return messages
@@ -198,10 +200,9 @@ def decode_readings(messages: Sequence[bytes], model: str = DEFAULT_MODEL) -> Sa
 
 
 def _reading(message: Any) -> Reading:
-    if message.energy_error_low is None:
-        message.energy_error_low = message.energy_error
-    if message.energy_error_high is None:
-        message.energy_error_high = message.energy_error
+    for name in EXTREMES:
+        if getattr(message, name) is None:
+            setattr(message, name, getattr(message, ENERGY_ERROR.name))
     return Reading(*_values_of_reading(message))
 
 
@@ -237,8 +238,6 @@ def decode_event(data: bytes) -> Event:
     fields |= {name: printable(fields[name]) for name in _TEXTS if name in fields}
     kind, run, step, t = (fields[name] for name in ("kind", "run", "step", "t"))
     try:
-        if kind not in get_args(EventKind):
-            raise RecordingError(f"unknown kind of event {kind!r}")
         if kind == "start":
             arithmetic = Arithmetic(fields["numerics"], fields["sin"], fields["sqrt"])
             sources = tuple(fields.get("sources", ()))
@@ -290,7 +289,7 @@ def _scene(fields: dict[str, Any]) -> Scene:
 def _milestone(fields: dict[str, Any]) -> Milestone:
     kind = fields["milestone"]
     method = method_named(fields["method"])
-    rises = fields["energy_error"] > 0
+    rises = fields[ENERGY_ERROR.name] > 0
     verdict = word_of_before(fields["verdict"], rises, method.symplectic)
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
@@ -324,9 +323,7 @@ def differences(a: Reading, b: Reading) -> Iterator[tuple[str, float | None, flo
 def without_extremes(sample: Sample) -> Sample:
     """Return the sample as the first of a run or after a gap, where no steps precede it."""
     readings = (
-        reading._replace(
-            energy_error_low=reading.energy_error, energy_error_high=reading.energy_error
-        )
+        reading._replace(**dict.fromkeys(EXTREMES, getattr(reading, ENERGY_ERROR.name)))
         for reading in sample.readings
     )
     return sample._replace(readings=tuple(readings))

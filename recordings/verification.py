@@ -12,7 +12,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from pendu_tui.engine.quantities import EXTREMES
+from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES
 from pendu_tui.engine.run import NUMERICS
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.loops import TieredLoops
@@ -146,8 +146,9 @@ def _differences(
     for method, was, now in zip(run.scene.cast, recorded.readings, computed.readings, strict=True):
         if only is not None and method.key not in only:
             continue
+        error = getattr(was, ENERGY_ERROR.name)
         for field, a, b in differences(was, now):
-            is_implied = field in EXTREMES and a == was.energy_error  # see without_extremes
+            is_implied = field in EXTREMES and a == error  # see without_extremes
             is_newer = a is None and field != "diverged_at"  # than the recording
             if not (is_implied or is_newer) and (is_exact or not _is_close(a, b)):
                 yield Difference(*place, method.key, field, a, b)

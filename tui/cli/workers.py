@@ -21,6 +21,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnContext
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -38,8 +39,7 @@ def started(function: Callable[..., object], *arguments: object) -> tuple[BasePr
 
     Return the process, which ends with this one, and the connection to it.
     """
-    os.environ["PYTHONSAFEPATH"] = "1"  # import nothing from the current folder
-    context = get_context("spawn")
+    context = _spawning()
     here, there = context.Pipe()
     process = context.Process(target=function, args=(there, *arguments), daemon=True)
     process.start()
@@ -147,10 +147,14 @@ def _explained(error: Exception) -> UserError:
 
 
 def _processes(count: int) -> Executor:
-    """Return an executor of processes that import nothing from the current folder."""
-    os.environ["PYTHONSAFEPATH"] = "1"
     ignore = (signal.SIGINT, signal.SIG_IGN)
-    return ProcessPoolExecutor(count, get_context("spawn"), signal.signal, ignore)
+    return ProcessPoolExecutor(count, _spawning(), signal.signal, ignore)
+
+
+def _spawning() -> SpawnContext:
+    """Return a context whose processes import nothing from the current folder."""
+    os.environ["PYTHONSAFEPATH"] = "1"
+    return get_context("spawn")
 
 
 def _client(address: str) -> Any:

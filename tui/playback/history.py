@@ -6,8 +6,10 @@ current sample is the last point, whether it is a row or not.
 
 import math
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
+from pendu_tui.engine.quantities import ENERGY, ENERGY_ERROR, HIGH, LOW, THETA_ERROR
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import Scene
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
     from pendu_tui.tui.playback.rows import Floats, Ghost, Records, Rows, Window
 
 TRAIL = 300  # rows, ten seconds
+ERROR = attrgetter(ENERGY_ERROR.name)
+LOWEST = attrgetter(LOW.name)  # since the previous sample
+HIGHEST = attrgetter(HIGH.name)
 
 
 class Row(NamedTuple):
@@ -107,13 +112,13 @@ class History:
         others = [
             *([reading.extra[name] for reading in readings] for name in self._extra),
             [self._model.theta_error(theta, exact.theta) for theta, _ in states],
-            self._modified_energy_errors(sample),
+            self._shadow_errors(sample),
             [reading.energy for reading in readings],
         ]
-        low = high = [reading.energy_error for reading in readings]
+        low = high = [ERROR(reading) for reading in readings]
         if with_extremes:
-            low = [reading.energy_error_low for reading in readings]
-            high = [reading.energy_error_high for reading in readings]
+            low = [LOWEST(reading) for reading in readings]
+            high = [HIGHEST(reading) for reading in readings]
         x = self.x(sample.step, sample.t)
         return Row(sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others])
 
@@ -127,7 +132,7 @@ class History:
             turn = change.t
         return x + abs(t - turn)
 
-    def _modified_energy_errors(self, sample: Sample) -> list[float]:
+    def _shadow_errors(self, sample: Sample) -> list[float]:
         """Return the relative change of each modified energy since the step size changed.
 
         Each step size has its own modified energy.  It is nan for a method without one, and for
@@ -188,7 +193,7 @@ class History:
         named = {name: extremes[:, i] for i, name in enumerate(self._quantities)}
         if self._model.conserves_energy:  # then the energy's extremes are known, too
             start, scale, *_ = self._reference
-            named["energy"] = start + scale * named["energy_error"]
+            named[ENERGY.name] = start + scale * named[ENERGY_ERROR.name]
         return named
 
     def between(self, begin: float, end: float) -> "Window":
@@ -203,11 +208,11 @@ class History:
         count = int((window.x <= self.x(change.step, change.t)).sum())
         if not count:
             return None
-        low = -window.low["energy_error"][count:]
-        high = window.high["energy_error"][count:]
-        errors = [abs(reading.energy_error) for reading in self.sample.readings]
+        low = -window.low[ENERGY_ERROR.name][count:]
+        high = window.high[ENERGY_ERROR.name][count:]
+        errors = [abs(ERROR(reading)) for reading in self.sample.readings]
         largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
-        return largest, window.high["theta_error"][count - 1].tolist()
+        return largest, window.high[THETA_ERROR.name][count - 1].tolist()
 
     @property
     def trails(self) -> "Floats":
