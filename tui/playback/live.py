@@ -14,7 +14,6 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.loops import Loops, TieredLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import Event, EventKind, noticed
 from pendu_tui.recordings.files import printable
@@ -58,18 +57,6 @@ class Live(Source):
                 run.repeat(history.changes[1:], history.step)
             history.changes = run.changes
         self._enter(run, history or History(scene, run.changes))
-
-    @property
-    def stepping(self) -> Stepping:
-        return self._run.stepping
-
-    @property
-    def judgements(self) -> Sequence[Judgement]:
-        return self._run.judgements
-
-    @property
-    def milestones(self) -> Sequence[Milestone]:
-        return self._run.milestones
 
     @property
     def next_step(self) -> float:
@@ -281,9 +268,13 @@ class Live(Source):
             self.recorder.close()
 
     def _take_sample(self, is_row: bool = True) -> Sample:
-        sample = self._run.sample(resets=is_row)
+        run = self._run
+        sample = run.sample(resets=is_row)
+        self.stepping = run.stepping
+        self.judgements = run.judgements
+        self.milestones = run.milestones
         self.history.add(sample, is_row)
-        if is_row and self.recorder is not None and sample.step >= self._run.furthest:
+        if is_row and self.recorder is not None and sample.step >= run.furthest:
             self.recorder.sample(sample, self._due)
         self._note_milestones()
         return sample

@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
-from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
+from pendu_tui.engine.run.stepping import SteppingChange, change_before
+from pendu_tui.engine.run.verdicts import FAILED, Judgement
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.playback.history import History, changes_of
@@ -44,6 +44,7 @@ class Replay(Source):
         first = recording.at(0.0)
         assert first is not None, "a recording without samples is refused before it gets here"
         self._show(first, jump=True)
+        self._know()
 
     # The state at the playhead
 
@@ -53,14 +54,20 @@ class Replay(Source):
         return [event for clock, event in self.recording.events if clock <= here]
 
     @property
-    def milestones(self) -> Sequence[Milestone]:
-        return [each for each in self.run.milestones if each.step <= self.sample.step]
+    def _past_changes(self) -> list[SteppingChange]:
+        """The run's changes of step up to the sample and the playhead."""
+        clocks = [clock for clock, event in self.run.events if event.h is not None]
+        count = 1 + bisect_right(clocks, self.playhead.position)
+        return [each for each in self.changes[:count] if each.step <= self.sample.step]
 
-    @property
-    def judgements(self) -> Sequence[Judgement]:
-        since = change_before(self.changes, self.sample.step).step
+    def _know(self) -> None:
+        """Read what was known at the playhead off the events."""
+        step = self.sample.step
+        self.stepping = self._past_changes[-1].stepping
+        self.milestones = [each for each in self.run.milestones if each.step <= step]
+        since = change_before(self.changes, step).step
         period = self.exact.period or math.tau / self.scene.w0
-        swings = (self.sample.step - since) * abs(self.stepping.h) / period
+        swings = (step - since) * abs(self.stepping.h) / period
         given = {
             each.method: Judgement(each.verdict, each.trend, periods=swings, lyapunov=each.lyapunov)
             for each in self.milestones
@@ -69,18 +76,7 @@ class Replay(Source):
         for method, reading in zip(self.scene.cast, self.sample.readings, strict=True):
             if reading.diverged_at is not None:
                 given[method] = Judgement(FAILED)
-        return [given.get(method, Judgement()) for method in self.scene.cast]
-
-    @property
-    def _past_changes(self) -> list[SteppingChange]:
-        """The run's changes of step up to the sample and the playhead."""
-        clocks = [clock for clock, event in self.run.events if event.h is not None]
-        count = 1 + bisect_right(clocks, self.playhead.position)
-        return [each for each in self.changes[:count] if each.step <= self.sample.step]
-
-    @property
-    def stepping(self) -> Stepping:
-        return self._past_changes[-1].stepping
+        self.judgements = [given.get(method, Judgement()) for method in self.scene.cast]
 
     @property
     def recording_status(self) -> RecordingStatus:
@@ -132,6 +128,7 @@ class Replay(Source):
             if not self._closed and (place := move(self._place)):
                 self._show(place)
         self.playhead.position = self.recording.sample(self._place).clock
+        self._know()
         return self.sample
 
     def seek(self, position: float) -> None:
@@ -176,6 +173,7 @@ class Replay(Source):
                 self._show(following)
         if target != self._place:
             self._show(target, jump=self._place < target)
+        self._know()
 
     def _show(self, place: "SamplePlace", jump: bool = False) -> None:
         """Show the sample at a place.

@@ -67,6 +67,11 @@ class Source(ABC):
     """Why the run stands still: the error of a user's method, in a sentence."""
     ghost: "Ghost | None" = None
     """The run before a restart with another step."""
+    stepping: Stepping
+    judgements: Sequence[Judgement] = ()
+    """The judgements at the sample, in the order of the cast."""
+    milestones: Sequence[Milestone] = ()
+    """The milestones of the run up to the sample."""
 
     @property
     def sample(self) -> Sample:
@@ -94,19 +99,6 @@ class Source(ABC):
     def run_state(self) -> RunState | None:
         """What a lab needs to return to its run."""
         return None
-
-    @property
-    @abstractmethod
-    def stepping(self) -> Stepping: ...
-
-    @property
-    @abstractmethod
-    def judgements(self) -> Sequence[Judgement]: ...
-
-    @property
-    @abstractmethod
-    def milestones(self) -> Sequence[Milestone]:
-        """The milestones of the run up to the sample."""
 
     @property
     @abstractmethod
