@@ -249,7 +249,7 @@ class SectionPane(PhasePane):
 
     def _map(self, source: Source) -> Picture:
         from pendu_tui.tui.views.portrait import orbit_of
-        from pendu_tui.tui.words.studies import sentence
+        from pendu_tui.tui.words.studies import orbit_words
 
         method = self.cast[self.index]
         h = abs(source.stepping.own[self.index])
@@ -265,7 +265,7 @@ class SectionPane(PhasePane):
         where = "start"
         if self.aim:
             where = f"{self.aim.theta:g}, {self.aim.omega:g}"
-        return Picture((*plot.rows, [(f"{where}: {sentence(method, kind)}", TEXT)]))
+        return Picture((*plot.rows, [(f"{where}: {orbit_words(method, kind)}", TEXT)]))
 
     def forget(self) -> None:
         self._section.forget()
