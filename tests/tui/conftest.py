@@ -2,6 +2,7 @@ import asyncio
 import difflib
 import pickle
 from collections.abc import AsyncIterator, Callable, Iterator
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,7 @@ def snapshot(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
         stored = path.read_text(encoding="utf-8")
         if stored != text:
             diff = difflib.unified_diff(stored.splitlines(), text.splitlines(), lineterm="", n=0)
-            pytest.fail("\n".join([f"{name} looks different:", *diff]), pytrace=False)
+            first = [line[:200] for line in islice(diff, 40)]  # those of an SVG are long
+            pytest.fail("\n".join([f"{name} looks different:", *first]), pytrace=False)
 
     return hold

@@ -457,7 +457,7 @@ class LabScreen(SizedScreen[None]):
         if not await self.change(lambda live: goes_on.append(move(live))):
             return
         if goes_on == [False]:
-            self._leave_lesson("That was the last page. If steps differ, n makes all equal again.")
+            self._leave_lesson("That was the last page. T begins again.")
         elif (self.lesson.index, self.source.sample.run) != before:
             self._show_shot(self.lesson.page)
         self._show_lesson()

@@ -1,5 +1,6 @@
 """The lines around a view: status, seek bar, lesson, insight, keys, "Terminal too small"."""
 
+import re
 import textwrap
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -170,16 +171,22 @@ class InsightLine(Pane):
             ink = WARN
         lines = []
         if watch and height > 1:
-            lines = [(line, TEXT) for line in fitted(watch, width - 2, 1)]
+            lines = [(line, TEXT) for line in wrapped(watch, width - 2, self.cast, 1)]
             height -= 1
         if text != watch or not lines:
-            lines += [(line, ink) for line in fitted(text, width - 2, height)]
+            lines += [(line, ink) for line in wrapped(text, width - 2, self.cast, height)]
         return Picture([[(" ", each), *painted(line, self.cast, each)] for line, each in lines])
 
 
-def fitted(text: str, width: int, height: int) -> list[str]:
-    """Return the text on at most `height` lines, cut off with an ellipsis."""
-    return textwrap.wrap(text, max(width, 2), max_lines=height, placeholder=" …")
+def wrapped(text: str, width: int, cast: Cast, height: int | None = None) -> list[str]:
+    """Return the text on lines, at most `height`, the last one cut off with an ellipsis.
+
+    No line ends within the name of a method, or between an answer and its number.
+    """
+    whole = "|".join([r"\d: ", *(method.label for method in cast)])
+    glued = re.sub(whole, lambda found: found[0].replace(" ", "\xa0"), text)
+    lines = textwrap.wrap(glued, max(width, 2), max_lines=height, placeholder=" …")
+    return [line.replace("\xa0", " ") for line in lines]
 
 
 FORWARD = {
@@ -203,6 +210,8 @@ class LessonPanel(Badged):
         title = f" {lesson.title} "
         text = lesson.text
         forward = FORWARD[lesson.stage]
+        if lesson.stage == "watching" and lesson.shot.moment is None:
+            forward = "enter go on"
         if lesson.is_astray(screen.source):
             text = (ASTRAY,)
             forward = "enter again"
@@ -211,11 +220,11 @@ class LessonPanel(Badged):
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):
             keys = keys.rpartition("  ")[0]
-        *others, last = [textwrap.wrap(each, max(width - 2, 2)) for each in text]
+        cast = screen.source.scene.cast
+        *others, last = [wrapped(each, width - 2, cast) for each in text]
         lines = [(line, EXACT) for sentence in others for line in sentence]
         lines += [(line, TEXT) for line in last]
         head = [(title, BADGE), ("  ", TEXT), (keys, EXACT)]
-        cast = screen.source.scene.cast
         below = [[(" ", ink), *painted(line, cast, ink)] for line, ink in lines[-(height - 1) :]]
         self.show(Picture([head, *below]))
 
@@ -229,10 +238,10 @@ class SeekBar(Pane):
     _columns = 1  # of the bar
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        text = facts(source, self.room.width - 27)  # leaves 24 columns for the bar
-        self._columns = max(self.room.width - len(text) - 3, 1)
+        text = facts(source, self.room.width - 28)  # leaves 24 columns for the bar
+        self._columns = max(self.room.width - len(text) - 4, 1)
         row = bar(source.playhead.position, source.length, source.ticks, self._columns)
-        return Picture([[(" ", TEXT), *row, (f"  {text}", TEXT)]])
+        return Picture([[(" ", TEXT), *row, (f"  {text} ", TEXT)]])
 
     async def on_mouse_down(self, event: events.MouseDown) -> None:
         self.capture_mouse()

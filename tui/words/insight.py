@@ -148,7 +148,7 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
 
 def _is_new_step(changes: Sequence[SteppingChange], since: float) -> bool:
     sizes = [abs(change.stepping.h) for change in changes[-2:]]
-    return changes[-1].step > since and sizes[0] != sizes[-1]
+    return changes[-1].step > max(since, 0) and sizes[0] != sizes[-1]
 
 
 def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:

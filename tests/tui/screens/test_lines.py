@@ -8,7 +8,7 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus
-from pendu_tui.tui.screens.lines import bar, facts, speed_text, status_row
+from pendu_tui.tui.screens.lines import bar, facts, speed_text, status_row, wrapped
 from tests.tui.harness import after, eventful
 
 
@@ -111,3 +111,11 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
         widths.add(len(facts(replay, 30)))
     assert len(widths) == 1  # so that the bar stays where it is
     replay.close()
+
+
+def test_no_line_of_a_sentence_ends_within_a_name_or_after_an_answers_number():
+    cast = DEFAULT_SCENE.cast
+    assert wrapped("Watch Explicit Euler. 1: It gains. 2: It", 15, cast) == [
+        *("Watch", "Explicit Euler.", "1: It gains.", "2: It")
+    ]
+    assert wrapped("RK4 loses what Verlet keeps", 15, cast, 1) == ["RK4 loses …"]

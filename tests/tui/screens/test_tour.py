@@ -8,6 +8,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import InsightLine, LessonPanel
+from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import FPS, Theatre, lab, on_stage
 
 STEPS = tour().pages
@@ -39,18 +40,22 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             region = theatre.stage.query_one(LessonPanel).region
             assert (region.width, region.bottom) == (60, 15)  # the key line is below
             assert not theatre.stage.query_one(InsightLine).is_on_screen
+            assert shot.shot.view != "lab" or theatre.stage.query_one(TimeChart).size.height >= 5
             await theatre.press("enter")
             if shot is STEPS[-1]:
                 break
             assert words(shot.shot.question) in panel(theatre)
             assert words(f"1: {shot.shot.answers[0]} 2: {shot.shot.answers[1]}") in panel(theatre)
             await theatre.press(str(1 + number % 2))
-            assert ("Right." in panel(theatre)) == (shot.shot.right == 1 + number % 2)
+            right = shot.shot.right
+            result = "Right." if right == 1 + number % 2 else "Not quite."
+            assert f"{result} {right}: {shot.shot.answers[right - 1]}" in panel(theatre)
             assert words(shot.shot.truth) in panel(theatre)
             await theatre.press("enter")
         await theatre.pilot.pause()
         assert not theatre.stage.query_one(LessonPanel).is_on_screen
         assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
+        assert "h is" not in theatre.text(InsightLine)  # the last page has no new step
         await theatre.press("u")
         assert theatre.source.scene == SCENES["spin"]
 
