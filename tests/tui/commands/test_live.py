@@ -1,7 +1,7 @@
 """`pendu-tui live` before there is a screen."""
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.recordings.files import listing
+from pendu_tui.recordings.files import DiskError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
@@ -43,6 +43,15 @@ def test_a_lab_whose_recording_stopped_exits_with_5(tmp_path, capsys):
     live.close()
     assert say_goodbye(live) == 5
     assert "the recording stopped" in capsys.readouterr().err
+
+
+def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys):
+    live = Live(DEFAULT_SCENE)
+    live.record(LiveRecorder(tmp_path / "lab.mcap"))
+    live.recorder._fail(DiskError("no space is left", "disk"))
+    live.recorder.abandon()
+    assert say_goodbye(live) == 5
+    assert f"saved {tmp_path / 'lab.mcap.part'}" in capsys.readouterr().out
 
 
 def test_a_folder_with_escapes_in_its_name_does_not_steer_the_terminal(tmp_path, capsys):
