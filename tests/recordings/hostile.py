@@ -163,8 +163,6 @@ def foreign(count: int) -> Iterator[list[Part]]:
 FILES: dict[str, Callable[[int], Iterator[list[Part]]]] = {
     "deep JSON": lambda n: raw(b"[" * 100_000),
     "a huge message": lambda n: raw(b'{"text": "' + b"x" * (1 << 27) + b'"}'),
-    "a long whole number": lambda n: raw(b'{"run": ' + b"9" * 6_000 + b"}"),
-    "numbers that are none": lambda n: raw(b'{"run": 1, "step": 0, "t": NaN, "kind": "pause"}'),
     "escapes": lambda n: iter(
         [
             event(start(), scene=ESCAPES, watch=ESCAPES),

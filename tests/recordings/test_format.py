@@ -13,7 +13,7 @@ from pendu_tui.engine.methods import METHODS, RK4, VELOCITY_VERLET
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone
-from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.events import Event, fingerprint, noticed
 from pendu_tui.recordings.files import MAX_TEXT, RecordingError, printable
 from pendu_tui.recordings.format import (
@@ -187,6 +187,7 @@ IMPOSSIBLE = {
         "theta": [None], "scene": [3], "numerics": [None], "model": [1, "kepler"],
         "methods": [[], "rk4", ["rk 4"], [["rk4"]], ["rk5"], ["rk4", "rk4"]],
     },
+    start(scene=SCENES["damped"]): {"friction": [None, -1.0], "stiffness": [9.0]},
     noticed(1, GROWS): {
         "milestone": ["under the top", ["failed"]], "method": [None, "\x1b[2J"],
         "verdict": ["explodes", {}], "energy_error": [None],

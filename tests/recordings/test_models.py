@@ -1,33 +1,23 @@
 """Recordings of other models than the pendulum and of special methods."""
 
 import csv
-import json
 
 import pytest
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Entry
-from pendu_tui.recordings.files import RecordingError
-from pendu_tui.recordings.format import EXTRA, decode_event, encode_event
+from pendu_tui.recordings.format import EXTRA
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
 from pendu_tui.tui.playback.replay import Replay
 from tests.recordings.examples import record, samples_of, start, with_changes
-from tests.recordings.test_verify import of_another_machine
 from tests.tui.command_line import pendu
 
 SPECIAL = sorted(name for name, scene in SCENES.items() if scene.why_not_mapped)
 SPRING_FIELDS = [field.name for field in EXTRA["spring"]]
-SPRING, DAMPED = SCENES["stiff-slow"], SCENES["damped"]
-
-
-def made(path, scene, time=3.0, change=lambda sample: sample):
-    """The samples that are recorded in this file."""
-    samples = [change(sample) for sample in simulate(scene, time)]
-    record(path, [Entry(0.0, start(scene=scene)), *(Entry(sample.t, sample) for sample in samples)])
-    return samples
+SPRING = SCENES["stiff-slow"]
 
 
 @pytest.mark.parametrize("name", SPECIAL)
@@ -55,30 +45,16 @@ def test_a_run_is_recorded_verified_exported_and_replayed(tmp_path, name):
     assert verify(tmp_path / "copy.mcap").identical
 
 
-@pytest.mark.parametrize("factor", [1 + 1e-15, 1 + 1e-5])
 @pytest.mark.parametrize("field", SPRING_FIELDS)
-def test_a_change_in_the_plane_is_found_by_verify(tmp_path, monkeypatch, field, factor):
+def test_a_change_in_the_plane_is_found_by_verify(tmp_path, field):
     def change(sample):
         if sample.step != 50:
             return sample
         first, *others = sample.readings
-        extra = {**first.extra, field: first.extra[field] * factor}
+        extra = {**first.extra, field: first.extra[field] * (1 + 1e-15)}
         return sample._replace(readings=(first._replace(extra=extra), *others))
 
-    made(tmp_path / "b.mcap", SPRING, change=change)
-    found = verify(tmp_path / "b.mcap").first_difference
-    assert (found.step, found.method) == (50, "velocity_verlet")
-    assert found.field == field
-    of_another_machine(monkeypatch)  # then within the tolerance
-    assert verify(tmp_path / "b.mcap").identical == (factor < 1 + 1e-7)
-
-
-@pytest.mark.parametrize("scene", [SPRING, DAMPED], ids=["spring", "damped"])
-def test_a_start_has_the_parameters_of_its_model_and_no_others(scene):
-    fields = json.loads(encode_event(start(scene=scene)))
-    assert {"friction", "stiffness"} & set(fields) == set(scene.parameters)
-    name, *_ = scene.parameters
-    assert decode_event(json.dumps(fields).encode()).scene == scene
-    for wrong in ({name: -1.0}, {"friction": 0.1, "stiffness": 9.0}, {name: None}):
-        with pytest.raises(RecordingError):
-            decode_event(json.dumps(fields | wrong).encode())
+    samples = [change(sample) for sample in simulate(SPRING, 3.0)]
+    entries = [Entry(0.0, start(scene=SPRING)), *(Entry(sample.t, sample) for sample in samples)]
+    found = verify(record(tmp_path / "b.mcap", entries)).first_difference
+    assert (found.step, found.method, found.field) == (50, "velocity_verlet", field)

@@ -49,17 +49,6 @@ def test_everything_recorded_is_read_in_order(recording):
             assert without_extremes(value) == without_extremes(was)
 
 
-def test_the_facts_of_a_recording_and_its_runs_are_known_at_opening(recording):
-    assert (recording.complete, recording.damaged, recording.reason) == (True, False, None)
-    assert (recording.length, recording.samples) == (4.0, 10)
-    assert recording.bytes == recording.path.stat().st_size
-    first, second = recording.runs
-    assert first.scene == SCENE
-    assert (first.number, first.begin, first.end, first.steps) == (1, 0.0, 2.5, 16)
-    assert first.inputs == 5  # set_h, speed, pause, mark, resume
-    assert (second.number, second.begin, second.end, second.steps) == (2, 2.75, 4.0, 16)
-
-
 def test_stepping_reaches_every_sample_in_both_directions(recording):
     forth = list(places(recording))
     samples = [recording.sample(place) for place in forth]
