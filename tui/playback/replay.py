@@ -5,7 +5,6 @@ import time
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from copy import copy
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.lockstep import Sample
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
     from pendu_tui.recordings.recording import Recording, Run, SamplePlace
 
 MAX_FOLLOWED = 100  # samples; over longer distances it jumps
-DENSE = 60.0  # s of the past that are read completely
-MAX_PIECES = 300  # of a second each, evenly spread over the time before
+MAX_STRETCHES = 300  # of the time before the last minute, of which a second each is read
 
 
 class Replay(Source):
@@ -202,12 +200,17 @@ class Replay(Source):
         return True
 
     def _past(self) -> Iterator[None]:
+        """Read the last minute, and of longer runs the first seconds of equal stretches before."""
         history = History(self.run.scene, changes_of(self.run))
-        start = self.run.begin
-        while start < (end := self.recording.sample(self._place).clock):
-            for piece in pieces(start, end):
-                yield from self._read(history, *piece, self.sample.step)
-            start = end
+        second = self.run.begin
+        last_minute = max(second, self.recording.sample(self._place).clock - 60.0)
+        stretch = max(1.0, (last_minute - second) / MAX_STRETCHES)
+        while second < self.recording.sample(self._place).clock:
+            yield from self._read(history, second, second + 1.0, self.sample.step)
+            if second < last_minute:
+                second = min(second + stretch, last_minute)
+            else:
+                second += 1.0
         history.add(self.sample)
         self.history = history
 
@@ -217,11 +220,3 @@ class Replay(Source):
             if sample.run == self.run.number and history.step < sample.step < last:
                 history.add(sample)
                 yield
-
-
-def pieces(start: float, end: float) -> list[tuple[float, float]]:
-    """Split [start, end] into the last DENSE seconds and short pieces before."""
-    middle = max(start, end - DENSE)
-    count = min(MAX_PIECES, math.ceil(middle - start))
-    edges = [start + (middle - start) * n / max(count, 1) for n in range(count + 1)]
-    return [(begin, min(begin + 1.0, until)) for begin, until in pairwise(edges)] + [(middle, end)]

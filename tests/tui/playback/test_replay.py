@@ -1,6 +1,5 @@
 """A replay, driven by a clock that the test moves."""
 
-import itertools
 from functools import cached_property
 from pathlib import Path
 
@@ -9,11 +8,13 @@ import pytest
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.playback.replay import Replay, pieces
+from pendu_tui.tui.playback.replay import Replay
 from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
 
@@ -140,12 +141,20 @@ def test_it_shows_the_past_that_the_lab_showed(tmp_path):
     assert table.replay.history.window().t[-1] == table.replay.sample.t
 
 
-def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
-    assert pieces(0.0, 30.0) == [(0.0, 30.0)]
-    first, *_, last = long = pieces(100.0, 30_000.0)
-    assert (first, last, len(long)) == ((100.0, 101.0), (29_940.0, 30_000.0), 301)
-    whole = pieces(0.0, 260.0)
-    assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
+def test_of_a_long_past_the_last_minute_is_read_whole_and_seconds_before(tmp_path, monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.playback.replay.MAX_STRETCHES", 4)
+    path = tmp_path / "long.mcap"
+    with Recorder(path, wall=None) as recorder:
+        list(simulate(DEFAULT_SCENE, 140.0, recorder, sample_every=2))
+    replay = Table(path).replay
+    replay.seek(140.0)
+    assert replay.fill()
+    t = replay.history.window().t
+    before = t[t < 79.9]
+    assert np.unique(before // 20).tolist() == [0, 1, 2, 3]
+    assert (before % 20).max() < 1.05
+    assert np.diff(t[t > 80.0]) == pytest.approx(0.1)
+    assert np.diff(t, prepend=0.0).min() >= 0.0
 
 
 def test_the_next_event_and_the_one_before_are_found(table):
