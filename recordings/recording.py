@@ -87,6 +87,7 @@ class Recording:
         self._models: dict[str, str] = {}  # by topic
         self._topics_of = lru_cache(maxsize=32)(self._named)
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
+        self._decode_event = lru_cache(MAX_EVENTS)(decode_event)  # which `events` keeps anyway
         self._find_runs()
         self.runs = list(self._runs.values())
         self.length = _clock(self._places[-1].end)
@@ -246,7 +247,7 @@ class Recording:
 
     def _event(self, data: bytes, clock: float) -> Event:
         """Return the event of a message; the first start of a run adds the run."""
-        event = decode_event(data)
+        event = self._decode_event(data)
         run = self._runs.get(event.run)
         if event.scene is not None and event.arithmetic is not None and run is None:
             self._runs[event.run] = Run(event.run, event.scene, event.arithmetic, clock, clock)

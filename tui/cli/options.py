@@ -85,9 +85,10 @@ def resolve(name: str) -> Path:
 
     folder = files.folder()
     file = name + files.SUFFIX
-    for path in (Path(name), files.GOLDEN / file, folder / name, folder / file):
-        if path.exists() and not path.is_dir():
-            return path
+    with files.named(Path(name)):  # no file may have a name so long
+        for path in (Path(name), files.GOLDEN / file, folder / name, folder / file):
+            if path.exists() and not path.is_dir():
+                return path
     items = files.listing(folder)
     if name == "latest" and items:
         return items[0].path

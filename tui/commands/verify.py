@@ -1,13 +1,14 @@
 """Simulate recordings again from their inputs, and compare every number bit for bit."""
 
 import argparse
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from pendu_tui.engine.run import NUMERICS
 from pendu_tui.recordings.events import remember
-from pendu_tui.recordings.files import GOLDEN, PART, RecordingError
+from pendu_tui.recordings.files import GOLDEN, PART, RecordingError, named
 from pendu_tui.recordings.verification import Verification, verify
 from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit, progress, say, warn
@@ -46,15 +47,18 @@ def _files(name: str) -> list[Path]:
     path = Path(name)
     if name == "golden" and not path.exists():
         path = GOLDEN
-    return sorted(path.rglob("*.mcap")) or [path]
+    with suppress(OSError):  # a name may be too long
+        return sorted(path.rglob("*.mcap")) or [path]
+    return [path]
 
 
 def _row(path: Path, only: list[str] | None, max_steps: int | None) -> dict[str, Any]:
     result = Verification(path)
     error = None
     try:
-        if path.is_dir():
-            raise RecordingError(f"{path}: no recordings in this folder.")
+        with named(path):
+            if path.is_dir():
+                raise RecordingError("no recordings in this folder")
         result.file = resolve(str(path))
         with progress(result.file.name) as show:
             result = verify(result.file, show, max_steps, only)

@@ -72,19 +72,24 @@ def foreign() -> bytes:
     return stream.getvalue()
 
 
+COMMANDS = (
+    "verify FILE",
+    "recordings show FILE",
+    "replay FILE --plain",
+    "export FILE",
+    "recordings recover FILE -o out.mcap",
+)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_name_that_no_file_can_have_is_one_sentence_and_exit_3(command):
+    assert pendu(*command.replace("FILE", 300 * "x").split()).refused(3, "xxx: ")
+
+
 @pytest.mark.parametrize(
     "content", [b"", b"\x89MCAP0\r\n", foreign()], ids=["empty", "cut", "foreign"]
 )
-@pytest.mark.parametrize(
-    "command",
-    [
-        "verify FILE",
-        "recordings show FILE",
-        "replay FILE --plain",
-        "export FILE",
-        "recordings recover FILE -o out.mcap",
-    ],
-)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_a_file_that_is_not_a_recording_is_one_sentence_and_exit_3(
     command, content, tmp_path, monkeypatch
 ):
