@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os.path import lexists
 from pathlib import Path
-from typing import IO, Any, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
 from pendu_tui.recordings.system import lock, rename
 
@@ -192,12 +192,6 @@ def _is_recording(path: Path) -> bool:
     except (OSError, struct.error):
         return False
     return bool(magic == MAGIC and profile == PROFILE.encode())
-
-
-def hold(file: IO[Any]) -> None:
-    """Lock an open file until it is closed, where the file system has locks."""
-    with suppress(OSError):
-        lock(file)
 
 
 def in_use(path: Path) -> bool:

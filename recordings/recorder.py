@@ -24,7 +24,6 @@ from pendu_tui.recordings.files import (
     NameTakenError,
     check_target,
     free_path,
-    hold,
     is_stream,
     part_of,
     printable,
@@ -42,6 +41,7 @@ from pendu_tui.recordings.format import (
     topics_of,
     without_extremes,
 )
+from pendu_tui.recordings.system import lock
 
 FLUSH_EVERY = 0.5  # s; with a frame and the flush, a kill loses less than a second
 MAX_WAIT = 2.0  # s, for another thread's flush
@@ -51,7 +51,7 @@ MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush without a thr
 class Recorder:
     """Writes one recording, which begins with a start.
 
-    Clocks are in seconds since the recording began, pauses excluded.  A headless recording has no
+    Clocks are in seconds since the recording began, pauses excluded, and never go back.  A headless recording has no
     `wall` clock, so that the same run gives the same bytes.  Raises DiskError if the disk fails;
     after that, call only `abandon`.
     """
@@ -73,7 +73,6 @@ class Recorder:
         self._schemas: dict[str, int] = {}  # numbers by title
         self._topics: tuple[str, ...] = ()  # of the run's methods
         self._entries = 0
-        self._log_time = CLOCK_OFFSET
         self._paused = False
         self._is_empty = True  # until something was flushed
         self._unflushed = 0  # bytes
@@ -86,7 +85,8 @@ class Recorder:
             except FileExistsError as error:
                 why = "is in use or left over from an unfinished recording; choose another name"
                 raise NameTakenError(why, self.part) from error
-        hold(self._file)
+        with suppress(OSError):  # some file systems have no locks
+            lock(self._file)
         self._writer = Writer(
             self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
@@ -224,14 +224,14 @@ class Recorder:
 
     def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
         """Write the messages of one entry."""
-        self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
-        self.seconds = max(self.seconds, clock)
-        publish_time = self._log_time if self._wall is None else self._wall()
+        log_time = CLOCK_OFFSET + round(clock * 1e9)
+        self.seconds = clock
+        publish_time = log_time if self._wall is None else self._wall()
         number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
                 channel = self._channels[topic]
-                self._writer.add_message(channel, self._log_time, data, publish_time, number)
+                self._writer.add_message(channel, log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
 

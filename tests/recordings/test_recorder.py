@@ -6,6 +6,7 @@ import random
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
@@ -184,12 +185,20 @@ def test_a_sample_that_is_not_after_the_last_one_of_its_run_is_not_written(recor
 def test_an_interrupted_recording_leaves_the_older_file_and_takes_a_free_name(tmp_path):
     path = tiny(tmp_path / "a.mcap")
     before = path.read_bytes()
-    recorder = Recorder(path, overwrite=True)
-    recorder.event(start(), 0.0)
-    recorder.sample(stepped(0), 0.0)
-    recorder.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)
+    for name in ("a-2.mcap", "a-3.mcap"):
+        recorder = Recorder(path, overwrite=True)
+        recorder.event(start(), 0.0)
+        recorder.sample(stepped(0), 0.0)
+        recorder.keep_older()
+        assert recorder.path.name == name
+        if name == "a-3.mcap":
+            recorder.path.write_text("precious")  # of another program, meanwhile
+        with suppress(DiskError):
+            recorder.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)
     assert path.read_bytes() == before
+    assert (tmp_path / "a-3.mcap").read_text() == "precious"
     assert verify(tmp_path / "a-2.mcap").complete
+    assert verify(tmp_path / "a-4.mcap").complete
 
 
 def test_a_single_step_while_paused_is_on_disk_at_once(recorder):

@@ -304,8 +304,8 @@ class Live(Source):
         self._noticed_step = max(self._noticed_step, self._run.step)
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
-        self._take_sample()
-        self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))
+        here = self._take_sample()
+        self._note(Event(kind, here.run, here.step, here.t, **what))
 
     def _note(self, event: Event) -> None:
         self._events.append(event)
