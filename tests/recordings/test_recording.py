@@ -78,7 +78,7 @@ def test_a_time_window_gives_the_entries_in_it(path, start, end):
         assert list(recording.entries(start, end)) == within
 
 
-@pytest.mark.parametrize("frame", [1, 7, 29, 1001, 123_457, 999_999])
+@pytest.mark.parametrize("frame", [1, 14, 1001, 123_457])
 def test_a_time_is_rounded_to_the_nearest_nanosecond(tmp_path, frame):
     clock = frame / 30  # what a lab's frames may have
     path = record(tmp_path / "a.mcap", [*two_runs()[:2], Entry(clock, two_runs()[2].value)])
