@@ -55,7 +55,7 @@ class _Head(NamedTuple):
     start: int  # ns, log_time of its first message
     end: int  # ns, log_time of its last message
     size: int  # bytes of its contents
-    checksum: int  # of its contents; 0 would not be checked
+    checksum: int  # of its contents
     compression: bytes
     packed: int  # bytes of its compressed contents
 
@@ -188,7 +188,6 @@ def _head_at(block: bytes, at: int) -> _Head | None:
             and head.length <= MAX_RECORD
             and head.size <= min(MAX_RECORD, MAX_EXPANSION * (head.length + 128))
             and head.start <= head.end <= MAX_TIME
-            and head.checksum
         )
         if is_possible:
             frame = block[at + _CHUNK.size : at + _MAX_HEAD]

@@ -46,6 +46,7 @@ def test_a_recording_holds_runs_with_different_methods():
 def test_a_recording_holds_what_the_lab_noticed():
     with Recording.open(GOLDEN / "verdicts.mcap") as recording:
         (run,) = recording.runs
+    assert run.inputs == 0  # milestones are none
     over_the_top, *others = run.milestones
     assert (over_the_top.method.letter, over_the_top.kind) == ("e", "over the top")
     verdicts = [("e", "grows"), ("r", "loses"), ("s", "bounded"), ("v", "bounded")]

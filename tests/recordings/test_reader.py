@@ -1,4 +1,4 @@
-"""The reader: what it refuses of a chunk, a summary or a whole file, and where its limits lie."""
+"""The reader: its limits, what it refuses, and what is read and saved of a damaged file."""
 
 import struct
 import zlib
@@ -7,9 +7,14 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.recordings import reader, recording
+from pendu_tui.recordings.events import Entry
 from pendu_tui.recordings.files import RecordingError
+from pendu_tui.recordings.format import without_extremes
+from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recording import Recording
-from tests.recordings.examples import record, two_runs
+from pendu_tui.recordings.verification import recover, verify
+from tests.recordings.damage import campaign
+from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 
 HEAD = struct.Struct("<BQQQQI8sQ")  # opcode, length, start [ns], end [ns], size, crc, zstd, packed
 FOOTER = struct.Struct("<BQQQI8s")  # opcode, length, start of the summary, offsets, crc, magic
@@ -21,11 +26,9 @@ def path(tmp_path) -> Path:
     return record(tmp_path / "a.mcap", two_runs())
 
 
-def heads(data: bytes) -> list[tuple]:
-    """Return the heads of the chunks, which begin 37 bytes before the name of their compression."""
-    pieces = data.split(b"\x04\x00\x00\x00zstd")[:-1]
-    ends = [sum(map(len, pieces[: n + 1])) + 8 * n for n in range(len(pieces))]
-    return [HEAD.unpack_from(data, end - 37) for end in ends if data[end - 37] == 6]
+def places_in(path: Path) -> list[reader.Place]:
+    with path.open("rb") as stream:
+        return reader.read_contents(stream, check=True).places
 
 
 def is_whole(path: Path) -> bool:
@@ -36,14 +39,16 @@ def is_whole(path: Path) -> bool:
         return False
 
 
-def limits(data: bytes) -> dict[str, int]:
+def limits(path: Path) -> dict[str, int]:
     """Return the limits that just let this file pass."""
+    data = path.read_bytes()
     _, _, start, *_ = FOOTER.unpack(data[-FOOTER.size :])
+    heads = [HEAD.unpack_from(data, place.offset) for place in places_in(path)]
     return {
-        "MAX_RECORD": max(head[4] for head in heads(data)),
-        "MAX_EXPANSION": max(-(-head[4] // (head[1] + 128)) for head in heads(data)),
+        "MAX_RECORD": max(head[4] for head in heads),
+        "MAX_EXPANSION": max(-(-head[4] // (head[1] + 128)) for head in heads),
         "MAX_SUMMARY": len(data) - start,
-        "MAX_TIME": max(head[3] for head in heads(data)),
+        "MAX_TIME": max(head[3] for head in heads),
         "MAX_EVENTS": 10,  # that they are, with the stop
     }
 
@@ -53,7 +58,7 @@ LIMITS = ("MAX_RECORD", "MAX_EXPANSION", "MAX_SUMMARY", "MAX_TIME", "MAX_EVENTS"
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
-    limit = limits(path.read_bytes())[name]
+    limit = limits(path)[name]
     module = recording if name == "MAX_EVENTS" else reader
     for value, passes in ((limit, True), (limit - 1, False)):
         monkeypatch.setattr(module, name, value)
@@ -61,15 +66,14 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
 
 
 def test_a_recording_of_the_lab_stays_far_below_the_limits(path):
-    data = path.read_bytes()
-    assert all(limit <= getattr(reader, name, 50_000) / 2 for name, limit in limits(data).items())
+    assert all(limit <= getattr(reader, name, 50_000) / 2 for name, limit in limits(path).items())
 
 
 @pytest.mark.parametrize("field", [2, 3], ids=["start", "end"])
 @pytest.mark.parametrize("later", [-1, 1])
 def test_a_chunk_whose_times_are_not_those_of_its_messages_is_lost(path, field, later):
     data = bytearray(path.read_bytes())
-    at = data.index(b"\x04\x00\x00\x00zstd") - 37
+    at = places_in(path)[0].offset
     head = list(HEAD.unpack_from(data, at))
     head[field] += later
     HEAD.pack_into(data, at, *head)
@@ -97,3 +101,56 @@ def test_a_summary_whose_times_are_not_those_of_a_chunk_is_damage(path, field, l
         assert "summary" in read.reason
         assert read.damaged
         assert [run.number for run in read.runs] == [2]  # the first start is in that chunk
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out.mcap"
+
+
+def ten_seconds(path):
+    """Ten samples a second; a chunk every second or so."""
+    entries = [Entry(0.0, start())]
+    return record(path, [*entries, *(Entry(sample.t, sample) for sample in simulate(SCENE, 10.0))])
+
+
+def spoil(path, *numbers):
+    """Change a byte in each of these chunks."""
+    places = places_in(path)
+    data = bytearray(path.read_bytes())
+    for number in numbers:
+        data[places[number].offset + 80] ^= 0xFF
+    path.write_bytes(data)
+    return path
+
+
+def samples(path):
+    with Recording.open(path) as recording:
+        return [value for _, value in samples_of(recording)]
+
+
+def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_path, out):
+    path = ten_seconds(tmp_path / "a.mcap")
+    whole = samples(path)
+    recovery = recover(spoil(path, 3, 6), out)
+    kept = samples(out)
+    assert recovery["damaged"]
+    assert recovery["samples_kept"] == len(kept)
+    assert recovery["entries_lost"] == len(whole) - len(kept) > 0
+    after_gaps = [sample for sample in kept if sample not in whole]
+    assert len(after_gaps) == 2
+    assert after_gaps == [without_extremes(sample) for sample in after_gaps]
+    assert verify(out).identical
+
+
+def test_without_its_start_a_run_is_lost(tmp_path, out):
+    with pytest.raises(RecordingError, match="are lost"):
+        recover(spoil(ten_seconds(tmp_path / "a.mcap"), 0), out)
+    assert not out.exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
+
+
+def test_damage_costs_what_is_hit_and_never_yields_a_wrong_number():
+    done = campaign(cuts=40, flips=40, others=10, holes=10)
+    assert done["unnoticed"] == 0
+    assert done["chunks_lost"] > 0  # or nothing was tested

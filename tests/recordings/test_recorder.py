@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 
@@ -20,10 +21,10 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.recordings.events import Entry, Event
 from pendu_tui.recordings.files import DiskError, part_of
 from pendu_tui.recordings.format import EVENTS
-from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.headless import simulate, steps_for
 from pendu_tui.recordings.recorder import LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.recordings.verification import verify
+from pendu_tui.recordings.verification import recover, verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 from tests.tui.command_line import IS_WINDOWS
 
@@ -281,3 +282,28 @@ def test_a_real_file_size_limit_is_survived(tmp_path):
     assert "File too large" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap.part"]
     assert verify(tmp_path / "lab.mcap.part").identical
+
+
+@pytest.mark.parametrize(
+    ("h", "time", "every", "steps"),
+    [
+        (0.1, 2.0, 6, [0, 6, 12, 18, 20]),
+        (0.1, 0.3, None, [0, 1, 2, 3]),
+        (0.004, 0.1, None, [0, 8, 16, 24, 25]),  # 1/30 s are 8.3 steps
+    ],
+)
+def test_samples_have_their_cadence_and_include_the_first_and_the_last(h, time, every, steps):
+    scene = replace(SCENE, h=h)
+    assert [sample.step for sample in simulate(scene, time, sample_every=every)] == steps
+    assert steps_for(scene, time) == steps[-1]
+
+
+def test_a_long_headless_run_has_few_chunks(tmp_path):
+    path, copy = tmp_path / "a.mcap", tmp_path / "copy.mcap"
+    with Recorder(path, wall=None) as recorder:
+        samples = sum(1 for _ in simulate(SCENE, 300.0, recorder, sample_every=2))
+    recover(path, copy)
+    for each in (path, copy):
+        with Recording.open(each) as recording:
+            assert recording.samples == samples == 1501
+    assert path.read_bytes().count(b"\x04\x00\x00\x00zstd") < 50  # in chunks and their index
