@@ -14,7 +14,7 @@ from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
-from pendu_tui.recordings.verification import TOLERANCE, verify
+from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, two_runs, with_changes
 
 
@@ -158,7 +158,7 @@ def test_a_difference_beyond_the_tolerance_is_found_even_if_sin_differs(tmp_path
     right = reading_of(entries, 7, 2).theta
     with monkeypatch.context() as elsewhere:
         of_another_machine(elsewhere)
-        wrong = altered(entries, 7, 2, theta=right * (1 + 10 * TOLERANCE))
+        wrong = altered(entries, 7, 2, theta=right * (1 + 5e-6))
         record(tmp_path / "a.mcap", wrong)
     difference = verify(tmp_path / "a.mcap").first_difference
     assert (difference.method, difference.field) == ("velocity_verlet", "theta")
@@ -170,3 +170,21 @@ def test_no_more_steps_are_simulated_than_samples_need(tmp_path):
     assert verify(record(tmp_path / "a.mcap", [*two_runs()[:4], far]), max_steps=6).identical
     with pytest.raises(RecordingError, match="claims 6 steps"):
         verify(tmp_path / "a.mcap", max_steps=5)
+
+
+@pytest.mark.parametrize(("last", "is_refused"), [(300, False), (301, True)])
+def test_without_a_limit_a_hundred_steps_a_sample_are_simulated(
+    tmp_path, monkeypatch, last, is_refused
+):
+    monkeypatch.setattr("pendu_tui.recordings.verification.MAX_STEPS", 1)
+    lockstep = Lockstep(SCENE)
+    entries = [Entry(0.0, start())]
+    for step in (0, 1, last):
+        lockstep.advance(step - lockstep.step)
+        entries.append(Entry(0.0, lockstep.sample()))
+    path = record(tmp_path / "a.mcap", entries)
+    if is_refused:
+        with pytest.raises(RecordingError, match="claims 301 steps"):
+            verify(path)
+    else:
+        assert verify(path).identical
