@@ -6,6 +6,7 @@ from itertools import count
 
 import pytest
 
+from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import CompiledLoops
@@ -51,6 +52,16 @@ def test_a_value_that_an_older_version_did_not_record_is_not_compared(tmp_path):
         Entry(0.1, sample._replace(readings=older)),
     ]
     assert verify(record(tmp_path / "a.mcap", entries)).identical
+
+
+def test_a_failure_that_was_not_recorded_is_found(tmp_path):
+    scene = replace(SCENE, theta=3.0, h=0.7, cast=(method_of("implicit_midpoint"), VELOCITY_VERLET))
+    *_, last = simulate(scene, 7.0)
+    entries = [Entry(0.0, start(scene=scene)), Entry(7.0, last)]
+    assert verify(record(tmp_path / "a.mcap", entries)).identical
+    path = record(tmp_path / "b.mcap", altered(entries, 1, 0, diverged_at=None))
+    found = verify(path).first_difference
+    assert (found.field, found.recorded, found.computed) == ("diverged_at", None, 0.7)
 
 
 @pytest.mark.parametrize("scene", SCENES)
