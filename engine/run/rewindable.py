@@ -6,7 +6,7 @@ they lie apart, so their number grows only with the logarithm of the run's lengt
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from operator import attrgetter
@@ -15,7 +15,6 @@ from typing import NamedTuple
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.loops import LoopsOf, TieredLoops
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange
-from pendu_tui.engine.run.verdicts import Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 
 COPY_EVERY = 1000  # steps, which take 4 ms: a step back is instant
@@ -40,7 +39,7 @@ class RewindableRun:
         self._reset = 0  # the step of the last sample that reset the extremes
         self._x = [0.0]  # x at each change
         self._applied = 1
-        self._lockstep = Lockstep(scene, run, loops=loops, judged=True)
+        self.lockstep = Lockstep(scene, run, loops=loops, judged=True)
         self._copies = [self._copy()]
 
     def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:
@@ -52,16 +51,12 @@ class RewindableRun:
 
     @property
     def step(self) -> int:
-        return self._lockstep.step
-
-    @property
-    def stepping(self) -> Stepping:
-        return self._lockstep.stepping
+        return self.lockstep.step
 
     @property
     def t(self) -> float:
         """Simulated time [s]."""
-        return self._lockstep.t
+        return self.lockstep.t
 
     @property
     def x(self) -> float:
@@ -73,16 +68,6 @@ class RewindableRun:
         last = bisect_right(self.changes, step, key=attrgetter("step")) - 1
         change = self.changes[last]
         return self._x[last] + (step - change.step) * abs(change.stepping.h)
-
-    @property
-    def judgements(self) -> list[Judgement]:
-        """The judgements at this step, since the last change of the stepping."""
-        return self._lockstep.judgements
-
-    @property
-    def milestones(self) -> Sequence[Milestone]:
-        """The milestones up to this step; later ones come again, and are the same."""
-        return self._lockstep.milestones
 
     @property
     def in_past(self) -> bool:
@@ -103,7 +88,7 @@ class RewindableRun:
     @property
     def home(self) -> float:
         """The step at which the simulated time will be 0 again; inf if never."""
-        ahead = -self.t / self.stepping.h
+        ahead = -self.t / self.lockstep.stepping.h
         if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6:
             return self.step + round(ahead)
         return math.inf
@@ -114,7 +99,7 @@ class RewindableRun:
         self.furthest = max(self.furthest, self.step)
         if resets:
             self._reset = self.step
-        return self._lockstep.sample(resets)
+        return self.lockstep.sample(resets)
 
     def forward(self, n: int) -> None:
         target = self.step + n
@@ -122,16 +107,16 @@ class RewindableRun:
             while (
                 self._applied < len(self.changes) and self.changes[self._applied].step == self.step
             ):
-                self._lockstep.set_stepping(self.changes[self._applied].stepping)
+                self.lockstep.set_stepping(self.changes[self._applied].stepping)
                 self._applied += 1
             stops = [target]
             if self._applied < len(self.changes):
                 stops.append(self.changes[self._applied].step)
             if self.step < self._reset:
                 stops.append(self._reset)
-            self._lockstep.advance(min(stops) - self.step)
+            self.lockstep.advance(min(stops) - self.step)
             if self.step == self._reset:
-                self._lockstep.sample()  # to reset the extremes again
+                self.lockstep.sample()  # to reset the extremes again
             if self.step >= self._copies[-1].lockstep.step + COPY_EVERY:
                 self._copies.append(self._copy())
                 self._thin()
@@ -141,8 +126,8 @@ class RewindableRun:
         at = bisect_right(self._copies, step, key=lambda place: place.lockstep.step) - 1
         if not self._copies[at].lockstep.step <= self.step <= step:
             lockstep, self._applied = self._copies[at]
-            self._lockstep = lockstep.copy()
-            self._lockstep.run = self.run
+            self.lockstep = lockstep.copy()
+            self.lockstep.run = self.run
         self.forward(step - self.step)
 
     @contextmanager
@@ -152,13 +137,13 @@ class RewindableRun:
         try:
             yield
         except BaseException:  # such as TooLongError
-            self._lockstep, self._applied = before
+            self.lockstep, self._applied = before
             raise
 
     def change(self, stepping: Stepping) -> None:
         """Step like this from here on; in the past, branch first.  Raises SceneError."""
         x = self.x
-        self._lockstep.set_stepping(stepping)
+        self.lockstep.set_stepping(stepping)
         self.changes.append(SteppingChange(self.step, self.t, stepping))
         self._x.append(x)
         self._applied += 1
@@ -168,12 +153,12 @@ class RewindableRun:
         del self.changes[self._applied :], self._x[self._applied :]
         while self._copies[-1].lockstep.step > self.step:
             self._copies.pop()
-        self.run = self._lockstep.run = run
+        self.run = self.lockstep.run = run
         self.furthest = self.step
         self._reset = min(self._reset, self.step)
 
     def _copy(self) -> _Checkpoint:
-        return _Checkpoint(self._lockstep.copy(), self._applied)
+        return _Checkpoint(self.lockstep.copy(), self._applied)
 
     def _thin(self) -> None:
         """Keep the first copy, the last one, and of copies n steps old one in about n/8 steps."""

@@ -270,9 +270,9 @@ class Live(Source):
     def _take_sample(self, is_row: bool = True) -> Sample:
         run = self._run
         sample = run.sample(resets=is_row)
-        self.stepping = run.stepping
-        self.judgements = run.judgements
-        self.milestones = run.milestones
+        self.stepping = run.lockstep.stepping
+        self.judgements = run.lockstep.judgements
+        self.milestones = run.lockstep.milestones
         self.history.add(sample, is_row)
         if is_row and self.recorder is not None and sample.step >= run.furthest:
             self.recorder.sample(sample, self._due)
@@ -298,7 +298,7 @@ class Live(Source):
 
     def _note_milestones(self) -> None:
         """Record new milestones; those of repeated steps have been recorded before."""
-        for milestone in self._run.milestones:
+        for milestone in self._run.lockstep.milestones:
             if milestone.step > self._noticed_step:
                 self._note(noticed(self._run.run, milestone))
         self._noticed_step = max(self._noticed_step, self._run.step)

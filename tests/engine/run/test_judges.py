@@ -142,21 +142,21 @@ def test_after_a_way_back_verdicts_are_those_of_their_step(back: int, at: int) -
     run.forward(max(0, at - back))
     alone = Lockstep(DRIFT, judged=True)
     alone.advance(run.step)
-    assert run.judgements == alone.judgements
-    assert list(run.milestones) == list(alone.milestones)
+    assert run.lockstep.judgements == alone.judgements
+    assert list(run.lockstep.milestones) == list(alone.milestones)
 
 
 def test_a_change_of_the_stepping_in_the_past_forgets_what_came_later() -> None:
     run = RewindableRun(DRIFT, loops=PlainLoops)
     run.forward(1200)
-    everything = list(run.milestones)
+    everything = list(run.lockstep.milestones)
     run.go_to(300)
     run.branch(2)
     run.change(Stepping(0.02, cast=DRIFT.cast))
-    assert list(run.milestones) == [each for each in everything if each.step <= 300]
-    assert {judgement.verdict for judgement in run.judgements} == {"undecided"}
+    assert list(run.lockstep.milestones) == [each for each in everything if each.step <= 300]
+    assert {judgement.verdict for judgement in run.lockstep.judgements} == {"undecided"}
     run.forward(1500)
-    verdicts = [judgement.verdict for judgement in run.judgements]
+    verdicts = [judgement.verdict for judgement in run.lockstep.judgements]
     assert verdicts == ["grows", "bounded", "bounded", "loses"]
 
 

@@ -65,9 +65,9 @@ def test_a_change_at_the_step_gone_back_to_is_still_ahead():
     course.forward(5)
     course.sample()
     course.go_to(10)
-    assert course.stepping.h == DEFAULT_SCENE.h
+    assert course.lockstep.stepping.h == DEFAULT_SCENE.h
     course.forward(1)
-    assert course.stepping.h == 0.1
+    assert course.lockstep.stepping.h == 0.1
 
 
 def test_a_branch_shares_the_past_and_forgets_the_future():
