@@ -148,7 +148,7 @@ def entries(scenes: Iterable[Scene], bindings: Iterable[ActiveBinding]) -> Itera
         yield Entry(f"app.use_pixels({name!r})", f"pixels {name}")
     for scene in scenes:
         yield Entry(f"start_scene({scene.name!r})", f"scene {scene.name}", about=scene.watch)
-    done: set[str] = set()
+    done = {"find"}
     for node, binding, enabled, _ in bindings:
         ours = {each.action for each in bindings_of(type(node))}
         if enabled and binding.action in ours - done:

@@ -2,6 +2,8 @@
 
 import math
 
+from textual.widgets import Label
+
 from pendu_tui.engine.methods import METHODS, USUAL_CAST
 from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
 from tests.tui.harness import lab
@@ -23,6 +25,8 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
         form = theatre.app.screen
         fields = [field.id for field in form.query("Input")]
         assert fields == ["theta", "omega", "length", "gravity", "h", "stiffness"]
+        for label in form.query(".unit").results(Label):
+            assert len(str(label.content)) < label.size.width
 
         async def enter(name, value):
             form.query_one(f"#{name}").value = value
