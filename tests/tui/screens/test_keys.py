@@ -3,7 +3,7 @@
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
@@ -260,3 +260,28 @@ async def test_the_last_line_has_what_one_needs_now_each_a_button(width):
         await theatre.press("f3")
         await theatre.pilot.pause()
         assert "g Ring" in theatre.text("KeyLine")
+
+
+async def test_n_toggles_equal_cost_which_a_restart_keeps():
+    async with lab(Scene(h=0.05)) as theatre:
+        for keys, own in (
+            ("n", (0.05, 0.05, 0.05, 0.2)),
+            (",,r", (0.05,) * 3 + (0.2,)),
+            ("n", (0.05,) * 4),
+        ):
+            await theatre.press(*keys)
+            assert theatre.source.stepping.own == own
+        assert theatre.source.scene.h == 0.05
+
+
+@pytest.mark.parametrize(("h", "keys"), [(0.05, "n"), (1e-9, "n-r"), (60.0, "nr")])
+async def test_a_step_that_is_absurd_for_a_method_is_refused_before_anything_changes(h, keys):
+    async with lab(Scene(h=h)) as theatre:
+        await theatre.press(*keys)
+        runs = theatre.source.sample.run
+        await theatre.stage.start(Scene(h=100.0))
+        await theatre.pilot.pause()
+        equal_cost = theatre.source.stepping.equal_cost
+        assert theatre.source.sample.run == runs + (not equal_cost)
+        refused = [each for each in theatre.app._notifications if "not a usable" in each.message]
+        assert bool(refused) == equal_cost
