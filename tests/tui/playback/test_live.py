@@ -118,10 +118,19 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     assert end.t == pytest.approx(turn - 4 * speed, abs=0.011 + 1e-9)
 
 
+@pytest.mark.parametrize(("h", "samples"), [(0.001, 60), (0.05, 40)])
+def test_thirty_samples_a_second_are_recorded_or_every_step(h, samples):
+    bench = Bench(DEFAULT_SCENE.altered(h=h))
+    bench.run(2)
+    assert len(bench.keeper.samples) == pytest.approx(samples, abs=2)
+
+
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
     bench.run(1)
-    assert bench.live.pace < 0.9
+    share = bench.live.playhead.position / 4096
+    assert share < 0.9
+    assert bench.live.pace == pytest.approx(share + (1 - share) / math.e, abs=0.03)  # after 1 s
     assert bench.live.playhead.position == pytest.approx(bench.live.sample.t)
     bench.live.set_speed(1)
     bench.run(1)
