@@ -125,6 +125,33 @@ def test_thirty_samples_a_second_are_recorded_or_every_step(h, samples):
     assert len(bench.keeper.samples) == pytest.approx(samples, abs=2)
 
 
+def test_between_steps_the_end_moves_on_and_the_next_step_comes_closer():
+    bench = Bench(DEFAULT_SCENE.altered(h=0.5))
+    bench.run(0.3)
+    assert bench.live.length == pytest.approx(0.3)
+    assert bench.live.next_step == pytest.approx(0.2)
+    bench.live.set_speed(2.0)
+    bench.live.change(bench.live.stepping.reversed())
+    assert bench.live.next_step == pytest.approx(0.1)
+
+
+def test_where_a_lab_is_among_its_runs_steps_and_events():
+    bench = Bench()
+    bench.run(8)  # explicit Euler goes over the top at 7.15 s
+    bench.live.start(DEFAULT_SCENE)
+    bench.run(8)
+    bench.live.change(bench.live.stepping.next(up=True))
+    bench.run(1)
+    bench.live.mark()
+    bench.live.set_speed(2.0)
+    assert bench.live.ticks == pytest.approx([0.0, 7.15, 8.0, 9.0])
+    bench.live.step(-20)
+    assert bench.live.counts == {"run": (2, 2), "step": (150, 170)}
+    for direction, position in ((1, 8.0), (-1, 7.15), (1, 8.0), (1, 9.0), (1, 9.0)):
+        bench.live.seek_event(direction)
+        assert bench.live.playhead.position == pytest.approx(position)
+
+
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
     bench.run(1)
