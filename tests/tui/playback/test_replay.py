@@ -75,6 +75,10 @@ def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table
         runs.append(sample.run)
     assert sample == table.samples[0].value
     assert list(dict.fromkeys(runs)) == [3, 2, 1]
+    table.replay.pause(False)
+    assert table.replay.playhead.position == table.replay.length
+    steps = table.samples[-1].value.step
+    assert table.replay.counts == {"run": (3, 3), "step": (steps, steps)}
 
 
 @pytest.mark.parametrize(
@@ -171,7 +175,9 @@ def test_the_next_event_and_the_one_before_are_found(table):
 @pytest.mark.parametrize("seconds", [1.0, 4.7, 11.0])
 def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
     table.replay.seek(seconds)
+    table.replay.set_speed(-2.0)
     live = table.replay.live()
+    assert live.playhead.speed == 2.0
     here = table.replay.sample
     assert (live.sample.step, live.sample.t) == (here.step, here.t)
     assert live.stepping.h == table.replay.stepping.h
@@ -229,6 +235,8 @@ def test_it_shows_the_milestones_and_verdicts_of_the_lab_and_jumps_to_them(lab):
     replay.seek(23.9)
     assert list(replay.milestones) == [each for each in first if each.step <= replay.sample.step]
     assert "bounded" in table.verdicts
+    swings = max(judgement.periods for judgement in replay.judgements)
+    assert swings == pytest.approx(23.9 / replay.exact.period, rel=0.01)
     replay.seek(1.0)
     assert list(replay.milestones) == []
     assert set(table.verdicts) == {"undecided"}
