@@ -1,4 +1,4 @@
-"""Draw the animation of the README, .github/lab.svg: a run and a throw, without scripts.
+"""Draw the pictures of the pages, and the animation of the README: a run and a throw.
 
 python tests/bench/film.py
 """
@@ -9,12 +9,18 @@ import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
 
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.screens.app import normalised
+from pendu_tui.tui.screens.launch import still
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held
 from tests.tui.harness import Theatre, lab
 
-TARGET = Path(__file__).parent.parent.parent / ".github" / "lab.svg"
+FOLDER = Path(__file__).parent.parent.parent / ".github"
+TARGET = FOLDER / "lab.svg"
+VIEWS = {"accuracy": "f4", "stability": "f5"}
+"""The pictures of the pages, and the keys of their views."""
+
 SIZE = (80, 24)
 SECONDS_PER_FRAME = 0.6
 BEFORE = 5  # frames of the first run
@@ -25,7 +31,10 @@ MAX_BYTES = 1_500_000
 
 
 def main() -> int:
-    """Write the film; return 1 if it is too large for a README."""
+    """Write the pictures and the film; return 1 if it is too large for a README."""
+    for name, key in VIEWS.items():
+        picture = asyncio.run(still(DEFAULT_SCENE, 12.0, (120, 40), keys=[key]))
+        (FOLDER / "docs" / f"{name}.svg").write_text(picture, encoding="utf-8")
     frames = asyncio.run(shot())
     film = film_of(frames)
     size = len(film.encode())
