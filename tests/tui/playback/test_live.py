@@ -214,6 +214,14 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 
 
+def test_a_new_run_keeps_equal_cost_with_the_scenes_step_as_the_smallest():
+    bench = Bench()
+    bench.live.change(bench.live.stepping.toggled())
+    bench.live.start(SCENES["spin"])
+    assert bench.live.stepping.equal_cost
+    assert bench.live.stepping.smallest == SCENES["spin"].h
+
+
 @pytest.mark.parametrize("h", [0.0, math.nan])
 def test_an_absurd_step_size_is_refused_and_changes_nothing(h):
     bench = Bench()
