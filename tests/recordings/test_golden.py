@@ -11,7 +11,7 @@ from pendu_tui.recordings.files import GOLDEN, golden_names
 from pendu_tui.recordings.format import values_of
 from pendu_tui.recordings.recording import Recording
 from tests.recordings.examples import samples_of
-from tests.recordings.make_golden import RECORDINGS, make
+from tests.recordings.make_golden import make
 from tests.tui.command_line import pendu
 
 COLUMNS = (
@@ -32,8 +32,7 @@ def test_making_a_golden_recording_again_gives_the_same(name, tmp_path):
             assert list(golden.entries()) == list(made.entries())
 
 
-def test_the_golden_recordings_are_those_we_make_and_small():
-    assert set(golden_names()) == set(RECORDINGS)
+def test_the_golden_recordings_are_small():
     assert all(path.stat().st_size < ROOM for path in GOLDEN.iterdir())
 
 
