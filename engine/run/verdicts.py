@@ -42,16 +42,16 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the energy rises for good; if it rests elsewhere now, "
-            "its slope is that of rest",
+            meaning="the energy rises for good; if it has settled since, "
+            "the slope is measured there",
             sentence="{0} gains {rate:share} of {unit} per s.",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the energy falls for good; if it rests elsewhere now, "
-            "its slope is that of rest",
+            meaning="the energy falls for good; if it has settled since, "
+            "the slope is measured there",
             sentence="{0} loses {rate:share} of {unit} per s.",
         ),
         Verdict(
@@ -65,7 +65,8 @@ VERDICTS: dict[str, Verdict] = {
             FAILED,
             sign="!",
             ink="warn",
-            meaning="the numbers have ended: nan, infinite, too large, or a step without solution",
+            meaning="the numbers have broken down: nan, infinite, too large, "
+            "or a step without a solution",
             sentence="{0} failed at {t:seconds}: its energy error is no longer finite.",
         ),
         Verdict(
