@@ -13,8 +13,7 @@ from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.words import insight
-from pendu_tui.tui.words.insight import energy_ratio, short_name
+from pendu_tui.tui.words.insight import energy_ratio, lasting, sentence, short_name
 from pendu_tui.tui.words.numbers import about, seconds, start, two_digits
 
 READING = 6.0  # s, to read a sentence, or to find an answer
@@ -63,21 +62,18 @@ def step_text(source: Source) -> str:
 
 
 def method_sentence(source: Source, index: int) -> str:
-    """Say how a method failed or went over the top, else give its verdict or error."""
+    """Say what is known of a method, else its error and what its verdict lacks."""
     method = source.scene.cast[index]
     reading = source.sample.readings[index]
     judgement = source.judgements[index]
-    found = [insight.drift(source, index)]
-    if milestone := insight.endings(source).get(index):
-        conserved = source.scene.equations.conserves_energy
-        irregular = insight.irregular(method, judgement, reading.energy_error)
-        found = [insight.milestone_insight(milestone, conserved), irregular]
-    elif judgement.verdict == BOUNDED:
-        error = reading.max_energy_error
-        return f"{method.label} stays bounded: its largest energy error is {error:.2g}."
-    if sentences := " ".join(insight.sentence(each) for each in found if each):
-        return sentences
-    return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {judgement}."
+    others = {each.key for each in source.scene.cast} - {method.key}
+    found = [each for each in lasting(source, others) if each.kind not in ("watch", "so far")]
+    if not found:
+        return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {judgement}."
+    sentences = [sentence(each) for each in found]
+    if judgement.verdict == BOUNDED:
+        sentences.append(f"Its largest energy error is {reading.max_energy_error:.2g}.")
+    return " ".join(sentences)
 
 
 def _recording(source: Source) -> str:
@@ -106,8 +102,8 @@ def tell(
     """
     if lesson is not None and isinstance(source, Live):
         lesson.begin(source, 0)
-    for sentence in description(source, only):
-        emit(sentence)
+    for text in description(source, only):
+        emit(text)
     source.tick(clock())
     known = set(event_lines(source))
     told: tuple[str, ...] = ()

@@ -83,6 +83,7 @@ def test_the_energy_at_the_top_is_that_of_the_milestone():
     assert milestone_insight(top, conserved=False).values["ratio"] == math.exp(top.energy_error)
     assert "5.1" in found.values["energy"]
     assert milestone_insight(top._replace(energy_error=0.04)).values["energy"] == ""
+    assert "1.1" in milestone_insight(top._replace(energy_error=0.06)).values["energy"]
 
 
 @pytest.mark.parametrize(

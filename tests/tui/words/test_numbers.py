@@ -8,18 +8,25 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.words.numbers import (
+    about,
     angle,
     decimal,
     energy_share,
+    factor,
     motion_text,
     regime,
     scientific,
     seconds,
+    two_digits,
 )
 
 ANY = st.floats(allow_nan=True, allow_infinity=True) | st.none()
 W0 = Scene().w0
 MODEL = Scene().equations
+ABOUT = {0.5: "0.5 s", 9.9: "9.9 s", 9.96: "10 s", 119: "119 s", 120: "2 min", 7199: "120 min"}
+ABOUT |= {7200: "2 h", 1.7e5: "47 h", 1.9e5: "2.2 days"}
+FACTORS = {0.125: "0.125", 999.96: "1000", 16384: "16384", 2.0**18: "262144", 2e9: "2e+09"}
+TWO_DIGITS = {0.000294: "0.00029", 9.94: "9.9", 9.96: "10", 99_999: "99999", 1.26e6: "1.3e+06"}
 
 
 @given(ANY, st.integers(1, 14), st.integers(0, 6))
@@ -59,6 +66,9 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (seconds(3 * 86400 + 4 * 3600), "3 d 04 h"),
         (seconds(1e12), "1.0e+12 s"),
         (seconds(math.inf), "-"),
+        *((about(value), text) for value, text in ABOUT.items()),
+        *((factor(value), text) for value, text in FACTORS.items()),
+        *((two_digits(value), text) for value, text in TWO_DIGITS.items()),
         # near the separatrix, the distance from it
         (energy_share(MODEL, 0.0, 4 * W0), "4"),
         (energy_share(MODEL, math.pi - 1e-6, 0.0), "1 - 2.5e-13"),

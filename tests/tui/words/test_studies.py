@@ -6,13 +6,22 @@ from fractions import Fraction
 import pytest
 
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
+from pendu_tui.engine.studies.accuracy import Cheapest
 from pendu_tui.engine.studies.section import OrbitKind
-from pendu_tui.tui.words.studies import orbit_words
+from pendu_tui.tui.words.studies import factor_words, few, front_words, length, orbit_words
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
 LOST = replace(REGULAR, rotation=None, fraction=None)
 HALF = replace(ISLAND, rotation=-0.5, fraction=Fraction(1, 2), spins=True)
+LENGTHS = {
+    9.993e-4: "999 µs",
+    9.996e-4: "1 ms",
+    0.9994: "999 ms",
+    1.5: "1.5 s",
+    1234.0: "1.23e+03 s",
+}
+FEW = {8.333: "8.33", 99.94: "99.9", 401.4: "401", 12345: "12345"}
 MAX = 1e-3  # relative drift of a slow spiral
 
 
@@ -35,3 +44,28 @@ MAX = 1e-3  # relative drift of a slow spiral
 )
 def test_the_orbit_in_a_sentence(method, kind, parts):
     assert [part for part in parts if part not in orbit_words(method, kind)] == []
+
+
+def test_the_front_names_ranges_and_only_savings_worth_a_change_of_method():
+    entries = [
+        Cheapest(1e-2, VELOCITY_VERLET, 100, 1.21),
+        Cheapest(1e-3, VELOCITY_VERLET, 300, 1.19),
+        Cheapest(1e-4, RK4, 900, 1.0),
+    ]
+    assert front_words(entries, "evaluations") == (
+        "Cheapest in force evaluations: Velocity Verlet from 1e-2 to 1e-3, RK4 at 1e-4."
+    )
+    assert factor_words(entries).endswith(": Velocity Verlet 1.2 at 1e-2.")
+    assert factor_words(entries[1:]) == ""
+    assert "No power of ten" in front_words([], "seconds")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        *((length(seconds), words) for seconds, words in LENGTHS.items()),
+        *((few(number), words) for number, words in FEW.items()),
+    ],
+)
+def test_computing_times_and_counts_have_three_digits(text, expected):
+    assert text == expected
