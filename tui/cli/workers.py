@@ -20,7 +20,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import wait
 from multiprocessing.context import SpawnContext
 from multiprocessing.process import BaseProcess
 from typing import Any
@@ -34,7 +34,7 @@ Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
 
 
-def started(function: Callable[..., object], *arguments: object) -> tuple[BaseProcess, Connection]:
+def started(function: Callable[..., object], *arguments: object) -> tuple[BaseProcess, Any]:
     """Call a function in another process, with a connection to this one before its arguments.
 
     Return the process, which ends with this one, and the connection to it.

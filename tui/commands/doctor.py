@@ -13,8 +13,7 @@ from pendu_tui.recordings import files
 from pendu_tui.recordings.system import environment
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.commands.report import Column, Report, publish
-from pendu_tui.tui.terminal.check import check_terminal
-from pendu_tui.tui.terminal.options import SMALLEST, colours, is_utf8
+from pendu_tui.tui.terminal.options import SMALLEST, check_terminal, colours, is_utf8
 from pendu_tui.tui.words.numbers import file_size
 
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")

@@ -1,24 +1,45 @@
-"""Show the lab in a browser, for a class without terminals; each tab gets its own lab."""
+"""Show the lab in a browser, for a class without terminals; each tab gets its own lab.
+
+This is textual-serve with limits and access checks.
+"""
 
 import argparse
+import asyncio
+import ipaddress
+import logging
 import os
+import pickle
+import re
+import signal
+import sys
+import tempfile
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
 
+from pendu_tui.recordings.system import ENDING, shell_command
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.terminal.options import terminal_options_of
 
+try:
+    from aiohttp import web
+    from textual_serve.server import Server
+    from yarl import URL
+except ImportError:
+    raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.") from None
+
 THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
+CONNECTIONS_PER_LAB = 10  # browsers open six
+FONT_SERVER = re.compile(r"<link[^>]*fonts\.googleapis[^>]*>")
+POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     check_fits(scene.cast)
-    try:
-        from pendu_tui.tui.commands.web.server import serve
-    except ImportError:
-        raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.") from None
     folder: Path | None = options.record
     if folder is not None:
         folder.mkdir(exist_ok=True)
@@ -27,20 +48,110 @@ def run(options: argparse.Namespace) -> int:
             why = f"{folder} is not writable: choose another folder for --record."
             raise UserError(why, Exit.DISK)
 
-    def listening(address: str) -> None:
-        if options.host not in THIS_COMPUTER:
-            warn(
-                f"anyone who can reach {options.host} can open labs on this computer, without a "
-                "password or encryption."
-            )
-        print(f"{address} serves up to {options.at_most} labs; Ctrl+C ends it.", flush=True)
-
     settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
     try:
-        serve(settings, options.host, options.port, options.at_most, listening)
+        with tempfile.TemporaryDirectory(prefix="pendu-") as private:  # mode 700
+            file = Path(private, "settings")
+            file.write_bytes(pickle.dumps(settings))
+            asyncio.run(LabServer(file, options).run())
     except (OSError, OverflowError, UnicodeError) as error:
         why = getattr(error, "strerror", None) or str(error)
         where = f"{options.host} port {options.port}"
         advice = "choose another --port or --host"
         raise UserError(f"cannot listen on {where}: {why}; {advice}.") from None
     return Exit.FINE
+
+
+class LabServer(Server):  # type: ignore[misc]
+    """Serves a limited number of labs, to its own pages only."""
+
+    def __init__(self, settings: Path, options: argparse.Namespace) -> None:
+        lab = [sys.executable, "-P", "-m", "pendu_tui.tui.screens.served", str(settings)]
+        super().__init__(shell_command(lab), options.host, options.port, title="pendu-tui")
+        self._max_labs = options.at_most
+        self._labs = 0
+
+    async def run(self) -> None:
+        """Serve until a signal.  Raises OSError."""
+        logging.disable()  # any client can cause harmless errors
+        loop = asyncio.get_running_loop()
+        stop = asyncio.Event()
+        for number in ENDING:
+            signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop.set))
+        app = await self._make_app()
+        app.middlewares.append(self.check)
+        app.on_response_prepare.append(add_policy)
+        runner = web.AppRunner(app, keepalive_timeout=3.0, shutdown_timeout=1.0)  # s
+        await runner.setup()
+
+        def connect() -> Any:
+            connection = runner.server()
+            if len(runner.server.connections) >= CONNECTIONS_PER_LAB * self._max_labs:
+                loop.call_later(0, connection.force_close)
+            return connection
+
+        try:
+            listener = await loop.create_server(connect, self.host, self.port)
+            self._announce(*listener.sockets[0].getsockname()[:2])
+            await stop.wait()
+            listener.close()
+        finally:
+            await runner.cleanup()
+
+    def _announce(self, host: str, port: int) -> None:
+        if self.host not in THIS_COMPUTER:
+            warn(
+                f"anyone who can reach {self.host} can open labs on this computer, without a "
+                "password or encryption."
+            )
+        address = URL.build(scheme="http", host=host, port=port)
+        print(f"{address} serves up to {self._max_labs} labs; Ctrl+C ends it.", flush=True)
+
+    async def on_startup(self, app: web.Application) -> None:
+        """Print nothing."""
+
+    @web.middleware  # type: ignore[untyped-decorator]
+    async def check(self, request: web.Request, handler: Any) -> Any:
+        """Refuse other names of this host, foreign pages, and labs above the limit."""
+        pages = f"http://{request.host}", f"https://{request.host}"
+        if not is_ours(request.host, self.host):
+            raise web.HTTPMisdirectedRequest(text="Wrong address.\n")
+        if request.headers.get("Origin", pages[0]) not in pages:
+            raise web.HTTPForbidden(text="Wrong page.\n")
+        if self._labs >= self._max_labs and request.path in ("/", "/ws"):
+            raise web.HTTPServiceUnavailable(text="All labs are in use; reload later.\n")
+        self.public_url = f"{request.scheme}://{request.host}"
+        response = await handler(request)
+        if isinstance(response, web.Response) and response.content_type == "text/html":
+            response.text = FONT_SERVER.sub("", response.text or "")
+        return response
+
+    async def _process_messages(self, websocket: web.WebSocketResponse, app_service: Any) -> None:
+        """End the lab when its tab closes, even while it is writing."""
+        lab = app_service._process
+        try:
+            await super()._process_messages(websocket, app_service)
+        finally:
+            with suppress(ProcessLookupError):
+                lab.terminate()
+            await lab.wait()
+
+    async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
+        self._labs += 1
+        try:
+            return await super().handle_websocket(request)
+        finally:
+            self._labs -= 1
+
+
+def is_ours(authority: str, host: str) -> bool:
+    """Return whether host:port is an address, localhost or `host`, which nobody can rebind."""
+    try:
+        name = urlsplit(f"//{authority}").hostname or ""
+        return name in ("localhost", host) or bool(ipaddress.ip_address(name))
+    except ValueError:
+        return False
+
+
+async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
+    response.headers["Content-Security-Policy"] = POLICY

@@ -22,9 +22,8 @@ from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.drawing.picture import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
+from pendu_tui.tui.terminal.driver import CharacterSetFilter, limit_pastes
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
-from pendu_tui.tui.terminal.paste import limit_pastes
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-high")]

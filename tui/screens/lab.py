@@ -38,7 +38,7 @@ from pendu_tui.tui.screens.lines import (
     StatusLine,
     TooSmall,
 )
-from pendu_tui.tui.terminal.check import is_writing
+from pendu_tui.tui.terminal.driver import is_writing
 from pendu_tui.tui.terminal.options import FPS
 from pendu_tui.tui.views import VIEWS, create, following
 from pendu_tui.tui.views.view import (

@@ -28,11 +28,12 @@ from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp, normalised
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.terminal.check import background, check_terminal
 from pendu_tui.tui.terminal.options import (
     FPS,
     USUAL,
     TerminalOptions,
+    background,
+    check_terminal,
     fitting_theme,
     terminal_options_of,
 )

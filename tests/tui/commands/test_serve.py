@@ -268,5 +268,5 @@ def test_what_cannot_be_served_is_one_sentence_and_so_is_what_is_exposed(tmp_pat
     assert pendu("serve", "--at-most", "0").refused(2, "count")
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "No such file")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
-    monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.web.server", raising=False)
+    monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.serve", raising=False)
     assert pendu("serve").refused(2, "install", "serve needs")

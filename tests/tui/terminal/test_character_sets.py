@@ -7,7 +7,7 @@ from rich.style import Style
 from textual.color import Color
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.terminal.character_sets import CharacterSetFilter
+from pendu_tui.tui.terminal.driver import CharacterSetFilter
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
 
 BOLD = Style(bold=True)

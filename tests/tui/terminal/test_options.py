@@ -6,7 +6,7 @@ from textual.drivers._writer_thread import WriterThread
 
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import Parser
-from pendu_tui.tui.terminal.check import is_writing
+from pendu_tui.tui.terminal.driver import is_writing
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     FPS,

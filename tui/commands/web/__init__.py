@@ -1,1 +1,0 @@
-"""The lab in a browser: `server` starts a process for each tab."""
