@@ -1,24 +1,29 @@
-"""Events: actions in the lab, milestones that it noticed, and the arithmetic of a run."""
+"""Events: actions in the lab, milestones that it noticed, and the arithmetic of a run.
+
+And headless runs, whose clock is the simulated time: the same run gives the same bytes.
+"""
 
 import math
 import struct
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from pendu_tui.engine.methods import Method, method_of
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.model import Force, Phase
 from pendu_tui.engine.run import NUMERICS
-from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
+from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.files import RecordingError
 
 if TYPE_CHECKING:
     from pendu_tui.engine.methods.own import OwnMethod
-    from pendu_tui.engine.run.verdicts import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
+SAMPLE_EVERY = 1 / 30  # s of simulated time, headless, as often as the live lab paints
 MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred
 NOT_INPUTS = ("start", "stop", "noticed")
 """Kinds of events that are no action of a user in a run."""
@@ -77,7 +82,7 @@ class Event(NamedTuple):
     equal_cost: bool = False  # set_h
     speed: float | None = None  # speed, times real time
     text: str | None = None  # mark
-    milestone: "Milestone | None" = None  # noticed
+    milestone: Milestone | None = None  # noticed
     arithmetic: Arithmetic | None = None  # start; None: of this version on this machine
     sources: tuple[str, ...] = ()  # start; source code of a user's own methods, never executed
 
@@ -89,7 +94,15 @@ class Entry(NamedTuple):
     value: Sample | Event | None  # None: a gap, where entries are lost
 
 
-def noticed(run: int, milestone: "Milestone") -> Event:
+class Writes(Protocol):
+    """What records a run: a Recorder, whose module is slow to load and imports this one."""
+
+    def event(self, event: Event, clock: float) -> None: ...
+
+    def sample(self, sample: Sample, clock: float) -> None: ...
+
+
+def noticed(run: int, milestone: Milestone) -> Event:
     """Return the event of a milestone."""
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
 
@@ -155,3 +168,40 @@ def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     theta, omega = phase
     while True:
         yield math.nan * theta, math.nan * omega
+
+
+def steps_for(scene: Scene, time: float) -> int:
+    """Return the number of steps in a simulated time [s]."""
+    return max(0, round(time / scene.h))
+
+
+def simulate(
+    scene: Scene,
+    time: float,
+    recorder: Writes | None = None,
+    sample_every: int | None = None,
+    loops: LoopsOf = PlainLoops,
+    lockstep: Lockstep | None = None,
+) -> Iterator[Sample]:
+    """Run a scene for `time` [s]; record and yield its samples, the last of which is the result.
+
+    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps, and include the first
+    and the last step.  Pass a `lockstep` to read its milestones or verdicts; close the recorder.
+    """
+    lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
+    last = steps_for(scene, time)
+    recorded = 0  # milestones
+    every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
+    if recorder:
+        recorder.event(Event("start", 1, 0, 0.0, scene=scene), 0.0)
+    while True:
+        sample = lockstep.sample()
+        if recorder:
+            recorder.sample(sample, sample.t)
+            for milestone in lockstep.milestones[recorded:]:
+                recorder.event(noticed(1, milestone), sample.t)
+            recorded = len(lockstep.milestones)
+        yield sample
+        if lockstep.step >= last:
+            return
+        lockstep.advance(min(every, last - lockstep.step))

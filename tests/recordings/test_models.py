@@ -10,9 +10,8 @@ from mcap.reader import make_reader
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings import events
-from pendu_tui.recordings.events import Entry
+from pendu_tui.recordings.events import Entry, simulate
 from pendu_tui.recordings.format import EXTRA
-from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify

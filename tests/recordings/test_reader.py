@@ -11,10 +11,9 @@ import pytest
 from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.recordings import reader, recording
-from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.events import Entry, Event, simulate
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
-from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify

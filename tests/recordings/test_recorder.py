@@ -18,10 +18,9 @@ from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
 from mcap.stream_reader import StreamReader
 
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.events import Entry, Event, simulate, steps_for
 from pendu_tui.recordings.files import DiskError, part_of
 from pendu_tui.recordings.format import EVENTS
-from pendu_tui.recordings.headless import simulate, steps_for
 from pendu_tui.recordings.recorder import LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify

@@ -4,9 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.recordings.events import Entry, Event
+from pendu_tui.recordings.events import Entry, Event, simulate
 from pendu_tui.recordings.format import without_extremes
-from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from tests.recordings import hostile

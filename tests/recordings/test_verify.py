@@ -11,9 +11,8 @@ from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import CompiledLoops
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.recordings.events import Entry, Event, arithmetic_here
+from pendu_tui.recordings.events import Entry, Event, arithmetic_here, simulate
 from pendu_tui.recordings.files import RecordingError
-from pendu_tui.recordings.headless import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, two_runs, with_changes

@@ -17,7 +17,7 @@ from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.headless import SAMPLE_EVERY, simulate, steps_for
+from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn

@@ -9,8 +9,7 @@ import pytest
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.recordings.events import Entry
-from pendu_tui.recordings.headless import simulate
+from pendu_tui.recordings.events import Entry, simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
