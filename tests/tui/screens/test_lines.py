@@ -64,6 +64,7 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
         ({"pace": 0.62}, "only 62 % of 1×", True),
         ({"pace": 0.011, "playhead": Playhead(speed=2.0**18)}, "only 1.1 % of 262144×", True),
         ({"pace": 0.995}, "only", False),
+        ({"pace": 0.009}, "only", False),
         ({"recording_status": Taped.recording_status._replace(failed="full.")}, "NOT REC", True),
         ({"recording_status": None, "playhead": Playhead(seen=0.0)}, "not recorded", True),
         ({"recording_status": None}, "record", False),  # before the first frame
@@ -71,6 +72,14 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
 )
 def test_the_status_line_shows_a_low_pace_and_a_failed_recording(changes, words, shown):
     assert (words in text(status_row(taped(**changes), 100))) == shown
+
+
+def test_the_limit_of_each_method_is_compared_with_its_own_step():
+    live = taped()
+    live.change(Stepping(1.0, equal_cost=True))
+    assert "unstable: e, r (z > 2.83)" in text(status_row(live, 120))
+    live.change(Stepping(1.0))
+    assert "unstable: e, s v (z > 2), r (z > 2.83)" in text(status_row(live, 120))
 
 
 def test_speeds_are_read_as_people_say_them():

@@ -1,6 +1,7 @@
 """Which insight is chosen, and its numbers, compared with what the methods do."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
@@ -126,6 +127,42 @@ def test_there_is_no_forecast_where_it_would_be_a_guess(scene, seconds, index):
     assert forecast(live, RK4) is None  # the band of this h is not known
 
 
+def judged(live: Live, index: int, error: float | None = None, **changes) -> SimpleNamespace:
+    """A lab, with another judgement on a method and perhaps another energy error of it."""
+    judgements, readings = [*live.judgements], [*live.sample.readings]
+    judgements[index] = judgements[index]._replace(**changes)
+    if error is not None:
+        readings[index] = readings[index]._replace(energy_error=error)
+    sample = live.sample._replace(readings=tuple(readings))
+    kept = {name: getattr(live, name) for name in ("scene", "exact", "changes")}
+    return SimpleNamespace(**kept, sample=sample, judgements=judgements)
+
+
+def test_a_forecast_needs_a_slope_that_is_certain_to_a_tenth():
+    live = after(DRIFT, 20)
+    slope = live.judgements[RK4].slope
+    assert forecast(judged(live, RK4, uncertainty=-slope / 10.1), RK4)
+    assert forecast(judged(live, RK4, uncertainty=-slope / 9.9), RK4) is None
+
+
+def test_a_loss_is_a_rate_up_to_half_of_the_energy_and_then_a_share():
+    live = after(DRIFT, 20)
+    for error, kind in ((-0.49, "loses"), (-0.51, "lost")):
+        found = drift(judged(live, RK4, error), RK4)
+        assert found.kind == kind
+    assert "51 %" in sentence(found)
+
+
+def test_growth_is_a_rate_of_the_first_or_of_the_true_energy_or_a_time_for_tenfold():
+    live = after(DRIFT, 20)
+    grows = {"verdict": "grows", "slope": 0.02}
+    assert "gains 2.0 % of E0 per s" in sentence(drift(judged(live, RK4, **grows), RK4))
+    found = drift(judged(live, RK4, growth=0.5, **grows), RK4)
+    assert "tenfold every 4.6 s" in sentence(found)
+    damped = judged(after(SCENES["damped"], 1), 0, **grows)
+    assert "of the true energy per s" in sentence(drift(damped, 0))
+
+
 @pytest.mark.parametrize(
     ("judgement", "words"),
     [
@@ -139,11 +176,6 @@ def test_a_chaotic_or_resting_method_has_an_insight(judgement, words):
     assert found.kind == ("rests" if judgement.rests else judgement.verdict)
     assert words in sentence(found)
     assert irregular(RK4_METHOD, Judgement("loses", -1e-3, 1e-4), 29.0) is None
-
-
-def test_a_large_loss_of_energy_is_given_as_a_share_and_not_as_a_rate():
-    found = drift(after(SCENES["verlet-limit"], 127), RK4)
-    assert (found.kind, found.values["share"]) == ("lost", pytest.approx(1))
 
 
 def test_an_error_past_anothers_maximum_is_news():
