@@ -6,7 +6,7 @@ It writes NAME.mcap.part, which becomes NAME.mcap when it is finished.
 import json
 import os
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
@@ -51,22 +51,15 @@ MAX_CHUNK = 1 << 17  # bytes of messages; the only reason to flush without a thr
 class Recorder:
     """Writes one recording, which begins with a start.
 
-    Clocks are in seconds since the recording began, pauses excluded, and never go back.  A headless recording has no
-    `wall` clock, so that the same run gives the same bytes.  Raises DiskError if the disk fails;
-    after that, call only `abandon`.
+    Clocks are in seconds since the recording began, pauses excluded, and never go back.  Raises
+    DiskError if the disk fails; after that, call only `abandon`.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        wall: Callable[[], int] | None = time.time_ns,
-        overwrite: bool = False,
-    ) -> None:
+    def __init__(self, path: Path, overwrite: bool = False) -> None:
         self.path = path
         self.part = part_of(path)
         self.seconds = 0.0  # recorded so far
         self.samples = 0
-        self._wall = wall
         self._overwrite = overwrite
         self._last: Sample | None = None  # of this run; None: none, or a gap
         self._channels: dict[str, int] = {}  # numbers by topic
@@ -226,7 +219,7 @@ class Recorder:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
-        publish_time = log_time if self._wall is None else self._wall()
+        publish_time = self._publish_time(log_time)
         number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
@@ -234,6 +227,10 @@ class Recorder:
                 self._writer.add_message(channel, log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
+
+    def _publish_time(self, log_time: int) -> int:
+        """Return a time [ns] that is the same when the same run is recorded again."""
+        return log_time
 
     def _flush_if_due(self, urgent: bool) -> None:
         if urgent or self._unflushed > MAX_CHUNK:
@@ -249,8 +246,8 @@ class LiveRecorder(Recorder):
 
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
-    def __init__(self, path: Path, wall: Callable[[], int] | None = time.time_ns) -> None:
-        super().__init__(path, wall)
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
         self._lock = RLock()
         Thread(target=self._keep, name="recorder", daemon=True).start()
 
@@ -268,6 +265,9 @@ class LiveRecorder(Recorder):
         with self._turn() as is_open:
             if is_open:
                 super().close()
+
+    def _publish_time(self, log_time: int) -> int:
+        return time.time_ns()
 
     def _keep(self) -> None:
         while not self._file.closed:

@@ -169,7 +169,7 @@ def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
     DiskError if `out` cannot be written.
     """
     with Recording.open(path, check=True) as recording:
-        recorder = Recorder(out, None, overwrite)
+        recorder = Recorder(out, overwrite)
         try:
             for clock, value in recording.entries():
                 if value is None:

@@ -61,10 +61,10 @@ def samples_of(recording: Recording) -> list[Entry]:
     return [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
 
 
-def record(path: Path, entries: list[Entry], wall=None) -> Path:
-    """Write entries, with a chunk each second as in the lab; headless without a `wall` clock."""
+def record(path: Path, entries: list[Entry]) -> Path:
+    """Write entries, with a chunk each second as in the lab."""
     flushed_at = 0.0
-    with Recorder(path, wall) as recorder:
+    with Recorder(path) as recorder:
         for clock, value in entries:
             if isinstance(value, Event):
                 recorder.event(value, clock)

@@ -29,7 +29,7 @@ class Later:
 
 
 def make(name: str, path: Path) -> None:
-    with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recorder(path, wall=None) as recorder:
+    with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recorder(path) as recorder:
         for run in golden.runs:
             steps = [value.step for _, value in samples_of(golden) if value.run == run.number]
             changes = [(event.step, event.h) for _, event in run.events if event.kind == "set_h"]

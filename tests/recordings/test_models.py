@@ -28,7 +28,7 @@ SPRING = SCENES["stiff-slow"]
 @pytest.mark.parametrize("name", SPECIAL)
 def test_a_run_is_recorded_verified_exported_and_replayed(tmp_path, name):
     path, scene = tmp_path / "a.mcap", SCENES[name]
-    with Recorder(path, wall=None) as recorder:
+    with Recorder(path) as recorder:
         samples = list(with_changes(scene, 60 * scene.h, recorder, [(40, scene.h / 2)]))
     with Recording.open(path, check=True) as recording:
         assert recording.runs[0].scene == scene

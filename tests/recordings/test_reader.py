@@ -72,7 +72,7 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
 
 def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_limits(tmp_path):
     path = tmp_path / "rest.mcap"
-    with Recorder(path, wall=None) as recorder:
+    with Recorder(path) as recorder:
         scene = replace(SCENE, theta=0.0, cast=GENERAL[:MAX_METHODS])
         list(simulate(scene, 100.0, recorder, sample_every=1))
     found = limits(path)

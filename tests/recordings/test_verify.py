@@ -33,7 +33,7 @@ def reading_of(entries, at, method):
 
 
 def test_a_recording_of_several_runs_and_changes_of_h_verifies(tmp_path):
-    verification = verify(record(tmp_path / "a.mcap", two_runs(), wall=lambda: 5))
+    verification = verify(record(tmp_path / "a.mcap", two_runs()))
     assert (verification.complete, verification.identical) == (True, True)
     assert (verification.reason, verification.first_difference) == (None, None)
     assert (verification.runs, verification.samples) == (2, 10)
@@ -67,7 +67,7 @@ def test_a_failure_that_was_not_recorded_is_found(tmp_path):
 @pytest.mark.parametrize(("sample_every", "change"), [(1, (40, -0.05)), (7, (0, 1e-3))])
 def test_every_scene_verifies_however_it_is_sampled(tmp_path, scene, sample_every, change):
     time = min(3.0, 100 * SCENES[scene].h)
-    with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
+    with Recorder(tmp_path / "a.mcap") as recorder:
         list(with_changes(SCENES[scene], time, recorder, [change], sample_every))
     assert verify(tmp_path / "a.mcap").identical
 
@@ -153,7 +153,7 @@ def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_toleran
     tmp_path, monkeypatch, scene
 ):
     path, time = tmp_path / "a.mcap", 1500 * SCENES[scene].h
-    with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
+    with monkeypatch.context() as elsewhere, Recorder(path) as recorder:
         foreign = foreign_loops(elsewhere, every=2)  # much worse than any libm
         list(simulate(SCENES[scene], time, recorder, sample_every=5, loops=foreign))
     verification = verify(path)

@@ -121,7 +121,7 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
     if options.record:
         from pendu_tui.recordings.recorder import Recorder  # slow to load
 
-        recorder = Recorder(options.record, wall=None, overwrite=options.force)
+        recorder = Recorder(options.record, overwrite=options.force)
         every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
     every = options.sample_every or every
     is_figure = form_of(options) == "figure"

@@ -147,7 +147,7 @@ def test_it_shows_the_past_that_the_lab_showed(tmp_path):
 def test_of_a_long_past_the_last_minute_is_read_whole_and_seconds_before(tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.playback.replay.MAX_STRETCHES", 4)
     path = tmp_path / "long.mcap"
-    with Recorder(path, wall=None) as recorder:
+    with Recorder(path) as recorder:
         list(simulate(DEFAULT_SCENE, 140.0, recorder, sample_every=2))
     replay = Table(path).replay
     replay.seek(140.0)
@@ -244,7 +244,7 @@ def test_it_shows_the_milestones_and_verdicts_of_the_lab_and_jumps_to_them(lab):
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
     _, first, path = lab
     said = next(each for each in first if each.verdict == "bounded")
-    with Recorder(tmp_path / "other.mcap", wall=None) as recorder:
+    with Recorder(tmp_path / "other.mcap") as recorder:
         for clock, value in Table(path).recording.entries():
             if value.run > 1:
                 break
