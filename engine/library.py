@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from pendu_tui.engine.methods.measure import Measured
     from pendu_tui.engine.methods.method import Phases
-    from pendu_tui.engine.run.order import Order
+    from pendu_tui.engine.run.record import Order
     from pendu_tui.engine.studies.accuracy import ErrorKind
     from pendu_tui.engine.studies.recommend import Attempt
 
@@ -254,7 +254,7 @@ def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "
     The runs differ in their step size h alone.  The energies of a method of order 2 that solves the
     right equation fluctuate as h².
     """
-    from pendu_tui.engine.run.order import fluctuation, order_of
+    from pendu_tui.engine.run.record import fluctuation, order_of
 
     steps = []
     fluctuations = []

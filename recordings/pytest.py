@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pendu_tui.engine.library import Judged
     from pendu_tui.engine.methods.measure import Measured
     from pendu_tui.engine.methods.method import Phases
-    from pendu_tui.engine.run.order import Order
+    from pendu_tui.engine.run.record import Order
 
 ORDER_TOLERANCE = 0.1  # errors are measured at finite steps: an order of 6 reads 5.91
 
@@ -98,7 +98,7 @@ class EnergyDrift:
 
 def _drift_flaw(judged: "Judged", limit: float | None) -> str:
     """Return why a slope is not known to be within its limit, else ""."""
-    from pendu_tui.engine.run.limit import advice, outcome
+    from pendu_tui.engine.run.verdicts import advice, outcome
 
     if limit is None:
         return ""

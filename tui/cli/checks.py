@@ -24,8 +24,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
-from pendu_tui.engine.run.limit import advice, outcome
-from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
+from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, advice, outcome
 from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.options import did_you_mean

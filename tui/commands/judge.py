@@ -284,7 +284,7 @@ def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
 
 def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:
     """Return the orders as --fail-if compares them: as high as they may be, or not known."""
-    from pendu_tui.engine.run.order import Order
+    from pendu_tui.engine.run.record import Order
 
     power = orders.get("fluctuation_order")
     uncertainty = orders.get("fluctuation_order_uncertainty")
@@ -300,7 +300,7 @@ def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict
 
     The drift has no order unless it is significant at each step size.
     """
-    from pendu_tui.engine.run.order import fluctuation, order_of
+    from pendu_tui.engine.run.record import fluctuation, order_of
 
     drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
     orders = {

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.engine.run.limit import advice, outcome
+from pendu_tui.engine.run.verdicts import advice, outcome
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.engine.run.order import MIN_SAMPLES, Fluctuation, Order, fluctuation, order_of
+from pendu_tui.engine.run import levels
+from pendu_tui.engine.run.record import Fluctuation, Order, fluctuation, order_of
 
 TIMES = np.arange(4000.0)
 
@@ -68,9 +69,9 @@ def test_what_has_no_order_is_refused(steps, sizes, reason):
 
 
 def test_too_few_samples_are_refused():
-    assert fluctuation(TIMES[:MIN_SAMPLES], noise(1)[:MIN_SAMPLES]).size > 0
+    assert fluctuation(TIMES[: levels.MIN_SAMPLES], noise(1)[: levels.MIN_SAMPLES]).size > 0
     with pytest.raises(ValueError, match="too few"):
-        fluctuation(TIMES[: MIN_SAMPLES - 1], noise(1)[: MIN_SAMPLES - 1])
+        fluctuation(TIMES[: levels.MIN_SAMPLES - 1], noise(1)[: levels.MIN_SAMPLES - 1])
 
 
 @pytest.mark.parametrize(("uncertainty", "highest"), [(0.49, 2.98), (0.5, None)])
