@@ -67,9 +67,14 @@ class EnergyReference(NamedTuple):
 
     def error(self, energy: float, t: float = 0.0) -> float:
         """Return (E - E0)/E0, or where energy is not conserved ln(E/E_true) at a time [s]."""
+        return self.errors(t, energy)[0]
+
+    def errors(self, t: float, *energies: float) -> list[float]:
+        """Return the error of each energy at a time [s]."""
         if self.true is None:
-            return (energy - self.start) / self.scale
-        return self._log(energy) - self._log(self.true(t))
+            return [(energy - self.start) / self.scale for energy in energies]
+        true = self._log(self.true(t))
+        return [self._log(energy) - true for energy in energies]
 
     def _log(self, energy: float) -> float:
         """Return ln of an energy [s⁻²], finite even if the energy is 0 or inf."""

@@ -403,11 +403,6 @@ class Judges:
         """Note what happens to a method once in a run."""
         self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
 
-    def has(self, kind: MilestoneKind, index: int) -> bool:
-        """Return whether this has happened to a method."""
-        method = self._cast[index]
-        return any((each.kind, each.method) == (kind, method) for each in self.milestones)
-
     def fail(self, index: int, steps: int) -> None:
         """Note that a method's numbers have ended, so many of its steps after the restart."""
         self._judges[index].fail(steps)

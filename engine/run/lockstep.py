@@ -3,15 +3,14 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import NamedTuple
 
-from pendu_tui.engine.models.model import NO_EXTRA, Phase
+from pendu_tui.engine.models.model import NO_EXTRA
 from pendu_tui.engine.run.judge import Judges, LookPoint, stride
-from pendu_tui.engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
+from pendu_tui.engine.run.loops import Advance, Advanced, LoopsOf, PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Judgement, Milestone
-from pendu_tui.engine.scenes import Scene, check_h
+from pendu_tui.engine.scenes import Scene
 
 
 class Reading(NamedTuple):
@@ -55,11 +54,12 @@ class _Track:
         self.error = 0.0  # of the energy; as are the extremes
         self.low = self.high = 0.0  # since the last sample
         self.look_low = self.look_high = 0.0  # since the last look point
-        self.run_low = self.run_high = 0.0
+        self.largest = 0.0  # |error| of the run
         self.diverged_at: float | None = None
         self.parts = 1  # own steps in one step of the lockstep
         self.turns = 0  # subtracted from theta
         self.invariant_error = 0.0  # the largest so far
+        self.is_watched = False  # it may go over the top, where the exact motion never comes
 
     def reduce(self) -> None:
         """Subtract whole turns from theta beyond one turn, because its rounding grows with it.
@@ -121,9 +121,9 @@ class Lockstep:
         self._judges: Judges | None = None
         if judged:
             self._judges = Judges(scene.cast, model, self._period)
-        self._bottom: float | None = None  # rad, where the exact motion swings
-        if judged and model.turns and exact.regime == "libration":
-            self._bottom = math.tau * round(scene.theta / math.tau)
+        self._bottom = math.tau * round(scene.theta / math.tau)  # rad
+        for track in self._tracks:
+            track.is_watched = judged and model.turns and exact.regime == "libration"
         self._restart()
 
     def copy(self) -> "Lockstep":
@@ -149,11 +149,7 @@ class Lockstep:
         return self._judges.milestones if self._judges else ()
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from the next step on.
-
-        Raises SceneError for an h that is zero, not finite or absurd.
-        """
-        check_h(stepping.h, self.scene.w0)
+        """Step like this from the next step on; `Stepping.check` has approved it."""
         self._t_base = self.t
         self._base_step = self.step
         self.stepping = stepping
@@ -185,34 +181,45 @@ class Lockstep:
             if track.diverged_at is not None:
                 continue
             h = self.stepping.h / track.parts
-            steps = n * track.parts
-            begin = (self._t_base, (self.step - self._base_step) * track.parts)
-            watch = partial(self._watch, track) if self._invariant else None
-            moved = advance_with_errors(
-                track.advance, self._reference, track.phase, h, steps, self._limit, begin, watch
-            )
-            if moved.done:
-                track.phase = moved.phase
-                track.energy = moved.energy
-                track.error = moved.error
-                track.low = min(track.low, moved.low)
-                track.high = max(track.high, moved.high)
-                track.look_low = min(track.look_low, moved.low)
-                track.look_high = max(track.look_high, moved.high)
-            if moved.done < steps:
-                own_steps = begin[1] + moved.done
-                track.diverged_at = self._t_base + (own_steps + 1) * h
+            begin = (self.step - self._base_step) * track.parts
+            done = self._walk(track, h, begin, n * track.parts)
+            if done < n * track.parts:
+                track.diverged_at = self._t_base + (begin + done + 1) * h
+                track.is_watched = False
                 if self._judges:
-                    self._judges.fail(index, own_steps)
-                    step = self.step + math.ceil((moved.done + 1) / track.parts)
+                    self._judges.fail(index, begin + done)
+                    step = self.step + math.ceil((done + 1) / track.parts)
                     self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
 
-    def _watch(self, track: _Track, phase: Phase) -> None:
-        """Note the largest error of the model's invariant."""
-        assert self._invariant is not None
-        error = abs(self._invariant(phase) - self._invariant_start) / self._invariant_start
-        track.invariant_error = max(track.invariant_error, error)
+    def _walk(self, track: _Track, h: float, begin: int, n: int) -> int:
+        """Take n steps of a method, or as many as succeed, and note its errors; return how many.
+
+        Invariants and energies that are not conserved are looked at after each step.
+        """
+        stride = n if self._invariant is None and self._reference.true is None else 1
+        done = 0
+        while done < n:
+            moved = track.advance(track.phase, h, stride, self._limit)
+            if moved.done:
+                done += moved.done
+                self._note(track, moved, self._t_base + (begin + done) * h)
+            if moved.done < stride:
+                break
+        return done
+
+    def _note(self, track: _Track, moved: Advanced, t: float) -> None:
+        track.phase = moved.phase
+        track.energy = moved.energy
+        track.error, low, high = self._reference.errors(t, moved.energy, moved.low, moved.high)
+        track.low = min(track.low, low)
+        track.high = max(track.high, high)
+        track.look_low = min(track.look_low, low)
+        track.look_high = max(track.look_high, high)
+        track.largest = max(track.largest, high, -low)
+        if self._invariant:
+            off = abs(self._invariant(moved.phase) - self._invariant_start) / self._invariant_start
+            track.invariant_error = max(track.invariant_error, off)
 
     def _stop(self) -> None:
         """Do what is due at a stop, and choose the next stop."""
@@ -247,25 +254,21 @@ class Lockstep:
         """Return the next look point, or an earlier step where a method may be over the top."""
         done = (self.step - self._base_step) // self._stride + 1
         stop = self._base_step + done * self._stride
-        for index, track in enumerate(self._tracks):
-            if self._may_go_over(index, track):
+        for track in self._tracks:
+            if track.is_watched:
                 stop = min(stop, self.step + self._steps_below_top(track, stop - self.step))
         return stop
 
     def _note_tops(self) -> None:
         """Note the methods that have gone over the top, where the exact motion never comes."""
         for index, track in enumerate(self._tracks):
-            if self._judges and self._may_go_over(index, track) and self._below_top(track) < 0:
+            if track.is_watched and self._below_top(track) < 0:
+                assert self._judges is not None
                 self._judges.note("over the top", index, self.step, self.t, track.error)
-
-    def _may_go_over(self, index: int, track: _Track) -> bool:
-        if self._judges is None or self._bottom is None or track.diverged_at is not None:
-            return False
-        return not self._judges.has("over the top", index)
+                track.is_watched = False
 
     def _below_top(self, track: _Track) -> float:
         """Return how far below the top a method is [rad]."""
-        assert self._bottom is not None
         theta = self._model.observe(track.phase).theta + track.turns * math.tau
         return math.pi - abs(theta - self._bottom)
 
@@ -288,8 +291,6 @@ class Lockstep:
         return Sample(self.run, self.step, self.t, readings)
 
     def _read(self, track: _Track) -> Reading:
-        track.run_low = min(track.run_low, track.low)
-        track.run_high = max(track.run_high, track.high)
         theta, omega, extra = self._model.observe(track.phase)
         if track.turns:
             theta += track.turns * math.tau
@@ -300,7 +301,7 @@ class Lockstep:
             omega=omega,
             energy=track.energy,
             energy_error=track.error,
-            max_energy_error=max(track.run_high, -track.run_low),
+            max_energy_error=track.largest,
             energy_error_low=track.low,
             energy_error_high=track.high,
             diverged_at=track.diverged_at,

@@ -9,7 +9,7 @@ functions in other files.
 import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import islice
@@ -17,13 +17,27 @@ from typing import Any, NamedTuple, Protocol
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.method import compilable
-from pendu_tui.engine.models.model import Energy, EnergyReference, Model, Phase
+from pendu_tui.engine.models.model import Energy, Model, Phase
 
-Advanced = tuple[int, Phase, float, float, float]
-"""Steps done, phase and energy there, lowest and highest energy on the way [s⁻²]."""
+OVERFLOW = (ValueError, ArithmeticError)
+"""What Python raises where numbers overflow: the sine of infinity is a ValueError."""
+
+
+class Advanced(NamedTuple):
+    """Where some steps have led."""
+
+    done: int  # steps
+    phase: Phase
+    energy: float  # s⁻², there; nan if no step was taken
+    low: float  # s⁻², the lowest and the highest on the way
+    high: float
+
 
 Advance = Callable[[Phase, float, int, float], Advanced]
 """(phase, h, n, limit) -> Advanced."""
+
+Take = Callable[[Phase, float, int, float], tuple[Phase, float, float, float]]
+"""(phase, h, n, limit) -> what `take` returns."""
 
 
 class Loops(Protocol):
@@ -39,35 +53,16 @@ class Loops(Protocol):
 LoopsOf = Callable[[Method, Model], Loops]
 
 
-def advance(
-    phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit: float
-) -> Advanced:
-    """Take n phases after `phase`, or up to the last one whose energy is below `limit`."""
-    done = 0
-    value = math.nan
+def take(
+    phases: Iterator[Phase], energy: Energy, n: int, limit: float
+) -> tuple[Phase, float, float, float]:
+    """Take n >= 1 phases; return the last, its energy, the lowest and the highest.
+
+    Raises OverflowError unless each energy is below `limit`.
+    """
     low = math.inf
     high = -math.inf
-    for following in phases:
-        now = energy(following)
-        if not now < limit:  # catches nan, too
-            break
-        phase = following
-        value = now
-        if now < low:
-            low = now
-        if now > high:
-            high = now
-        done += 1
-        if done == n:
-            break
-    return done, phase, value, low, high
-
-
-def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) -> Advanced:
-    """Do the same a tenth faster.  Raises OverflowError unless all n steps succeed."""
-    low = math.inf
-    high = -math.inf
-    for phase in islice(phases, n):
+    for _, phase in zip(range(n), phases):  # noqa: B905  Numba lacks it
         now = energy(phase)
         if low <= now and now <= high:
             continue
@@ -77,7 +72,25 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
             low = now
         if now > high:
             high = now
-    return n, phase, now, low, high
+    return phase, now, low, high
+
+
+def advance(take: Take, phase: Phase, h: float, n: int, limit: float) -> Advanced:
+    """Advance by n steps, or by halves of them to the last one that succeeds."""
+    with suppress(*OVERFLOW):
+        return Advanced(n, *take(phase, h, n, limit))
+    if n == 1:
+        return Advanced(0, phase, math.nan, math.inf, -math.inf)
+    half = n // 2
+    first = advance(take, phase, h, half, limit)
+    if first.done < half:
+        return first
+    second = advance(take, first.phase, h, n - half, limit)
+    if not second.done:
+        return first
+    low = min(first.low, second.low)
+    high = max(first.high, second.high)
+    return Advanced(half + second.done, second.phase, second.energy, low, high)
 
 
 class PlainLoops:
@@ -94,71 +107,18 @@ class PlainLoops:
         return next(islice(self._phases(phase, h), n - 1, None))
 
     def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
+        return advance(self._take, phase, h, n, limit)
+
+    def _take(
+        self, phase: Phase, h: float, n: int, limit: float
+    ) -> tuple[Phase, float, float, float]:
         if phase is not self._end or h != self._h:
             self._generator = self._phases(phase, h)
             self._h = h
         self._end = None  # a generator that fails cannot go on
-        try:
-            advanced = _advance_all(self._generator, self._energy, n, limit)
-        except OVERFLOW:
-            phases = _to_overflow(self._phases(phase, h), self._energy)
-            return advance(phases, self._energy, phase, n, limit)
-        self._end = advanced[1]
-        return advanced
-
-
-class Errors(NamedTuple):
-    """Like Advanced, with energy errors."""
-
-    done: int
-    phase: Phase
-    energy: float  # s⁻²
-    error: float  # there
-    low: float  # the lowest and the highest on the way
-    high: float
-
-
-def advance_with_errors(
-    advance: Advance,
-    reference: EnergyReference,
-    phase: Phase,
-    h: float,
-    n: int,
-    limit: float,
-    begin: tuple[float, int],
-    watch: Callable[[Phase], object] | None = None,
-) -> Errors:
-    """Advance by n >= 1 steps from `begin`, a time [s] and the steps since then.
-
-    Energies that are not conserved are compared with the true one at each step; `watch` is called
-    with each phase.
-    """
-    if reference.true is None and watch is None:
-        done, phase, energy, low, high = advance(phase, h, n, limit)
-        return Errors(
-            done,
-            phase,
-            energy,
-            reference.error(energy),
-            reference.error(low),
-            reference.error(high),
-        )
-    energy = math.nan
-    error = math.nan
-    low = math.inf
-    high = -math.inf
-    for k in range(n):
-        done, following, now, _, _ = advance(phase, h, 1, limit)
-        if not done:
-            return Errors(k, phase, energy, error, low, high)
-        phase = following
-        energy = now
-        if watch is not None:
-            watch(phase)
-        error = reference.error(energy, begin[0] + (begin[1] + k + 1) * h)
-        low = min(low, error)
-        high = max(high, error)
-    return Errors(n, phase, energy, error, low, high)
+        taken = take(self._generator, self._energy, n, limit)
+        self._end = taken[0]
+        return taken
 
 
 def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
@@ -184,18 +144,6 @@ def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: i
     return count
 
 
-OVERFLOW = (ValueError, ArithmeticError)
-"""What Python raises where numbers overflow: the sine of infinity is a ValueError."""
-
-
-def _to_overflow(phases: Iterator[Phase], energy: Energy) -> Iterator[Phase]:
-    """Yield phases until the energy overflows."""
-    with suppress(*OVERFLOW):
-        for phase in phases:
-            energy(phase)
-            yield phase
-
-
 COMPILED_FROM = 1_000_000  # steps of a method: they take as long as importing and compiling
 
 
@@ -209,7 +157,7 @@ class CompiledLoops(NamedTuple):
     """Loops in machine code, which several runs may share."""
 
     propagate: Callable[[Phase, float, int], Phase]
-    advance: Callable[[Phase, float, int, float], Advanced]
+    advance: Advance
 
 
 class Series(NamedTuple):
@@ -242,26 +190,23 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     phases = inner(compilable(method.phases))
     force = Series(model.w0_squared) if is_series else inner(model.force())
     energy = inner(model.energy())
-    propagate = inner(_propagate)
-    take = inner(advance)
+    last = inner(_last)
+    taken = inner(take)
 
     outer = numba.njit(nogil=True)
 
     def propagate_phase(phase: Phase, h: float, n: int) -> Any:
-        return propagate(phases(force, phase, h), phase, n)
+        return last(phases(force, phase, h), n)
 
-    def advance_phase(phase: Phase, h: float, n: int, limit: float) -> Any:
-        return take(phases(force, phase, h), energy, phase, n, limit)
+    def take_phases(phase: Phase, h: float, n: int, limit: float) -> Any:
+        return taken(phases(force, phase, h), energy, n, limit)
 
-    return CompiledLoops(outer(propagate_phase), outer(advance_phase))
+    return CompiledLoops(outer(propagate_phase), partial(advance, outer(take_phases)))
 
 
-def _propagate(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
-    for following in phases:
-        phase = following
-        n -= 1
-        if n == 0:
-            break
+def _last(phases: Iterator[Phase], n: int) -> Phase:
+    for _, phase in zip(range(n), phases):  # noqa: B007, B905
+        pass
     return phase
 
 

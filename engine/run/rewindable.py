@@ -141,7 +141,7 @@ class RewindableRun:
             raise
 
     def change(self, stepping: Stepping) -> None:
-        """Step like this from here on; in the past, branch first.  Raises SceneError."""
+        """Step like this from here on; in the past, branch first."""
         x = self.x
         self.lockstep.set_stepping(stepping)
         self.changes.append(SteppingChange(self.step, self.t, stepping))

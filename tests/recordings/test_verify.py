@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from itertools import count
 
 import pytest
@@ -138,11 +139,12 @@ def foreign_loops(monkeypatch, every):
         return math.sin(x)
 
     def loops_of(method, model):
-        def advance(phase, h, n, limit):
-            phases = method.on(model, sin)(phase, h)
-            return loops.advance(phases, model.energy(sin), phase, n, limit)
+        def take(phase, h, n, limit):
+            return loops.take(method.on(model, sin)(phase, h), model.energy(sin), n, limit)
 
-        return CompiledLoops(loops.PlainLoops(method, model).propagate, advance)
+        return CompiledLoops(
+            loops.PlainLoops(method, model).propagate, partial(loops.advance, take)
+        )
 
     of_another_machine(monkeypatch)
     return loops_of

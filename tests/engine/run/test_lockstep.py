@@ -14,7 +14,7 @@ from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.format import without_extremes
 from tests.truths import LIMITS
 
@@ -110,15 +110,6 @@ def test_no_extreme_of_the_energy_is_lost_between_samples(scene, cuts):
             assert (reading.energy_error_low, reading.energy_error_high) == band
             assert reading.max_energy_error == max(map(abs, errors))
         done += n
-
-
-@pytest.mark.parametrize("h", [0.0, math.nan, math.inf, 1e9, -1e9, 1e-12])
-def test_a_useless_step_size_is_refused_and_the_old_one_stays(h):
-    lockstep = Lockstep(SCENES["drift"])
-    lockstep.advance(3)
-    with pytest.raises(SceneError, match="not a usable step"):
-        lockstep.set_stepping(Stepping(h))
-    assert (lockstep.stepping.h, lockstep.t) == (0.05, 3 * 0.05)
 
 
 def exploding(force, phase, h):

@@ -57,10 +57,11 @@ def test_costs_that_do_not_divide_are_rounded_to_whole_parts():
     assert Stepping(0.1, True, costs).parts == (7, 2, 2, 1)
 
 
-@pytest.mark.parametrize("h", [0.0, math.nan, 1e9, 2e-9])
+@pytest.mark.parametrize("h", [0.0, math.nan, math.inf, 1001.0, -1001.0, 9e-10, 2e-9])
 def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused(h):
-    Stepping(2e-9).check(1.0)
-    with pytest.raises(SceneError):
+    for usable in (2e-9, -2e-9, 1000.0, -1000.0):
+        Stepping(usable).check(1.0)
+    with pytest.raises(SceneError, match="not a usable step"):
         Stepping(h, equal_cost=True).check(1.0)
 
 
