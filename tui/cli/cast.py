@@ -5,18 +5,20 @@ import signal
 import string
 from collections.abc import Sequence
 from contextlib import suppress
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, named
+from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method
+from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import find
+from pendu_tui.tui.cli.watchdog import watchdog
+from pendu_tui.tui.cli.workers import received, started
 
 if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-
-    from pendu_tui.engine.methods.measure import Measured
-    from pendu_tui.engine.methods.own import OwnMethod
+    from pendu_tui.engine.methods.measure import Measured  # NumPy
 
 MAX_SECONDS = 10.0  # to measure a method; 0.2 s is typical
 
@@ -56,7 +58,7 @@ def check_fits(cast: Cast) -> None:
         )
 
 
-def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
+def own_methods(options: argparse.Namespace) -> tuple[OwnMethod, ...]:
     """Return the user's own methods, measured.  Raises UserError and OwnMethodError."""
     own: list[OwnMethod] = []
     for text in options.method:
@@ -64,20 +66,8 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
     return tuple(own)
 
 
-def find(
-    name: str, methods: Sequence[Method], option: str = "--methods", model: str | None = None
-) -> Method:
-    """Return the method that `engine.methods.named` finds.  Raises UserError."""
-    try:
-        return named(name, methods, model)
-    except ValueError as error:
-        raise UserError(f"{option}: {error}") from None
-
-
-def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
+def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     """Return the method in FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
-    from pendu_tui.engine.methods.own import MAX_SOURCE, own_method
-
     if text.endswith(".py"):
         text += f":{Path(text).stem}"
     name, _, letter = text.partition(",letter=")
@@ -114,9 +104,6 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
-    from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.tui.cli.workers import received, started
-
     process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
@@ -134,11 +121,9 @@ def _tried(source: str, key: str, file: str) -> "Measured":
     return found
 
 
-def _try(results: "Connection", source: str, key: str, file: str) -> None:
+def _try(results: Connection, source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
-    from pendu_tui.engine.methods.examine import measured_text
-    from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.tui.cli.watchdog import watchdog
+    from pendu_tui.engine.methods.examine import measured_text  # NumPy, in this process only
 
     def tell(sentence: str) -> None:
         results.send(OwnMethodError(sentence))

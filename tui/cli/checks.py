@@ -25,9 +25,8 @@ from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, advice, outcome
-from pendu_tui.tui.cli.cast import find
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
-from pendu_tui.tui.cli.options import did_you_mean
+from pendu_tui.tui.cli.options import did_you_mean, find
 
 _OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
 FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)

@@ -9,6 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
+from pendu_tui.engine.methods import Method, named
 from pendu_tui.engine.models.model import angle as angle
 from pendu_tui.engine.models.model import number as number
 from pendu_tui.engine.models.model import seconds as seconds
@@ -19,11 +20,11 @@ MAX_RUNGS = 1000  # of a ladder of step sizes
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one sentence, and which takes -1e-3 for a number."""
+    """A parser whose errors are one sentence, and which takes -1e-3 and -pi/2 for numbers."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self._negative_number_matcher = re.compile(r"-\.?\d")
+        self._negative_number_matcher = re.compile(r"-(\.?\d|pi|π)")
 
     def _get_value(self, action: argparse.Action, text: str) -> Any:
         """Return the value of an option; a ValueError's text is the reason to refuse it."""
@@ -57,6 +58,8 @@ class Parser(argparse.ArgumentParser):
 
     def _check(self, argument: str) -> None:
         """Raise UserError for an unknown option; argparse would report a missing one first."""
+        if self._negative_number_matcher.match(argument):
+            return
         option = re.match(r"--[a-zA-Z][\w-]*|-[a-zA-Z]", argument)
         if option is None:
             return
@@ -143,6 +146,16 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown word, "" without a suggestion."""
     near = difflib.get_close_matches(word[:200], known, n=1)  # long words would take seconds
     return f": did you mean {near[0]}?" if near else ""
+
+
+def find(
+    name: str, methods: Sequence[Method], option: str = "--methods", model: str | None = None
+) -> Method:
+    """Return the method that `engine.methods.named` finds.  Raises UserError."""
+    try:
+        return named(name, methods, model)
+    except ValueError as error:
+        raise UserError(f"{option}: {error}") from None
 
 
 def ladder(text: str) -> tuple[float, float, int]:

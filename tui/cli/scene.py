@@ -28,9 +28,9 @@ from pendu_tui.engine.scenes import (
     Shot,
 )
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.cli.cast import cast_of, find, own_method_at
+from pendu_tui.tui.cli.cast import cast_of, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import did_you_mean, number, seconds
+from pendu_tui.tui.cli.options import did_you_mean, find, number, seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +56,10 @@ class SceneList:
             yield self.base.altered(**dict(zip(axes, numbers, strict=True)))
 
 
-def scenes_of(
-    options: argparse.Namespace, default: Scene | None = None, lesson: bool = False
-) -> SceneList:
+def scenes_of(options: argparse.Namespace, lesson: bool = False) -> SceneList:
     """Return the scenes that the options describe; of a file with a `lesson`, the first.
 
-    Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
+    Raises UserError for an unknown name, SceneError for
     bad numbers in any combination, and OwnMethodError for a bad function.
     """
     if options.scene and options.scene_option:
@@ -69,7 +67,7 @@ def scenes_of(
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
-    scene = scene_named(name, lesson) if name else default or DEFAULT_SCENE
+    scene = scene_named(name, lesson) if name else DEFAULT_SCENE
     axes: dict[str, Sequence[float]] = {}
     for each in NUMBERS:
         given = getattr(options, each)
@@ -80,11 +78,9 @@ def scenes_of(
     return scenes
 
 
-def scene_of(
-    options: argparse.Namespace, default: Scene | None = None, lesson: bool = False
-) -> Scene:
+def scene_of(options: argparse.Namespace, lesson: bool = False) -> Scene:
     """Return the scene that options without lists describe, as `scenes_of` does."""
-    (scene,) = scenes_of(options, default, lesson)
+    (scene,) = scenes_of(options, lesson)
     return scene
 
 
@@ -126,35 +122,18 @@ _SCENE = {
     **dict.fromkeys(NUMBERS, float),
 }
 _SHOT = get_type_hints(Shot)
-_VALUES = {name: each.default for name, each in NUMBERS.items()}
-_VALUES |= {name: value for each in SCENES.values() for name, value in each.parameters.items()}
-_EXAMPLES = {
-    "name": '"swing"',
-    "from": '"near-separatrix"',
-    "watch": '"Verlet keeps its energy."',
-    "model": '"damped"',
-    "speed": "4",
-    "methods": '["velocity_verlet", "mine.py:step"]',
-    "shot": '{view = "phase"}',
-    "view": '"phase"',
-    "quantity": '"theta_error"',
-    "log": "false",
-    "seconds": "20",
-    "line": '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
-    "front": '["rk4"]',
-    "ring": "true",
-    "under": "0.05",
-    "moment": "12.5",
-    "sentence": '"Here they part."',
-    "question": '"Which one comes back?"',
-    "answers": '["Verlet.", "RK4."]',
-    "right": "1",
-    "truth": '"Its step is symmetric."',
-    "equal_cost": "true",
-    "returns": "true",
-    **{name: f"{value:g}" for name, value in _VALUES.items()},
-    "theta": '"57deg"',
+_EXAMPLES: dict[Any, str] = {
+    str: '"text"',
+    bool: "true",
+    int: "1",
+    float: "1.5",
+    float | None: "12.5",
+    list[str]: '["velocity_verlet", "mine.py:step"]',
+    tuple[str, ...]: '["rk4"]',
+    dict[str, Any]: '{view = "phase"}',
+    Line | None: '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
 }
+"""By the type of a field."""
 
 
 class _FieldError(Exception):
@@ -219,10 +198,7 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
         return text, tomllib.loads(text)
     except OSError as error:
         why = f"cannot read {path}: {error.strerror}."
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # such as binary data, or an integer of 5,000 digits
+    except (ValueError, RecursionError) as error:  # binary data, or an integer of 5,000 digits
         why = f"{path} is not TOML: {printable(str(error), 200)}."
     raise UserError(why, Exit.INPUT_UNREADABLE)
 
@@ -280,13 +256,13 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
             why = f"a shot has no {unknown[0]!r}; choose from {', '.join(known)}."
             raise _FieldError(why, "shot", name)
     if shot.moment is None and (shot.question or shot.returns):
-        why = f"it needs a moment; use for example moment = {_EXAMPLES['moment']}."
+        why = "it needs a moment; use for example moment = 12.5."
         raise _FieldError(why, "shot", "question" if shot.question else "returns")
     count = len(shot.answers)
     if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
         raise _FieldError(
             f"a question has two to {MAX_ANSWERS} answers, and the number of the right one; use "
-            f"for example answers = {_EXAMPLES['answers']} and right = {_EXAMPLES['right']}.",
+            'for example answers = ["Verlet.", "RK4."] and right = 1.',
             "shot",
             "question",
         )
@@ -307,10 +283,11 @@ def _values(given: Mapping[str, Any], types: Mapping[str, Any], *above: str) -> 
             if name in _READERS:
                 value = _READERS[name](str(value))
             found[name] = _printable(msgspec.convert(value, types[name]))
-        except (ValueError, msgspec.ValidationError) as error:
-            why = str(error).partition(";")[0]
-            like = f"{name} = {_EXAMPLES[name]}"
-            raise _FieldError(f"{name}: {why}; use for example {like}.", *above, name) from None
+        except msgspec.ValidationError as error:
+            why = f"{error}; use for example {name} = {_EXAMPLES[types[name]]}."
+            raise _FieldError(f"{name}: {why}", *above, name) from None
+        except ValueError as error:  # of a reader
+            raise _FieldError(f"{name}: {error}", *above, name) from None
     return found
 
 
@@ -327,7 +304,7 @@ def _printable(value: Any) -> Any:
 def _methods(keys: Sequence[str], folder: Path) -> Cast:
     """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
     if not keys:
-        raise _FieldError(f"methods: use for example {_EXAMPLES['methods']}.", "methods")
+        raise _FieldError(f"methods: use for example {_EXAMPLES[list[str]]}.", "methods")
     cast: list[Method] = []
     for key in keys:
         try:

@@ -151,7 +151,7 @@ OPTIONS: dict[str, Settings] = {
     "--host": option("ADDRESS", "address to listen on (%(default)s)", default="127.0.0.1"),
     "--at-most": option("N", "limit of open labs (%(default)s)", count, default=20),
     # times and steps
-    "run --time": option("S", "simulated time: 60 (s) or 1min", duration, required=True),
+    "run --time": option("S", "simulated time, which is required: 60 (s) or 1min", duration),
     "accuracy --time": option("S", "simulated time (ten small swings)", duration),
     "snapshot --time": option("S", "simulated seconds (%(default)g)", moment, default=12.0),
     "--sample-every": option("N", "record every N steps (default: every 1/30 s)", count),

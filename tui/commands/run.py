@@ -54,6 +54,8 @@ IF_KNOWN = [
 
 def run(options: argparse.Namespace) -> int:
     scenes = scenes_of(options)
+    if options.time is None:
+        raise UserError("--time is missing; use for example --time 60.")
     gate = None
     if options.fail_if is not None:
         gate = parse(options.fail_if, cast=scenes.base.cast)

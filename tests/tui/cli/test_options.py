@@ -69,7 +69,7 @@ def test_every_finite_theta_and_omega_can_be_given(value):
     assert (scene.theta, scene.omega) == (value, value)
 
 
-@pytest.mark.parametrize("text", ["-1", "-1e-3", "-.5", "-0"])
+@pytest.mark.parametrize("text", ["-1", "-1e-3", "-.5", "-0", "-pi/2", "-π/2"])
 def test_a_negative_number_after_an_option_is_its_value(text):
     assert scene_from("--omega", text) == scene_from(f"--omega={text}")
 

@@ -108,7 +108,8 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
         (("--time", "0.01"), "shorter than one step"),
         (("--time", "1e10"), "out of range"),
         (("--time", "1", "--fail-if", "rk5.theta > 1"), "rk5"),
-        ((), "required: --time"),
+        ((), "--time is missing"),
+        (("--h", "0"), "h = 0 s"),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
