@@ -11,7 +11,7 @@ from functools import lru_cache
 from pendu_tui.tui.cli.units import split_unit
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
-FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\))?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
+FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
 VALUE = rf"(?P<value>{FAILED}|{NUMBER})"
 
@@ -43,13 +43,13 @@ class Layout:
 LAYOUTS = (
     Layout(
         programs="LAMMPS, all thermo styles",
-        line=r"^(?P<part>Loop time of)|^-+ Step +(?P<Step>\d+) -"
+        line=r"^(?P<part>Loop time of)|^-+ Step +(?P<step>\d+) -"
         r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[(?P<row>.*)\]",
     ),
     Layout(
         programs="GROMACS .xvg, xmgrace",
-        line=r'^@ *s(?P<set>\d+) +legend +"(?P<label>[^"]*)"|^(?P<part>&)'
-        r'|^@ *xaxis +label +"(?P<first>[^"]*)"|^@ *yaxis +label +"(?P<units>[^"]*)"',
+        line=r'^@ *(?:xaxis|s(?P<set>\d+)) +(?:label|legend) +"(?P<label>[^"]*)"|^(?P<part>&)'
+        r'|^@ *yaxis +label +"(?P<units>[^"]*)"',
     ),
     Layout(
         programs="GROMACS md.log",
@@ -94,7 +94,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="VASP OSZICAR",
-        line=r"^ *(?P<Step>\d+)(?= +T= )",
+        line=r"^ *(?P<step>\d+)(?= +T= )",
         units=("", "eV"),
     ),
     Layout(
@@ -182,3 +182,7 @@ def role(name: str) -> tuple[str, int]:
         if any(map(names.fullmatch, keys)):
             return each, rank
     return "", len(_ROLES)
+
+
+def is_energy(name: str) -> bool:
+    return role(name)[0] in ("conserved", "total", "kinetic", "potential")

@@ -11,26 +11,27 @@ import zlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from itertools import chain, groupby, islice
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, role
+from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
 from pendu_tui.tui.cli.tables import SAMPLE, Sheet, Wanted, choose, known_names
 from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
-MAX_LINES = 10_000_000  # half a minute, 320 MB; the input may be endless
+MAX_LINES = 10_000_000  # a quarter of a minute, 320 MB; the input may be endless
+TOO_MANY = f"more than {MAX_LINES:,} lines; leave some out."
 MAX_DOCUMENT = 1 << 28  # characters of JSON
 MAX_COLUMNS = 5000
 MAX_NAMES = 500  # of values that are printed with their names
 MAX_SHAPES = 10_000
-MAX_DEPTH = 8  # of objects in objects
-BLOCK = 4096  # lines
+MAX_HEADS = 20  # lines that may be the head of the next row
+BLOCK = 1 << 16  # characters
 _NOT_TEXT = {
     b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
     b"PAR1": "Parquet; save it as CSV",
@@ -42,17 +43,13 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBER = re.compile(NUMBER)
+_NUMBER_LIKE = re.compile(r"[-+.\d][\d.]*(?:[eEdD][-+]?\d+)?")  # three times as fast as NUMBER
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
-_FAILED_IN_TEXT = re.compile(rf"(?<![\w.#])(?:{FAILED})(?!\w)", re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
-_FORTRAN_POWER = re.compile(r"(?<=[\d.])[dD](?=[-+]?\d)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
-_NO_NUMBERS = {ord(sign): None for sign in "0123456789.+- "}
-_PARTS = {"names", "row", "name", "value", "unit", "over", "place", "set", "label"} | {
-    *("first", "units", "part", "end", "again", "columns")
-}
+_NO_NUMBERS = {ord(sign): None for sign in "0123456789.+-"}
+_FORTRAN_POWERS = str.maketrans("dD", "ee")
 
 
 def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> list[Sheet]:
@@ -76,29 +73,31 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     encoding = "utf-8-sig"
     if start.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
-    elif b"\0" in start[:BLOCK]:
+    elif b"\0" in start:
         raise unreadable("this is not text.")
     text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
     if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
         return _of_json(text, wanted, file)
-    return _Text(wanted, file).read(_lines(text))
+    return _Text(wanted, file).read(_blocks(text))
 
 
 def unreadable(sentence: str) -> UserError:
     return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
-def check_lines(count: int) -> None:
-    """Raise UserError if there are too many lines; the input may be endless."""
-    if count > MAX_LINES:
-        raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
-
-
-def _lines(text: io.TextIOBase) -> Iterator[str]:
-    while line := text.readline(MAX_LINE):
-        if len(line) == MAX_LINE:
+def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
+    """Yield lines, many at a time.  Raises UserError where there is no end to them."""
+    count = 0
+    rest = ""
+    while chunk := text.read(BLOCK):
+        *lines, rest = (rest + chunk).split("\n")
+        count += len(lines)
+        if count > MAX_LINES:
+            raise unreadable(TOO_MANY)
+        if len(rest) > MAX_LINE:
             raise unreadable("a line is longer than 1 MB; is this a table?")
-        yield line
+        yield lines
+    yield [rest]
 
 
 def number(text: str) -> float | None:
@@ -117,7 +116,7 @@ def number(text: str) -> float | None:
     if "." in text and "," in text:
         text = text.replace(min(".,", key=text.find), "")  # it parts thousands
     with suppress(ValueError):
-        return float(_FORTRAN_POWER.sub("e", text.replace(",", ".")))
+        return float(text.replace(",", ".").translate(_FORTRAN_POWERS))
     return None
 
 
@@ -127,14 +126,13 @@ class _Text:
     def __init__(self, wanted: Wanted, file: str) -> None:
         self._wanted = wanted
         self._units = ("", "")  # of times and energies, if the layout has only these
-        self._heads: list[list[list[str]]] = []  # lines without numbers, each divided in ways
+        self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._labels: dict[int, str] = {}  # names of columns by place
         self._passed = 0  # columns of earlier sets
         self._shared: list[str] = []  # units of xmgrace's y axis
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
         self._columns = list(next(named, ()))
         self._sheets: list[Sheet] = []
-        self._sheet: Sheet | None = None
         self._delimiter: str | None = None
         self._opening = ""  # the word with which each row begins
         self._width = 0  # fields in a row
@@ -143,14 +141,15 @@ class _Text:
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
         self._line = 0
-        self._shapes: dict[str, list[tuple[str, int]]] = {}  # lines that need no other look
+        self._remarks = 0  # lines of text since the last row
+        self._shapes: dict[str, list[tuple[str, int]]] = {}  # what lines of known shapes hold
 
-    def read(self, lines: Iterator[str]) -> list[Sheet]:
+    def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
-        while block := list(islice(lines, BLOCK)):
-            for is_alike, group in groupby(block, self._is_like_a_row):
-                self._read(list(group), is_alike)
-            check_lines(self._line)
+        for block in blocks:
+            at = 0
+            while at < len(block):
+                at += self._read_known(block[at:]) or self._read_line(block[at])
             if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0]:
                 raise unreadable(f"{self._line:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
@@ -160,118 +159,149 @@ class _Text:
                 named.append(sheet)
         return sorted(named or self._sheets, key=lambda sheet: sheet.line)
 
+    def _read_known(self, lines: list[str]) -> int:
+        """Read the first of these lines, as far as they are like earlier ones; count them."""
+        if self._heads or self._over or self._is_over or self._begins:
+            return 0
+        rows: list[int] = []
+        others: dict[str, list[int]] = {}
+        for place, line in enumerate(lines):
+            is_row = self._width > 0 and self._is_like_a_row(line)
+            if is_row and not line.lstrip()[:1].isalpha():
+                rows.append(place)
+                continue
+            shape = line.translate(_NO_NUMBERS)
+            if shape in self._shapes:
+                others.setdefault(shape, []).append(place)
+            elif is_row:
+                rows.append(place)
+            else:
+                lines = lines[:place]
+                break
+        count = self._read_rows(lines, rows)
+        for shape, places in others.items():
+            self._read_shape(shape, lines, [place for place in places if place < count])
+        below = max((place + 1 for place in rows if place < count), default=0)
+        if below:
+            self._remarks = 0
+        self._remarks += sum(map(bool, map(str.strip, lines[below:count])))
+        self._line += count
+        return count
+
     def _is_like_a_row(self, line: str) -> bool:
-        is_wide = len(line.split(self._delimiter)) == self._width
-        is_text = line.startswith(self._opening) and not line.isspace()
-        return is_wide and is_text and '"' not in line
+        is_wide = len(_split(line, self._delimiter)) == self._width
+        return is_wide and line.startswith(self._opening) and line.strip() != ""
 
-    def _read(self, lines: list[str], are_alike: bool) -> None:
-        """Read rows like the last one at once, other lines by their shapes."""
-        if not are_alike:
-            for shape, group in groupby(lines, _shape):
-                self._read_shape(shape, list(group))
-            return
-        for at, line in enumerate(lines):
-            sheet = self._sheet
-            is_row = not (self._heads or self._over or self._is_over or self._begins)
-            if is_row and sheet and len(sheet) >= SAMPLE:
-                if sheet.choice is None:
-                    sheet.choose()
-                block = self._block(sheet, lines[at:])
-                if block is not None:
-                    sheet.extend(self._line + 1, block, sheet.kept)
-                    self._line += len(block)
-                    return
-            self._take(line)
+    def _read_rows(self, lines: list[str], rows: list[int]) -> int:
+        """Read the lines at these places into the last table.  Return how many lines are done."""
+        if not rows:
+            return len(lines)
+        sheet = self._sheets[-1]
+        if len(sheet) < SAMPLE:
+            return rows[0]
+        if sheet.choice is None:
+            sheet.choose()
+        texts = [lines[place] for place in rows]
+        with suppress(ValueError):
+            block = np.loadtxt(
+                texts,
+                delimiter=self._delimiter,
+                comments=None,
+                quotechar='"',
+                usecols=sheet.kept,
+                ndmin=2,
+            )
+            sheet.extend(self._line + 1 + np.array(rows), block, sheet.kept)
+            return len(lines)
+        for place, text in zip(rows, texts, strict=True):
+            fields = _split(text, self._delimiter)
+            numbers = {at: number(fields[at]) for at in sheet.kept}
+            if numbers[sheet.kept[0]] is None:
+                return place
+            sheet.put_row(self._line + 1 + place, numbers)
+        return len(lines)
 
-    def _read_shape(self, shape: str, lines: list[str]) -> None:
-        """Read lines of one shape, which the layouts need to see only once."""
-        for at, line in enumerate(lines):
-            holds = self._shapes.get(shape)
-            is_known = holds is not None and not self._over and not self._is_over
-            if is_known and self._extend(holds or [], lines[at:]):
-                return
-            found = self._take(line)
-            if found is not None and len(self._shapes) < MAX_SHAPES:
-                self._shapes[shape] = found
+    def _read_shape(self, shape: str, lines: list[str], places: list[int]) -> None:
+        """Read the lines at these places, which have a known shape.
 
-    def _extend(self, holds: list[tuple[str, int]], lines: list[str]) -> bool:
-        """Read lines of a shape that is known.  Return whether all hold the same."""
-        if holds:
-            numbers = _NUMBER.findall("".join(lines))
-            if len(numbers) != holds[0][1] * len(lines):
-                return False
-            try:
-                block = np.array(numbers, dtype=float).reshape(len(lines), -1)
-            except ValueError:  # Fortran's D
-                return False
-            places = [self._prints[-1].place(name, self._unit(name)) for name, _ in holds[1:]]
-            block = block[:, [at for _, at in holds[1:]]]
-            self._prints[-1].extend(self._line + 1, block, places)
-        self._line += len(lines)
-        return True
-
-    def _block(self, sheet: Sheet, lines: list[str]) -> Any:
-        """Return the kept columns of rows, (n, len(kept)), None if one has no number there."""
-        text = "".join(lines)
-        for is_clean in (False, True):
-            if is_clean:
-                text = _FORTRAN_POWER.sub("e", _FAILED_IN_TEXT.sub("nan", text))
-                text = re.sub(r"[()\[\]]", "", text)
-                if self._delimiter != ",":
-                    text = text.replace(",", ".")
-            with suppress(ValueError):
-                return np.loadtxt(
-                    text.splitlines(),
-                    delimiter=self._delimiter,
-                    comments=None,
-                    usecols=sheet.kept,
-                    ndmin=2,
-                )
-        return None
-
-    def _take(self, line: str) -> list[tuple[str, int]] | None:
-        """Read one line: what a layout finds in it, or else words or a row.
-
-        Return what lines of this shape hold, if it is nothing, or numbers with their names: the
-        names with the places of their numbers, behind the count of all numbers in the line.
+        They hold nothing, or numbers: a count, and names with their places in it, -1 for nan.
         """
+        holds = self._shapes[shape]
+        if not holds or not places:
+            return
+        text = "\n".join([lines[place] for place in places]).replace("D", "e").replace("d", "e")
+        numbers = _NUMBER_LIKE.findall(text)
+        count = holds[0][1]
+        nans = ["nan"] * len(places)
+        try:
+            if len(numbers) != count * len(places):
+                raise ValueError
+            columns = [[*map(float, nans if at < 0 else numbers[at::count])] for _, at in holds[1:]]
+        except ValueError:
+            first = self._line
+            for place in places:
+                self._line = first + place
+                self._read_line(lines[place])
+            self._line = first
+            return
+        sheet = self._prints[-1]
+        kept = [sheet.place(name, self._unit(name)) for name, _ in holds[1:]]
+        sheet.extend(self._line + 1 + np.array(places), np.array(columns).T, kept)
+
+    def _read_line(self, line: str) -> int:
+        """Read one line: what a layout finds in it, or else words or a row.  Return 1."""
         self._line += 1
-        if self._over:
-            names = self._over
-            self._over = []
-            values = [number(field) for field in line.split()]
-            if len(values) == len(names) and None not in values:
-                for name, value in zip(names, values, strict=True):
-                    self._print(name, value)
-                return None
-        begins: dict[str, int] = {}  # of the numbers
+        self._remarks += bool(line.strip())
+        if self._read_below(line):
+            return 1
+        values: dict[str, tuple[int, str]] = {}
         is_data = False
         for layout in LAYOUTS:
             for match in layout.pattern.finditer(line):
                 if any(layout.units):
                     self._units = layout.units
-                groups = {
-                    name: text for name, text in match.groupdict().items() if text is not None
-                }
-                for name in groups.keys() - _PARTS:
-                    begins[name] = match.start(name)
-                    self._print(name, number(groups[name]))
+                groups = {name: text for name, text in match.groupdict().items() if text}
+                is_data |= self._found(layout, line, groups)
                 if "value" in groups:
-                    begins[groups["name"]] = match.start("value")
-                is_data |= self._found(layout, groups)
+                    values[groups["name"]] = (match.start("value"), groups["value"])
+                if "step" in groups:
+                    values["Step"] = (match.start("step"), groups["step"])
             if is_data:
                 break
-        if not is_data:
-            if not self._is_over and self._words_or_row(line):
-                return []
-            return None
-        places = [match.start() for match in _NUMBER.finditer(line)]
-        if begins and set(begins.values()) <= set(places):
-            return [("", len(places)), *((name, places.index(at)) for name, at in begins.items())]
-        return None
+        is_nothing = not is_data and not self._is_over and self._words_or_row(line)
+        if is_nothing or values:
+            self._remember(line, values)
+        return 1
 
-    def _found(self, layout: Layout, groups: dict[str, str]) -> bool:
+    def _remember(self, line: str, values: dict[str, tuple[int, str]]) -> None:
+        """Remember what lines of this shape hold: these values, at their places in the line."""
+        numbers = {match.start(): match[0] for match in _NUMBER_LIKE.finditer(line)}
+        holds = [("", len(numbers))]
+        for name, (start, text) in values.items():
+            if re.search(r"\d", name):  # another name may have the same shape
+                return
+            if numbers.get(start) == text:
+                holds.append((name, [*numbers].index(start)))
+            elif _IS_FAILED.fullmatch(text):
+                holds.append((name, -1))
+            else:
+                return
+        shape = line.translate(_NO_NUMBERS)
+        if len(self._shapes) < MAX_SHAPES and re.search(r"[^\W\d_]", shape):
+            self._shapes[shape] = holds if values else []
+
+    def _read_below(self, line: str) -> bool:
+        """Read values below their names.  Return whether there are such."""
+        names = self._over
+        self._over = []
+        values = [number(field) for field in line.split()]
+        is_below = bool(names) and len(values) == len(names) and None not in values
+        if is_below:
+            for name, value in zip(names, values, strict=True):
+                self._print(name, value)
+        return is_below
+
+    def _found(self, layout: Layout, line: str, groups: dict[str, str]) -> bool:
         """Take what a layout found.  Return whether that is all there is in the line."""
         match groups:
             case {"part": _}:
@@ -287,8 +317,11 @@ class _Text:
                 pass
             case {"name": name, "value": value}:
                 self._print(name, number(value), groups.get("unit", ""))
+            case {"step": value}:
+                self._print("Step", number(value))
+                return False
             case {"names": text}:
-                self._heads = [_ways(text, layout.cells)]
+                self._heads = {line: _ways(text, layout.cells)}
             case {"columns": text}:
                 self._columns = re.findall(layout.cells, text)
             case {"over": text}:
@@ -299,12 +332,11 @@ class _Text:
                 if number(opening) is not None:
                     opening = ""
                 self._row(fields, delimiter, opening)
-            case {"set": place, "label": label}:
-                self._labels[int(place) + 1] = label
-            case {"place": place, "label": label}:
-                self._labels[int(place) - 1] = label
-            case {"first": label}:
-                self._labels[0] = label
+            case {"label": label}:
+                place = int(groups.get("place", 1)) - 1
+                if "set" in groups:
+                    place = int(groups["set"]) + 1
+                self._labels[place] = label
             case {"units": units}:
                 self._shared = re.findall(r"\(([^()]*)\)", units)
             case _:
@@ -318,9 +350,12 @@ class _Text:
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or that of its layout's times or energies."""
-        kind = role(name)[0]
-        default = {"time": self._units[0], "step": "", "other": "", "error": "", "": ""}
-        return split_unit(name)[1] or default.get(kind, self._units[1])
+        default = ""
+        if role(name)[0] == "time":
+            default = self._units[0]
+        elif is_energy(name):
+            default = self._units[1]
+        return split_unit(name)[1] or default
 
     def _words_or_row(self, line: str) -> bool:
         """Read a row, or words that may be a head.  Return whether it is neither."""
@@ -340,7 +375,9 @@ class _Text:
         if has_number and not is_comment and self._row(fields, delimiter):
             return False
         if not has_number:
-            self._heads = [*self._heads[-20:], _ways(bare)]
+            self._heads[line] = _ways(bare)
+            if len(self._heads) > MAX_HEADS:
+                del self._heads[next(iter(self._heads))]
         is_like = len(fields) == self._width
         return has_number and not is_like and (is_comment or number(fields[0]) is None)
 
@@ -354,13 +391,12 @@ class _Text:
             self._width = len(fields)
             self._opening = opening
             is_like = True
-        sheet = self._sheet
-        if sheet is None or not is_like:
-            if sheet and opening == self._opening and (opening or numbers[0] is not None):
-                sheet.skipped += 1
-            return False
-        sheet.put_row(self._line, numbers)
-        return True
+        if is_like:
+            self._remarks = 0
+            self._sheets[-1].put_row(self._line, dict(enumerate(numbers)))
+        elif self._sheets and opening == self._opening and (opening or numbers[0] is not None):
+            self._sheets[-1].skipped += 1
+        return is_like
 
     def _begin(
         self,
@@ -370,7 +406,7 @@ class _Text:
         delimiter: str | None,
     ) -> bool:
         """Look for the head of this row.  Return whether a table begins, or goes on below it."""
-        before = self._sheet
+        before = self._sheets[-1] if self._sheets else None
         names = self._head(fields, numbers)
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
@@ -382,29 +418,34 @@ class _Text:
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
                 if is_like:
-                    self._heads = []
+                    self._pass_over_heads()
                 return False
             names = self._labelled(len(fields))
         units = self._units_of(names, fields)
-        has_text = len(self._heads) > 1  # between this head and the rows above
-        self._heads = []
+        self._heads.clear()
         if before and before.names == names and not self._begins:
-            repeats = has_text and before.last_time() in numbers  # as at the start of a run
+            repeats = self._remarks > 2 and before.last_time() in numbers  # as a run starts
             if not repeats:  # a page of the same table, or a restart
                 return True
         self._begins = False
-        self._sheet = Sheet(self._wanted, self._line)
+        self._sheets.append(Sheet(self._wanted, self._line))
         for name, unit in zip(names, units, strict=True):
-            self._sheet.add_column(name, unit)
-        self._sheets.append(self._sheet)
+            self._sheets[-1].add_column(name, unit)
         return True
+
+    def _pass_over_heads(self) -> None:
+        """Forget lines that are no heads, and remember those that never will be."""
+        for line, ways in self._heads.items():
+            if not self._begins and not any(map(self._known, ways)):
+                self._remember(line, {})
+        self._heads.clear()
 
     def _head(self, fields: list[str], numbers: list[float | None]) -> list[str] | None:
         """Return the best names above that fit a row, None without any."""
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        above = (names for ways in reversed(self._heads) for names in ways)
+        above = (names for ways in [*self._heads.values()][::-1] for names in ways)
         labels = [names for names in (self._labelled(width),) if any(names)]
         for names in chain(labels, above, [self._columns]):
             if len(names) == width - 1 and fields[-1] == "":
@@ -418,22 +459,27 @@ class _Text:
                 most = worth
         return found
 
+    def _known(self, names: list[str]) -> int:
+        """Return how many names are known, 0 if they are no head for sure."""
+        choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
+        asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
+        if not all(map(str.isdecimal, asked)):
+            return len(names) + 1
+        known = known_names(names)
+        return known if known > 1 else 0
+
     def _worth(self, names: list[str], numbers: list[float | None]) -> int:
         """Return how sure it is that these are the names of a row, 0 if they are not."""
         if any(map(_IS_UNIT_ALONE.fullmatch, names)):
             return 0
         choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
-        known = known_names(names)
         if choice and None in [numbers[place] for place in choice.columns]:
             return 0
-        asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
-        if not all(map(str.isdecimal, asked)):
-            return len(names) + 1
-        if known > 1:
-            return known
         is_data = any(number(name) is not None for name in names)
-        is_first = self._sheet is None or self._begins
-        return int(is_first and not is_data and (bool(asked) or None not in numbers))
+        is_first = not self._sheets or self._begins
+        is_asked = choice and (self._wanted.time or self._wanted.energy)
+        may_be = is_first and not is_data and (is_asked or None not in numbers)
+        return self._known(names) or int(bool(may_be))
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
@@ -443,28 +489,22 @@ class _Text:
     def _units_of(self, names: list[str], fields: list[str]) -> list[str]:
         """Return the unit of each column, as far as it is certain to be its own."""
         units = [self._unit(name) for name in names]
-        rows = (row for ways in self._heads if names not in ways for row in ways)
+        rows = (row for ways in self._heads.values() if names not in ways for row in ways)
         for row in ([each.strip("()[]") for each in row] for row in rows):
             if len(row) == len(names) and any(map(is_unit, row)) and not any(units):
                 units = row
         energies = [unit for unit in self._shared if plain("energy", unit) and unit != "K"]
         for place, name in enumerate(names):
             match = _WITH_UNIT.fullmatch(fields[place])
-            is_energy = role(name)[0] in ("conserved", "total", "kinetic", "potential")
             if units[place]:
                 continue
             if place and len(self._shared) == 1:
                 units[place] = self._shared[0]
-            elif is_energy and len(energies) == 1:
+            elif is_energy(name) and len(energies) == 1:
                 units[place] = energies[0]
             elif match and is_unit(match[2]):
                 units[place] = match[2]
         return units
-
-
-def _shape(line: str) -> str:
-    """Return a line without its numbers; lines that are alike have the same."""
-    return line.translate(_NO_NUMBERS)
 
 
 def _ways(text: str, cells: str = "") -> list[list[str]]:
@@ -472,7 +512,7 @@ def _ways(text: str, cells: str = "") -> list[list[str]]:
     text = _without_bars(text.strip().rstrip(",; "))
     if cells:
         return [[name.strip() for name in re.findall(cells, text)]]
-    ways = [_split(text, sign) for sign in "\t;,| " if sign in text or sign == " "]
+    ways = [_split(text, sign) for sign in ("\t", ";", ",", "|", None) if (sign or text) in text]
     ways.append(re.split(r"\s{2,}", text))  # names may contain single blanks
     ways.append(re.sub(r"\s+(?=[(\[])", "\0", text).split())  # or a blank before the unit
     ways.append(re.split(r"(?<=[)\]])\s+", text))  # or end with the unit
@@ -486,10 +526,15 @@ def _without_bars(text: str) -> str:
     return text
 
 
-def _split(text: str, delimiter: str) -> list[str]:
+def _split(text: str, delimiter: str | None) -> list[str]:
+    """Return the fields between delimiters, None for blanks; what is in quotes is one field."""
+    if '"' not in text:
+        return text.strip(" \r\n").split(delimiter)
     with suppress(csv.Error, ValueError):
-        (fields,) = csv.reader([text.strip(" \r\n")], delimiter=delimiter, skipinitialspace=True)
-        return [field.strip() for field in fields]
+        (fields,) = csv.reader(
+            [text.strip(" \r\n")], delimiter=delimiter or " ", skipinitialspace=True
+        )
+        return fields
     return []
 
 
@@ -503,33 +548,40 @@ def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
             return fields, sign
     if glued:
         text = _GLUED.sub(" ", text)
-    return _split(text, " ") or [""], None
+    return _split(text, None) or [""], None
 
 
 def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
     """Read JSON: an object or a list a line, or one document."""
-    first = next(
-        (line for line in iter(lambda: text.readline(MAX_DOCUMENT), "") if line.strip()), ""
-    )
-    second = text.readline(MAX_DOCUMENT)
-    items: Any = [_parsed(first)]
-    if items[0] is not None and second.strip():
-        items = chain(items, map(_parsed, chain([second], _lines(text))))
-    elif items[0] is None:
+    lines = _lines(text)
+    first = next((line for line in lines if line.strip()), "")
+    second = next(lines, "")
+    item = _parsed(first)
+    items: Iterable[Any] = _records(item)
+    if item is not None and second.strip():
+        items = chain([item], map(_parsed, chain([second], lines)))
+    elif item is None:
         whole = first + second + text.read(MAX_DOCUMENT)
-        items = [_parsed(whole)]
-        if items[0] is None:
-            return _Text(wanted, file).read(iter(whole.splitlines(keepends=True)))
-    if isinstance(items, list):
-        items = _records(items[0])
+        item = _parsed(whole)
+        if item is None:
+            return _Text(wanted, file).read([whole.split("\n")])
+        items = _records(item)
     sheet = Sheet(wanted, is_printed=True)
     for line, item in enumerate(items):
         for name, text in _flat(item):
             value = number(str(text))
             if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
                 sheet.put(sheet.place(name, split_unit(name)[1]), line, value)
-        check_lines(line)
     return [sheet]
+
+
+def _lines(text: io.TextIOBase) -> Iterator[str]:
+    for _ in range(MAX_LINES):
+        line = text.readline(MAX_DOCUMENT)
+        if not line:
+            return
+        yield line
+    raise unreadable(TOO_MANY)
 
 
 def _parsed(text: str) -> Any:
@@ -538,38 +590,28 @@ def _parsed(text: str) -> Any:
     return None
 
 
-def _records(item: Any, depth: int = 0) -> Iterable[Any]:
+def _records(item: Any) -> Iterable[Any]:
     """Return the objects or rows in a document: those of a list, or of lists in an object."""
     if isinstance(item, list):
         return item
-    if not isinstance(item, dict) or depth > MAX_DEPTH:
+    if not isinstance(item, dict):
         return []
-    if isinstance(item.get("columns"), list) and isinstance(item.get("data"), list):
-        return [dict(zip(item["columns"], row, strict=False)) for row in item["data"]]
-    columns = {
-        name: [*each.values()] if isinstance(each, dict) else each
-        for name, each in item.items()
-        if isinstance(each, list) or (isinstance(each, dict) and all(map(str.isdecimal, each)))
-    }
-    flat = {
-        name: each
-        for name, each in columns.items()
-        if len(each) > 1 and not isinstance(each[0], (dict, list))
-    }
-    size = max(map(len, flat.values()), default=0)
-    names = [name for name, each in flat.items() if len(each) == size]
-    if names:
-        return [
-            dict(zip(names, row, strict=True))
-            for row in zip(*(flat[name] for name in names), strict=True)
-        ]
-    found = (_records(each, depth + 1) for each in item.values())
-    return next((each for each in found if each), [])
+    columns = {}
+    for name, each in item.items():
+        if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
+            each = [*each.values()]
+        if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], (dict, list)):
+            columns[name] = each
+    size = max(map(len, columns.values()), default=0)
+    columns = {name: each for name, each in columns.items() if len(each) == size}
+    if columns:
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    return next(filter(None, map(_records, item.values())), [])
 
 
 def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the values of an object with their names; those of a list have numbers."""
-    if isinstance(item, dict) and name.count(".") < MAX_DEPTH:
+    if isinstance(item, dict):
         for inner, value in item.items():
             yield from _flat(value, f"{name}.{inner}".lstrip("."))
     elif isinstance(item, list) and not name:
@@ -604,5 +646,6 @@ def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> Sheet:
     long = [(name, column) for name, column in columns if len(column) == rows[0][0]]
     for name, _ in long:
         sheet.add_column(name, split_unit(name)[1])
-    sheet.extend(0, np.stack([column for _, column in long], axis=1), sheet.kept)
+    block = np.stack([column for _, column in long], axis=1)
+    sheet.extend(np.arange(len(block)), block, sheet.kept)
     return sheet

@@ -7,7 +7,7 @@ restart from a checkpoint: the same series.
 
 import math
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -229,18 +229,26 @@ class Sheet:
         self._lines[place].append(line)
         self._values[place].append(value)
 
-    def put_row(self, line: int, numbers: Sequence[float | None]) -> None:
+    def put_row(self, line: int, numbers: Mapping[int, float | None]) -> None:
         for place in self.kept:
             value = numbers[place]
             if value is not None:
                 self.put(place, line, value)
 
-    def extend(self, line: int, block: Any, places: Sequence[int]) -> None:
-        """Add rows of some columns, (n, len(places))."""
-        lines = np.arange(line, line + len(block)).tobytes()
+    def extend(self, lines: Any, block: Any, places: Sequence[int]) -> None:
+        """Add rows of some columns, (n, len(places)), found in these lines."""
         for place, values in zip(places, block.T, strict=True):
-            self._lines[place].frombytes(lines)
+            self._lines[place].frombytes(lines.tobytes())
             self._values[place].frombytes(values.tobytes())
+
+    def _column(self, place: int) -> tuple[Any, Any]:
+        """Return the lines and values of a column, in the order of the lines."""
+        lines = np.array(self._lines[place])
+        values = np.array(self._values[place])
+        if (lines[1:] < lines[:-1]).any():
+            order = np.argsort(lines, kind="stable")
+            return lines[order], values[order]
+        return lines, values
 
     def __len__(self) -> int:
         """Return the length of the longest column."""
@@ -248,7 +256,7 @@ class Sheet:
 
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
-        samples = [np.asarray(values[:SAMPLE]) for values in self._values]
+        samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
         if len(self.names) > 1 and not self.names[0] and any(self.names) and not _counts(samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         if self._is_printed:  # once is not repeatedly
@@ -279,7 +287,7 @@ class Sheet:
         if not self._lines:
             return
         leading = (*choice.time, *choice.energy, 0)[0]
-        lines = np.asarray(self._lines[leading])
+        lines = self._column(leading)[0]
         if not len(lines):
             return
         columns = {}
@@ -303,7 +311,7 @@ class Sheet:
             raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
         skipped = self.skipped + len(here) - rows
         if choice.energy and not self._is_printed:  # energies without a time
-            own = np.asarray(self._lines[choice.energy[0]])
+            own = self._column(choice.energy[0])[0]
             skipped += int(np.count_nonzero(~np.isin(own, lines)))
         for first, last in runs:
             part = {place: column[first:last] for place, column in columns.items()}
@@ -317,7 +325,7 @@ class Sheet:
 
         What is printed belongs to the time before it, or to that after it if all come before.
         """
-        own = np.asarray(self._lines[place])
+        own, values = self._column(place)
         record = np.searchsorted(lines, own, side="right") - 1
         if self._is_printed and np.array_equal(record + 1, np.arange(len(lines))):
             record += 1
@@ -325,7 +333,7 @@ class Sheet:
         if not self._is_printed:
             fits &= lines[record] == own
         column = np.full(len(lines), np.nan)
-        column[record[fits]] = np.asarray(self._values[place])[fits]
+        column[record[fits]] = values[fits]
         has_value = np.zeros(len(lines), dtype=bool)
         has_value[record[fits]] = True
         return column, has_value

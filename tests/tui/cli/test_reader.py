@@ -142,7 +142,6 @@ def array(**named: object) -> bytes:
         json.dumps({"t": TIMES, "E": ENERGIES}),
         json.dumps({"run": {"h": 0.5, "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps([{"t": t, "E": e} for _, t, e, _ in SAMPLES], indent=1),
-        json.dumps({"columns": ["t", "E"], "data": [[t, e] for _, t, e, _ in SAMPLES]}),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3))),
         array(**{"": np.array([TIMES, ENERGIES]).T}),
