@@ -210,6 +210,8 @@ def test_a_single_step_while_paused_is_on_disk_at_once(recorder):
     for step in range(31, 40):
         recorder.sample(stepped(step), 1.0)
         assert left_by(recorder)[-1].value.step == step
+    recorder.event(Event("mark", 1, 39, stepped(39).t), 1.0)
+    assert left_by(recorder)[-1].value.kind == "mark"
 
 
 def test_a_recording_is_overwritten_only_on_request(tmp_path):

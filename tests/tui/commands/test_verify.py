@@ -30,7 +30,8 @@ def first_words(outcome: Outcome) -> list[str]:
     return [line.split()[0] for line in outcome.out.splitlines()]
 
 
-def test_a_difference_is_exit_1_and_located(other):
+def test_a_difference_is_exit_1_and_located(whole, other):
+    assert pendu("verify", whole, other).code == 1
     outcome = pendu("verify", other)
     assert outcome.code == 1
     for word in ("different ", str(other), "run 1, step 6", "velocity_verlet", "omega", "-0x1.4"):

@@ -162,6 +162,7 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     exact = [history.exact.at(0.1 * step) for step in (18, 19)]
     assert history.trails[-2:, -1].tolist() == [list(state) for state in exact]
     assert len(history.trails) == 20
+    assert len(filled(map(sample, range(400)), capacity=512).trails) == 300  # ten seconds
 
 
 def largest(history: History, quantity: str) -> np.ndarray:

@@ -235,6 +235,10 @@ def test_it_shows_the_milestones_and_verdicts_of_the_lab_and_jumps_to_them(lab):
     replay.seek(23.9)
     assert list(replay.milestones) == [each for each in first if each.step <= replay.sample.step]
     assert "bounded" in table.verdicts
+    replay.seek(first[0].t)
+    assert replay.sample.step == first[0].step
+    assert list(replay.milestones) == first[:1]
+    replay.seek(23.9)
     swings = max(judgement.periods for judgement in replay.judgements)
     assert swings == pytest.approx(23.9 / replay.exact.period, rel=0.01)
     replay.seek(1.0)
