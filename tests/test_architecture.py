@@ -125,24 +125,7 @@ def test_nobody_outside_asks_which_model_it_is():
     assert not places
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        'scene.model in ("linear", "damped")',
-        "isinstance(model, (int, Pendulum))",
-        "from pendu_tui.engine.models.pendulum import energy",
-    ],
-)
-def test_such_a_question_would_be_found(text):
-    assert any(map(asks_which_model, ast.walk(ast.parse(text))))
-
-
 def test_a_folder_has_at_most_eighteen_files():
     folders = {path.parent for path in MODULES}
     counts = {folder: sum(path.is_file() for path in folder.iterdir()) for folder in folders}
     assert {folder: count for folder, count in counts.items() if count > 18} == {}
-
-
-def test_tui_has_at_most_ten_entries():
-    entries = {path.name for path in (ROOT / "tui").iterdir()} - {"__pycache__"}
-    assert len(entries) <= 10

@@ -1,4 +1,4 @@
-"""Open the lab or a replay: on the screen, as sentences, or as a picture; say where it is recorded."""
+"""Open the lab or a replay: on screen, as sentences or as a picture; say where it is recorded."""
 
 import argparse
 import asyncio

@@ -8,7 +8,7 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus
-from pendu_tui.tui.screens.lines import bar, facts, speed_text, status_row, wrapped
+from pendu_tui.tui.screens.lines import bar, facts, status_row, wrapped
 from tests.tui.harness import after, eventful
 
 
@@ -80,12 +80,6 @@ def test_the_limit_of_each_method_is_compared_with_its_own_step():
     assert "unstable: e, r (z > 2.83)" in text(status_row(live, 120))
     live.change(Stepping(1.0))
     assert "unstable: e, s v (z > 2), r (z > 2.83)" in text(status_row(live, 120))
-
-
-def test_speeds_are_read_as_people_say_them():
-    assert [speed_text(speed) for speed in (1, 2, 1024, 2.0**20, 0.5, 1 / 8, -1, -0.25)] == [
-        *("1×", "2×", "1024×", "1048576×", "1/2×", "1/8×", "-1×", "-1/4×")
-    ]
 
 
 def test_where_steps_are_slow_the_status_line_says_when_the_next_one_is_due():
