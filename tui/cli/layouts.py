@@ -47,6 +47,16 @@ LAYOUTS = (
         r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[(?P<row>.*)\]",
     ),
     Layout(
+        programs="LAMMPS, units metal",
+        line=r"^(?:units|  Unit style +:) +metal\s*$",
+        units=("ps", "eV"),
+    ),
+    Layout(
+        programs="LAMMPS, units real",
+        line=r"^(?:units|  Unit style +:) +real\s*$",
+        units=("fs", "kcal/mol"),
+    ),
+    Layout(
         programs="GROMACS .xvg, xmgrace",
         line=r'^@ *(?:xaxis|s(?P<set>\d+)) +(?:label|legend) +"(?P<label>[^"]*)"|^(?P<part>&)'
         r'|^@ *yaxis +label +"(?P<units>[^"]*)"',

@@ -24,7 +24,7 @@ from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
-MAX_LINES = 10_000_000  # a quarter of a minute, 320 MB; the input may be endless
+MAX_LINES = 5_000_000  # some seconds; the input may be endless
 TOO_MANY = f"more than {MAX_LINES:,} lines; leave some out."
 MAX_DOCUMENT = 1 << 28  # characters of JSON
 MAX_COLUMNS = 5000

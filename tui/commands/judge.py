@@ -100,7 +100,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     except UserError as error:
         raise UserError(f"{shown}: {error}", error.code) from None
     except OSError as error:
-        why = f"{shown}: {error.strerror or error}."
+        why = f"{shown}: {error.strerror or error}; give a log or a table, or - for stdin."
         raise UserError(why, Exit.INPUT_UNREADABLE) from None
     fields["is_guess"] = options.time is None or options.energy is None
     return fields
@@ -277,9 +277,12 @@ def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
     uncertainty = orders.get(f"{name}_uncertainty")
     if power is None:
         return "no clear power of h"
-    if uncertainty is None:
-        return f"goes as h^{power:.2f}"
-    return f"goes as h^{power:.2f} ± {uncertainty:.2f}"
+    text = f"goes as h^{power:.2f}"
+    if uncertainty is not None:
+        text += f" ± {uncertainty:.2f}"
+    if power < -2 * (uncertainty or 0):
+        text += "; are the steps in the order of the files?"
+    return text
 
 
 def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:

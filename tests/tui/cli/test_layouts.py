@@ -19,6 +19,26 @@ TotEng   =      -345.0040 KinEng   =        20.1280 Temp     =       301.9194
 Loop time of 0.8 on 1 procs for 50 steps with 400 atoms
 """,
     ),
+    "LAMMPS, units metal": (
+        "2 rows, Time [ps], TotEng [eV]",
+        """\
+units metal
+   Step  Time  TotEng
+      0  0.00  -344.9992
+     50  0.05  -345.0040
+Loop time of 0.8 on 1 procs for 50 steps with 400 atoms
+""",
+    ),
+    "LAMMPS, units real": (
+        "2 rows, Time [fs], TotEng [kcal/mol]",
+        """\
+  Unit style    : real
+   Step  Time  TotEng
+      0  0.0  -344.9992
+     50  50.  -345.0040
+Loop time of 0.8 on 1 procs for 50 steps with 400 atoms
+""",
+    ),
     "GROMACS .xvg, xmgrace": (
         "2 rows, Time [ps], Total Energy [kJ/mol]",
         """\

@@ -211,6 +211,8 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     outcome = pendu(*names, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8")
     assert outcome.code == 1
     assert "goes as h^2.00" in outcome.out
+    assert "order of the files" not in outcome.out
+    assert "order of the files" in pendu(*names, "--steps", "2,1").out
     assert pendu(*names, "--steps", "1,1").refused(2, "a step size for each")
 
 
