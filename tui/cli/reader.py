@@ -436,7 +436,7 @@ class _Text:
     def _pass_over_heads(self) -> None:
         """Forget lines that are no heads, and remember those that never will be."""
         for line, ways in self._heads.items():
-            if not self._begins and not any(map(self._known, ways)):
+            if not self._begins and not any(map(self._worth, ways)):
                 self._remember(line, {})
         self._heads.clear()
 
@@ -459,27 +459,25 @@ class _Text:
                 most = worth
         return found
 
-    def _known(self, names: list[str]) -> int:
-        """Return how many names are known, 0 if they are no head for sure."""
+    def _worth(self, names: list[str], numbers: list[float | None] | None = None) -> int:
+        """Return how sure it is that these are the names of a row, 0 if they are not.
+
+        Without numbers they are those of any row.
+        """
+        if any(map(_IS_UNIT_ALONE.fullmatch, names)):
+            return 0
         choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
+        if choice and numbers and None in [numbers[place] for place in choice.columns]:
+            return 0
         asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
         if not all(map(str.isdecimal, asked)):
             return len(names) + 1
         known = known_names(names)
-        return known if known > 1 else 0
-
-    def _worth(self, names: list[str], numbers: list[float | None]) -> int:
-        """Return how sure it is that these are the names of a row, 0 if they are not."""
-        if any(map(_IS_UNIT_ALONE.fullmatch, names)):
-            return 0
-        choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
-        if choice and None in [numbers[place] for place in choice.columns]:
-            return 0
-        is_data = any(number(name) is not None for name in names)
+        if known > 1:
+            return known
+        is_data = numbers is None or any(number(name) is not None for name in names)
         is_first = not self._sheets or self._begins
-        is_asked = choice and (self._wanted.time or self._wanted.energy)
-        may_be = is_first and not is_data and (is_asked or None not in numbers)
-        return self._known(names) or int(bool(may_be))
+        return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
