@@ -5,7 +5,6 @@ import signal
 import string
 from collections.abc import Sequence
 from contextlib import suppress
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,10 +13,10 @@ from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, 
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import find
-from pendu_tui.tui.cli.watchdog import watchdog
-from pendu_tui.tui.cli.workers import received, started
 
 if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
     from pendu_tui.engine.methods.measure import Measured  # NumPy
 
 MAX_SECONDS = 10.0  # to measure a method; 0.2 s is typical
@@ -104,6 +103,8 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
+    from pendu_tui.tui.cli.workers import received, started  # multiprocessing takes 15 ms
+
     process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
@@ -121,9 +122,10 @@ def _tried(source: str, key: str, file: str) -> "Measured":
     return found
 
 
-def _try(results: Connection, source: str, key: str, file: str) -> None:
+def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
-    from pendu_tui.engine.methods.examine import measured_text  # NumPy, in this process only
+    from pendu_tui.engine.methods.examine import measured_text  # NumPy
+    from pendu_tui.tui.cli.watchdog import watchdog
 
     def tell(sentence: str) -> None:
         results.send(OwnMethodError(sentence))

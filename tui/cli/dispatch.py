@@ -8,19 +8,16 @@ import io
 import os
 import sys
 import threading
-from argparse import ArgumentParser, RawDescriptionHelpFormatter
+from _thread import interrupt_main
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
-from pendu_tui.tui.cli.files import (
-    keep_results_apart,
-    refuse_to_replace_inputs,
-    repeat_swallowed_interrupts,
-)
 
 if TYPE_CHECKING:
     from pendu_tui.tui.cli.options import Parser
@@ -184,3 +181,48 @@ def completion_parser() -> "Parser":
         subparser = commands.add_parser(name, help=each.about, description=each.about)
         import_module(f"{ROOM}.options").add_options(subparser, name)
     return parser
+
+
+def refuse_to_replace_inputs(options: Namespace) -> None:
+    """Raise UserError if an output is a file that another argument names, even with --force."""
+    arguments = dict(vars(options))
+    outputs = [arguments.pop(name, None) for name in ("output", "record")]
+    inputs: list[str] = []
+    for value in arguments.values():
+        texts = value if isinstance(value, list) else [value]
+        for text in texts:
+            if isinstance(text, str | Path):
+                inputs += [str(text), str(text).rpartition(":")[0]]  # FILE.py:FUNCTION
+    for output in outputs:
+        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
+            raise UserError(f"{output} is read by this command; choose another name to write.")
+
+
+def _is_same(path: Path, other: str) -> bool:
+    try:
+        return path.is_file() and path.samefile(other)
+    except (OSError, ValueError):  # an argument may be no name of a file
+        return False
+
+
+def repeat_swallowed_interrupts() -> None:
+    """Send Ctrl+C again if a destructor or a callback of Numba's compiler swallowed it."""
+    report = sys.unraisablehook
+
+    def hook(swallowed: "sys.UnraisableHookArgs") -> None:
+        if not issubclass(swallowed.exc_type, KeyboardInterrupt):
+            report(swallowed)
+            return
+        threading.Timer(0.05, interrupt_main).start()  # s; by then the callback has returned
+
+    sys.unraisablehook = hook
+
+
+def keep_results_apart() -> None:
+    """Point the descriptor of stdout to stderr from now on, for a user's code; sys.stdout stays."""
+    stdout = sys.stdout
+    if stdout is sys.__stdout__ and isinstance(stdout, io.TextIOWrapper):  # no test's
+        results = os.dup(1)
+        os.dup2(2, 1)
+        sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")
+        sys.stdout.reconfigure(line_buffering=stdout.line_buffering)

@@ -10,8 +10,6 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, TextIO
 
-from pendu_tui.recordings.files import printable
-
 MAX_CELL = 1000  # characters of a line
 
 
@@ -96,7 +94,7 @@ ADVICE = {
 
 def warn(sentence: str) -> None:
     """Print a sentence on stderr."""
-    say(printable(f"pendu-tui: {sentence}", MAX_CELL), sys.stderr)
+    say(f"pendu-tui: {sentence}".replace("\n", " "), sys.stderr)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:
@@ -104,6 +102,8 @@ def say(text: str, stream: TextIO | None = None) -> None:
 
     If that is a terminal, the text is wrapped without breaking words or paths.
     """
+    from pendu_tui.recordings.files import printable  # --help needs none
+
     out = stream or sys.stdout
     lines = [printable(line, MAX_CELL) for line in text.split("\n")]
     if out.isatty():
@@ -132,6 +132,8 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
             from rich.console import Console
             from rich.markup import escape
             from rich.progress import Progress
+
+            from pendu_tui.recordings.files import printable
 
             columns = Progress.get_default_columns()
             bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)

@@ -3,13 +3,9 @@
 import os
 import signal
 import sys
-from _thread import interrupt_main
-from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from io import TextIOWrapper
 from pathlib import Path
-from threading import Timer
 from types import FrameType
 from typing import TextIO
 
@@ -68,28 +64,6 @@ def check_free(path: Path, force: bool) -> None:
         check_target(path, force)
 
 
-def refuse_to_replace_inputs(options: Namespace) -> None:
-    """Raise UserError if an output is a file that another argument names, even with --force."""
-    arguments = dict(vars(options))
-    outputs = [arguments.pop(name, None) for name in ("output", "record")]
-    inputs: list[str] = []
-    for value in arguments.values():
-        texts = value if isinstance(value, list) else [value]
-        for text in texts:
-            if isinstance(text, str | Path):
-                inputs += [str(text), str(text).rpartition(":")[0]]  # FILE.py:FUNCTION
-    for output in outputs:
-        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
-            raise UserError(f"{output} is read by this command; choose another name to write.")
-
-
-def _is_same(path: Path, other: str) -> bool:
-    try:
-        return path.is_file() and path.samefile(other)
-    except (OSError, ValueError):  # an argument may be no name of a file
-        return False
-
-
 def keep_older(path: Path | None) -> None:
     """Raise UserError if an unfinished result would replace a file."""
     if path is not None and path.is_file():
@@ -99,29 +73,6 @@ def keep_older(path: Path | None) -> None:
 def interruptible() -> AbstractContextManager[None]:
     """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
     return _signals_to(signal.default_int_handler)
-
-
-def repeat_swallowed_interrupts() -> None:
-    """Send Ctrl+C again if a destructor or a callback of Numba's compiler swallowed it."""
-    report = sys.unraisablehook
-
-    def hook(swallowed: "sys.UnraisableHookArgs") -> None:
-        if not issubclass(swallowed.exc_type, KeyboardInterrupt):
-            report(swallowed)
-            return
-        Timer(0.05, interrupt_main).start()  # s; by then the callback has returned
-
-    sys.unraisablehook = hook
-
-
-def keep_results_apart() -> None:
-    """Point the descriptor of stdout to stderr from now on, for a user's code; sys.stdout stays."""
-    stdout = sys.stdout
-    if stdout is sys.__stdout__ and isinstance(stdout, TextIOWrapper):  # no test's
-        results = os.dup(1)
-        os.dup2(2, 1)
-        sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")
-        sys.stdout.reconfigure(line_buffering=stdout.line_buffering)
 
 
 @contextmanager

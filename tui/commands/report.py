@@ -21,7 +21,6 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import MAX_CELL, UserError, say
 from pendu_tui.tui.cli.files import FIGURES, check_free, text_file, whole_file
-from pendu_tui.tui.drawing.picture import PALETTES, inks
 
 Form = Literal["table", "json", "csv", "figure"]
 
@@ -127,6 +126,8 @@ class Figure:
         """Draw the figure by Matplotlib; the same lines give the same bytes."""
         from matplotlib import figure as figures
         from matplotlib import style  # an extra
+
+        from pendu_tui.tui.drawing.picture import PALETTES, inks
 
         colours = map(PALETTES["light"].colour, inks(self.cast))
         looks = {

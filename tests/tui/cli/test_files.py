@@ -13,7 +13,8 @@ import pytest
 
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.system import ENDING
-from pendu_tui.tui.cli.files import repeat_swallowed_interrupts, whole_file
+from pendu_tui.tui.cli.dispatch import repeat_swallowed_interrupts
+from pendu_tui.tui.cli.files import whole_file
 from tests.tui.command_line import pendu
 
 WRITERS = {
