@@ -2,6 +2,7 @@
 
 import ast
 import pkgutil
+import shutil
 import subprocess
 import sys
 from ast import literal_eval
@@ -62,7 +63,9 @@ def test_every_command_in_the_table_has_a_function_and_every_module_is_in_the_ta
 
 
 def test_the_import_contracts_hold():
-    lint = Path(sys.executable).with_name("lint-imports")
+    lint = shutil.which("lint-imports", path=Path(sys.executable).parent)
+    if lint is None:
+        pytest.skip("import-linter is not installed")
     done = subprocess.run(
         [lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
     )

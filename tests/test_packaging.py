@@ -1,5 +1,6 @@
 """What the wheel and the sdist hold, and under which names."""
 
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -19,6 +20,8 @@ DIST_INFO = f"pendu_tui-{PROJECT['version']}.dist-info"
 
 
 def tracked() -> list[str]:
+    if shutil.which("git") is None:
+        pytest.skip("git is not installed")
     command = ["git", "ls-files", *ROOMS]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return [name for name in listed.stdout.splitlines() if (ROOT / name).exists()]
@@ -27,6 +30,7 @@ def tracked() -> list[str]:
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """The folder with a wheel and an sdist of this checkout."""
+    pytest.importorskip("build.env", reason="build is not installed")
     folder = tmp_path_factory.mktemp("built")
     command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT]
     subprocess.run(command, check=True, capture_output=True)

@@ -77,8 +77,11 @@ def pendu(tmp_path_factory):
     (models / "__init__.py").write_text(changed, "utf-8")
     scene = 'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n'
     (copy / "scene.toml").write_text(scene, "utf-8")
-    environment = os.environ | {"PYTHONPATH": str(copy), "PENDU_RECORDINGS": str(copy / "made")}
-    code = "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
+    environment = os.environ | {"PENDU_RECORDINGS": str(copy / "made")}
+    code = (  # not PYTHONPATH, which the embeddable Python for Windows ignores
+        f"import sys; sys.path.insert(0, {str(copy)!r})\n"
+        "from pendu_tui.tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
+    )
 
     def run(*arguments):
         command = [sys.executable, "-c", code, *arguments]
