@@ -138,6 +138,8 @@ def when_continued(handler: Callable[..., object]) -> None:
 
 def is_stopped(process: int) -> bool:
     """Return whether a process has been stopped by a signal."""
+    if sys.platform == "win32":
+        return False
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2]
     except OSError:  # macOS

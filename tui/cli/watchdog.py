@@ -145,7 +145,7 @@ def _end_if_silent(pulse: "Connection", process: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     terminal = system.terminal_state()
     silence = 0  # s
-    with suppress(EOFError):  # it has ended
+    with suppress(EOFError, OSError):  # it has ended
         while silence < MAX_STUCK:
             if pulse.poll(1.0):
                 pulse.recv()
