@@ -7,6 +7,7 @@ from statistics import fmean
 
 import pytest
 
+from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, SceneError
@@ -283,3 +284,29 @@ def test_a_speed_changes_no_number():
     for speed in (0.0, -1.0, math.inf, math.nan):
         with pytest.raises(SceneError, match="speed"):
             Scene(speed=speed)
+
+
+@pytest.mark.parametrize(
+    ("gravity", "most"), [(9.81, 100.0), (0.04, 20.0)]
+)  # 100 s⁻¹, and 100 w0, w0 being 0.2 rad/s
+def test_the_limit_of_friction_goes_with_the_frequency(gravity, most):
+    def damped(friction):
+        cast = (method_of("rk4"),)
+        parameters = {"friction": friction}
+        return Scene(model="damped", gravity=gravity, cast=cast, parameters=parameters)
+
+    assert damped(0.999 * most).parameters["friction"] == 0.999 * most
+    with pytest.raises(SceneError, match="friction = "):
+        damped(1.001 * most)
+
+
+def test_a_parameter_that_the_model_lacks_may_be_0_only():
+    assert Scene(parameters={"friction": 0.0}).parameters == {}
+    with pytest.raises(SceneError, match="has no friction"):
+        Scene(parameters={"friction": 0.1})
+
+
+def test_what_to_watch_stays_while_all_its_methods_do():
+    more = (*DEFAULT_SCENE.cast, method_of("heun"))
+    assert DEFAULT_SCENE.with_cast(more).watch == DEFAULT_SCENE.watch
+    assert DEFAULT_SCENE.with_cast(more[1:]).watch == ""

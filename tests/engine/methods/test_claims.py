@@ -181,3 +181,20 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
         assert not method.general
     else:
         assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9-]+(\.[a-z0-9-]+)+, [^\[\]]+\]", method.used)
+
+
+@pytest.mark.parametrize(
+    ("typed", "keys"),
+    [
+        ("Störmer Verlet", ["velocity_verlet"]),
+        ("rk", ["rk4"]),  # those for one scene match only if no general one does
+        ("single", []),  # a label is matched whole
+        ("verlet", ["velocity_verlet"]),  # another name
+        ("moan", ["blanes_moan_4", "blanes_moan_6"]),  # a later word
+        ("respa", ["respa"]),
+        ("learned", ["learned_map", "learned_symplectic_map"]),
+        ("", []),
+    ],
+)
+def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed, keys):
+    assert [method.key for method in matching(typed)] == keys

@@ -78,3 +78,10 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits():
     slow = replace(damped, length=1e4, gravity=1.0, h=1.0)  # far above w0
     with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
         replace(slow, parameters={"friction": 2.0})
+
+
+@pytest.mark.parametrize(("share", "regime"), [(0.999, "libration"), (1.001, "rotation")])
+def test_it_rotates_as_long_as_its_energy_is_beyond_the_separatrix(share, regime):
+    omega = 2 * math.sqrt(9.81 * share)
+    assert DampedPendulum(9.81, 0.1).exact(0.0, omega).regime == regime
+    assert DampedPendulum(9.81, 0.1).exact(0.0, 0.0).regime == "equilibrium"

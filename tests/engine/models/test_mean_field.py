@@ -116,3 +116,16 @@ def test_a_lockstep_watches_the_probability_at_every_step():
     rk4, splitting = errors
     assert splitting < 1e-13 < 0.147 < rk4 < 0.149
     assert Lockstep(SCENES["drift"]).sample().readings[0].max_invariant_error is None
+
+
+@pytest.mark.parametrize("coupling", [2.0, -2.0])
+@given(
+    theta=st.floats(-3, 3),
+    s=st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda s: math.hypot(*s) > 0.1),
+)
+def test_no_pure_state_has_less_energy_than_the_phase_at_rest(coupling, theta, s):
+    model = MeanField(9.81, coupling, 20.0)
+    energy, rest = model.energy(), model.rest_phase(theta)
+    pure = np.array(s) / np.linalg.norm(s)
+    assert math.hypot(*rest[2:]) == pytest.approx(1.0)
+    assert energy(rest) <= energy((theta, 0.0, *pure)) + 1e-12

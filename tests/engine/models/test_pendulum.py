@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import EnergyReference
-from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
 
 ENERGY = Pendulum(9.81).energy()
 
@@ -42,3 +42,11 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
 def test_errors_are_relative_to_the_start_or_to_the_separatrix():
     assert Pendulum(9.81).reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
     assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, 2 * 9.81)
+
+
+@given(theta=st.floats(-3, 3), omega=st.floats(-3, 3))
+def test_the_level_of_the_oscillator_is_the_pendulums_for_small_swings(theta, omega):
+    """1 - E/E_separatrix = 1 - E/(2 w0²), less the 1 of rest, where E = w0² amplitude²/2."""
+    amplitude = math.hypot(theta, omega / math.sqrt(9.81))
+    level = LinearOscillator(9.81).level(theta, omega)
+    assert level == pytest.approx(-(amplitude**2) / 4)

@@ -77,3 +77,9 @@ def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing():
 def test_the_true_motion_of_too_fast_a_spring_is_not_known():
     assert math.isfinite(Spring(9.81, 1e6).exact(1.0, 0.0).at(0.1).theta)
     assert all(map(math.isnan, Spring(9.81, 1e14).exact(1.0, 0.0).at(30.0)))
+
+
+@pytest.mark.parametrize(("ratio", "followed"), [(319.0, True), (321.0, False)])
+def test_a_spring_that_is_too_fast_has_no_reference(ratio, followed):
+    exact = Spring(9.81, ratio**2 * 9.81).exact(1.0, 0.0)
+    assert math.isfinite(exact.at(0.01).theta) == followed

@@ -1,6 +1,7 @@
 """Every state of a run that goes back and forth equals that of a lockstep that goes forwards."""
 
 import itertools
+import math
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -56,6 +57,23 @@ def test_a_run_is_in_its_past_until_it_reaches_its_furthest_step():
         past.append(course.in_past)
         course.sample()
     assert past == [False, True, False]
+
+
+def test_the_way_home_is_of_whole_steps_that_lie_ahead():
+    course = RewindableRun(DEFAULT_SCENE)
+    assert course.home == math.inf  # it is there
+    course.forward(10)
+    assert course.home == math.inf
+    course.change(Stepping(-DEFAULT_SCENE.h))
+    course.forward(4)
+    assert course.home == 20
+    course.forward(5)
+    assert course.home == 20
+    course.forward(1)
+    assert course.home == math.inf
+    course.go_to(14)
+    course.change(Stepping(-0.04))  # it would pass 0 between two steps
+    assert course.home == math.inf
 
 
 def test_a_change_at_the_step_gone_back_to_is_still_ahead():

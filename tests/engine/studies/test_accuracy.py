@@ -1,5 +1,6 @@
 """Speed against accuracy: errors against the exact swing, costs counted, orders as claimed."""
 
+import dataclasses
 import itertools
 import math
 from dataclasses import replace
@@ -8,10 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.methods import USUAL_CAST, Method
+from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.scenes import SCENES, SceneError
-from pendu_tui.engine.studies.accuracy import Study, ladder, orders, rounding_floor, timed
+from pendu_tui.engine.studies.accuracy import (
+    Study,
+    compilable,
+    ladder,
+    orders,
+    rounding_floor,
+    timed,
+    usual,
+)
 
 E, S, V, R = USUAL_CAST
 LOOPS = compiled if available() else PlainLoops  # the same bits
@@ -119,6 +129,51 @@ def test_at_rest_there_is_no_error():
     point = Study(DRIFT.altered(theta=0.0), 1.0).run(R, 10)
     assert (point.theta_error, point.energy_error) == (0.0, 0.0)
     assert [order.measured for order in orders(DRIFT.altered(theta=0.0), 1.0)] == [None] * 4
+
+
+def test_an_error_as_large_as_the_swing_is_lost_and_one_below_the_floor_is_rounding():
+    study = Study(DRIFT, 20.0)
+    energy, theta = (20 * floor for floor in rounding_floor(DRIFT, 20.0))  # of 400 steps
+    for share, flaw in ((1.001, None), (0.999, "rounding")):
+        assert set(study.flaws((share * theta, share * energy, share * theta), 400)) == {flaw}
+    assert study.sizes == pytest.approx({"theta": 1.0, "energy": 1.0, "final": 1.0})
+    for share, flaw in ((0.999, None), (1.001, "lost")):
+        assert set(study.flaws((share, share, share), 400)) == {flaw}
+    assert Study(SCENES["spin"], 20.0).sizes["theta"] == math.pi
+
+
+@pytest.mark.parametrize(("all_methods", "largest", "rungs"), [(False, 0.6, 12), (True, 2.4, 14)])
+def test_by_default_ten_small_swings_take_up_to_four_thousand_steps_each(
+    all_methods, largest, rungs
+):
+    time, steps = usual(DRIFT, all_methods)
+    assert time == 20.0
+    assert len(steps) == rungs
+    z = [time / steps[end] * DRIFT.w0 for end in (0, -1)]
+    assert z == pytest.approx([largest, 0.0015], rel=0.02)  # whole steps
+
+
+def test_seconds_are_of_compiled_loops_only_if_all_methods_can_be_compiled():
+    fields = {each.name: getattr(R, each.name) for each in dataclasses.fields(Method)}
+    own = OwnMethod(**fields, measured=None, source="", file="")
+    assert compilable((E, R)) == available()
+    assert not compilable((E, own))
+
+
+def test_short_runs_are_timed_many_at_a_time():
+    calls = []
+
+    class Counting:
+        def __init__(self, method, model):
+            pass
+
+        def propagate(self, phase, h, n):
+            calls.append(n)
+
+    point = Study(DRIFT, 10.0).run(R, 100)
+    seconds = timed(point, DRIFT, lambda: 0.01 * len(calls), Counting).seconds
+    assert calls == [1, 100] + 5 * 200 * [100]  # 20 000 steps a measurement
+    assert seconds == pytest.approx(0.01)
 
 
 def test_seconds_are_the_shortest_of_several_runs_with_their_spread():

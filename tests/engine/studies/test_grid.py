@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -6,7 +7,16 @@ import pytest
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.engine.studies.stability import HOLDS, UNKNOWN, Grid, map_of, outcomes, pieces
+from pendu_tui.engine.studies.stability import (
+    HOLDS,
+    UNKNOWN,
+    Grid,
+    amplitude,
+    ladder_of,
+    map_of,
+    outcomes,
+    pieces,
+)
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_way = pytest.mark.parametrize(
@@ -54,4 +64,28 @@ def test_the_default_map_reaches_beyond_every_limit(cast):
     assert grid.shape == (200, len(cast), 100)
     limits = [method.linear_limit for method in cast if method.linear_limit < np.inf]
     assert max(limits) < grid.z[-1] < 3.5
+    assert grid.z[-1] == pytest.approx(3.5 if max(limits) > 3 else 3.0, abs=0.01)
     assert 0 < grid.theta[0] < grid.theta[-1] < np.pi
+
+
+@pytest.mark.parametrize(
+    ("theta", "omega", "expected"),
+    [
+        (-0.7, 0.0, 0.7),
+        (0.0, 2 * Scene().w0 * math.sin(0.6), 1.2),
+        (0.0, 1.999 * Scene().w0, 3.0784),  # 2 asin(0.9995)
+        (0.0, 2.001 * Scene().w0, None),
+        (0.0, 0.0, None),
+    ],
+)
+def test_an_amplitude_is_that_of_the_exact_swing(theta, omega, expected):
+    assert amplitude(Scene(theta=theta, omega=omega)) == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_ladder_has_the_scenes_own_step_and_amplitude():
+    own = ladder_of(Scene(theta=1.02, h=0.123), None, None, 100)
+    assert own.theta.tolist() == [0.1, 0.5, 1.0, 1.02, 2.0, 3.0]
+    assert Scene(h=0.123).z in own.z
+    near = ladder_of(Scene(theta=1.005), None, [0.1, 0.2], 100)
+    assert near.theta.tolist() == [0.1, 0.5, 1.005, 2.0, 3.0]
+    assert near.z.tolist() == sorted([0.1, 0.2, Scene().z])

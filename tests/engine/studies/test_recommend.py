@@ -121,3 +121,12 @@ def test_no_recommended_step_is_longer_than_half_a_swing(kind):
     scene = DRIFT.altered(theta=0.02)
     for attempt in least_cost(Study(scene, 100.0, LOOPS), kind, 1e-3).attempts:
         assert not attempt.succeeded or attempt.point.z <= math.pi
+
+
+def test_a_method_far_dearer_than_another_is_given_up():
+    attempts = list(reach(Study(replace(DRIFT, cast=(E, R)), 10.0, LOOPS), "theta", 1e-5))
+    assert [attempt.method for attempt in attempts] == [R, E]  # the higher order first
+    cheapest, dear = attempts
+    assert cheapest.succeeded
+    assert not dear.succeeded
+    assert dear.point.force_evaluations <= MAX_TIMES * cheapest.point.force_evaluations

@@ -81,3 +81,9 @@ def test_they_go_back_with_the_run_and_begin_again_with_another():
     assert np.array_equal(
         rings(neighbours, gentle), expected((4, gentle.scene.h), scene=gentle.scene)
     )
+
+
+def test_a_ring_is_as_wide_in_theta_as_in_omega_over_w0():
+    (theta, omega), *_ = Neighbourhood(DRIFT, 0.05).rings
+    assert np.ptp(theta) == pytest.approx(2 * 0.05)
+    assert np.ptp(omega) == pytest.approx(2 * 0.05 * DRIFT.w0)

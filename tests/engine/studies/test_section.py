@@ -150,3 +150,8 @@ def test_the_nearest_fraction_is_a_small_one():
     rotations = 0.2499, 0.1672, 0.0159, 0.38, 1.0001, 0.0
     found = [str(nearest_fraction(rotation)) for rotation in rotations]
     assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0"]
+
+
+def test_the_lyapunov_number_is_chirikovs_per_step():
+    found = kind(VERLET, 1.0, math.sqrt(20), omega=0.3)  # K = 20
+    assert found.lyapunov == pytest.approx(math.log(10), rel=0.05)
