@@ -40,8 +40,8 @@ def implicit(share: float) -> Phases:
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         if any(hasattr(value, "shape") for value in (*phase, h)):
-            return for_arrays()(force, phase, h)
-        return for_numbers(force, phase, h)
+            yield from for_arrays()(force, phase, h)
+        yield from for_numbers(force, phase, h)
 
     COMPILABLE[implicit_steps] = for_arrays
     return implicit_steps
