@@ -11,6 +11,7 @@ from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, SceneError
+from tests.sine import needs_rounded_sine
 from tests.truths import LIMITS
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -177,7 +178,13 @@ FACTS = {  # seconds, steps from a sample to the next, and what of which method 
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", FACTS)
+WITH_MARKS = [
+    pytest.param(name, marks=needs_rounded_sine if name == "precision-deep" else ())
+    for name in FACTS
+]
+
+
+@pytest.mark.parametrize("name", WITH_MARKS)
 def test_what_a_scene_tells_people_to_watch_happens(name):
     seconds, every, facts = FACTS[name]
     samples = watch(name, seconds, every)

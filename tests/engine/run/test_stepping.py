@@ -11,6 +11,7 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SceneError
+from tests.sine import needs_rounded_sine
 
 STEPPINGS = st.builds(
     lambda h, equal_cost: Stepping(h, equal_cost),  # st.builds would also choose the cast
@@ -73,6 +74,7 @@ def test_a_step_is_made_with_the_last_change_before_it():
     assert found == [first, first, EQUAL]
 
 
+@needs_rounded_sine
 @pytest.mark.parametrize("index", range(len(USUAL_CAST)), ids=[method.key for method in USUAL_CAST])
 def test_a_method_takes_the_step_in_its_own_parts(index):
     equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import time
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from signal import SIGINT, SIGTERM
@@ -138,7 +139,11 @@ def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, comm
     for name in ("one.toml", "one.py", "one.csv"):
         Path(name).write_text("theta = 1.0\n", encoding="utf-8")
     Path("one.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes()[:-500])
-    Path("link.mcap").symlink_to("one.mcap")
+    if "link.mcap" in command:
+        with suppress(OSError):
+            Path("link.mcap").symlink_to("one.mcap")
+        if not Path("link.mcap").is_symlink():
+            pytest.skip("needs symbolic links")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     assert pendu(*command.split()).refused(2, "is read by this command")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
