@@ -164,9 +164,9 @@ def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
     """Write what is intact of `path` to `out`, which appears only when it is complete.
 
     No number is repaired, guessed or changed, but the extremes of the first sample after a gap: the
-    steps before it are lost.  Returns the fields of the report.  `damaged` is False if the recording was only unfinished;
-    `runs_lost` counts runs whose start is lost.  Raises RecordingError if nothing can be saved,
-    DiskError if `out` cannot be written.
+    steps before it are lost.  Returns the fields of the report.  `damaged` is False if the
+    recording was only unfinished; `runs_lost` counts runs whose start is lost.  Raises
+    RecordingError if nothing can be saved, DiskError if `out` cannot be written.
     """
     with Recording.open(path, check=True) as recording:
         recorder = Recorder(out, overwrite)

@@ -1,7 +1,8 @@
 """The commands: what each does, the names of its options, and examples.
 
 The names are those of OPTIONS, or in capitals of GROUPS, in tui/commands/options.py.  This module
-imports nothing, because `pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
+imports nothing, because `pendu-tui --help` prints it.  A word in braces in an example is a text
+that the options bring.
 """
 
 from typing import NamedTuple

@@ -213,24 +213,13 @@ def _report(
     wall_seconds: float,
 ) -> Report:
     sample = samples[-1]
-    notes = [
-        sentence(milestone_insight(milestone, scene.equations.conserves_energy))
-        for milestone in lockstep.milestones
-        if milestone.kind in ("over the top", "errors cross")
-    ]
-    for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
-        if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
-            notes.append(f"{method.label} is undecided: {judgement.reason}.")
-        insight = irregular(method, judgement, 0.0)
-        if judgement.lyapunov and insight:
-            notes.append(sentence(insight))
     return Report(
         name="run",
         title=f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
         f"{counted(sample.step, 'step')} to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
         columns=columns_of(scene, quantity_column(quantities.TREND)),
         rows=rows,
-        notes=notes,
+        notes=list(_notes(scene, lockstep)),
         fields={
             "scene": scene.fields(),
             "time": sample.t,
@@ -247,6 +236,19 @@ def _report(
             log="y",
         ),
     )
+
+
+def _notes(scene: Scene, lockstep: Lockstep) -> Iterator[str]:
+    """Yield what happened, why a method is undecided, and how fast orbits separate."""
+    for milestone in lockstep.milestones:
+        if milestone.kind in ("over the top", "errors cross"):
+            yield sentence(milestone_insight(milestone, scene.equations.conserves_energy))
+    for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
+        if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
+            yield f"{method.label} is undecided: {judgement.reason}."
+        insight = irregular(method, judgement, 0.0)
+        if judgement.lyapunov and insight:
+            yield sentence(insight)
 
 
 def for_json(rows: Sequence[Row]) -> list[Row]:
