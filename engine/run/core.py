@@ -22,76 +22,217 @@ class Bins(NamedTuple):
     highs: Any
     spreads: Any  # standard deviations within each
     rounding: float  # differences up to this mean nothing
-    sizes: Any = None  # samples in each, if they may be independent
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        columns = {name: value[-count:] for name, value in self._asdict().items() if np.ndim(value)}
-        return self._replace(**columns)
+        *columns, rounding = self
+        return Bins(*(column[-count:] for column in columns), rounding)
 
-    @property
-    def length(self) -> float:
-        """The time of all bins, whose middles cover one less."""
-        count = len(self.times)
-        return float(self.times[-1] - self.times[0]) * count / (count - 1)
-
-    @property
-    def white(self) -> float:
-        """The variance of the bins' means if all samples were independent; 0 if unknown."""
-        return 0.0 if self.sizes is None else float((self.spreads**2 / (self.sizes - 1)).mean())
+    def scaled(self, factor: float) -> "Bins":
+        """Return the bins of energies multiplied by a factor."""
+        times, *energies = self
+        return Bins(times, *(each * factor for each in energies))
 
 
 class Part:
-    """A part of the bins up to the end, with the slope of one value of each."""
+    """Some bins up to the end, and the slope of one value of each."""
 
-    def __init__(self, bins: Bins, values: Any, are_means: bool = False) -> None:
+    def __init__(self, bins: Bins, values: Any) -> None:
         self.bins = bins
         self.values = values
-        self.are_means = are_means
-        white = bins.white if are_means else 0.0
-        self.slope = slope_of(bins.times, values, bins.rounding, white)
+        self.slope = slope_of(bins.times, values, bins.rounding)
+        count = len(values)
+        # the middles of the bins cover one bin less
+        self.length = float(bins.times[-1] - bins.times[0]) * count / (count - 1)
+        self.move = self.slope.mean * self.length  # what the slope adds up to
         line = self.slope.mean * (bins.times - bins.times.mean()) + values.mean()
-        within = float((bins.spreads**2).mean())
-        between = float(((bins.means - line) ** 2).mean())
-        self.fluctuation = max(math.sqrt(within + between), bins.rounding)
-        self.width = max(float((bins.highs - line).max() - (bins.lows - line).min()), bins.rounding)
+        variances = bins.spreads**2 + (bins.means - line) ** 2
+        self.fluctuation = max(math.sqrt(variances.mean()), bins.rounding)
+        width = float((bins.highs - line).max() - (bins.lows - line).min())
+        self.width = max(width, bins.rounding)
 
     def last(self, share: float) -> "Part":
         """Return the last bins, at least 4."""
         count = max(4, round(len(self.values) * share))
-        return Part(self.bins.last(count), self.values[-count:], self.are_means)
+        return Part(self.bins.last(count), self.values[-count:])
+
+    def exceeds(self, level: float, move: float) -> bool:
+        """Return whether a move is so many standard deviations of the fluctuation."""
+        return abs(move) >= max(level * self.fluctuation, self.bins.rounding)
+
+    def why_not_bounded(self, ahead: float = 1.0) -> str:
+        """Return the reason; "" if it is bounded.
+
+        `ahead` is for how many times its length it must stay in its band; beyond 1, no drift is so
+        small that it does not count.
+        """
+        if self._widens:
+            return levels.WIDENS
+        chance = self.slope.chance
+        if chance > levels.SUSPECT and not self._ends_alike:
+            return levels.UNLIKE_END
+        limit = self.width / self.length / ahead
+        if self.slope.bound > limit:
+            return self._open((3 * self.slope.uncertainty / limit) ** 2)
+        suspect = ahead > 1 or self.exceeds(levels.MATERIAL, self.move)
+        if self.exceeds(levels.LARGE, self.move) or (suspect and chance < levels.SUSPECT):
+            return self._open(2.0) if is_new(self.values, self.values, self.move) else levels.TURNED
+        return "" if self._ends_alike else levels.UNLIKE_END
 
     @property
-    def move(self) -> float:
-        """What the slope adds up to."""
-        return self.slope.mean * self.bins.length
-
-    @property
-    def is_material(self) -> bool:
-        return abs(self.move) >= max(levels.MATERIAL * self.fluctuation, self.bins.rounding)
-
-    @property
-    def is_large(self) -> bool:
-        return abs(self.move) >= max(levels.LARGE * self.fluctuation, self.bins.rounding)
-
-    @property
-    def widens(self) -> bool:
+    def _widens(self) -> bool:
         """Whether the band is wider from quarter to quarter, and far wider at the end."""
         widths = self.bins.highs - self.bins.lows + 2 * self.bins.spreads
-        sizes = [float(part.mean()) for part in np.array_split(widths, 4)]
-        return sizes == sorted(sizes) and sizes[3] > levels.WIDENING * (
-            sizes[0] + self.bins.rounding
-        )
+        quarters = [float(part.mean()) for part in np.array_split(widths, 4)]
+        start = quarters[0] + self.bins.rounding
+        return quarters == sorted(quarters) and quarters[3] > levels.WIDENING * start
 
     @property
-    def ends_alike(self) -> bool:
+    def _ends_alike(self) -> bool:
         """Whether the last parts are like others of their size, or hardly differ."""
         for count in levels.ENDS:
             *others, end = blocks_of(self.values, max(1, len(self.values) // count))
-            is_material = abs(end - np.mean(others)) > levels.MATERIAL * self.fluctuation
-            if is_material and not is_like(end, np.array(others), levels.UNLIKE):
+            differs = self.exceeds(levels.MATERIAL, end - float(np.mean(others)))
+            if differs and not is_like(end, np.array(others), levels.UNLIKE):
                 return False
         return True
+
+    def _open(self, factor: float) -> str:
+        """Return the reason where a trend is not excluded, with how much longer would decide."""
+        if self.slope.walk > 0.5:
+            return levels.WALKS
+        if not 1 < factor < 100:
+            return levels.OPEN.format(longer=levels.UNKNOWN)
+        return levels.OPEN.format(longer=levels.LONGER.format(factor=max(factor, 1.5)))
+
+
+def judge_bins(bins: Bins, ahead: float = 1.0) -> Judgement:
+    """Judge bins; `ahead` as in Part.why_not_bounded."""
+    unit, whole = _whole(bins)
+    found = _moved(whole) or _rested(whole)
+    if not found:
+        reason = whole.why_not_bounded(ahead)
+        found = _described(UNDECIDED if reason else BOUNDED, whole)._replace(reason=reason)
+    return found.scaled(unit)
+
+
+def measure_bins(bins: Bins) -> Judgement:
+    """Return the slope of bins with its bounds, undecided."""
+    unit, whole = _whole(bins)
+    return _described(UNDECIDED, whole).scaled(unit)
+
+
+def _whole(bins: Bins) -> tuple[float, Part]:
+    """Return a unit of energy in which squares do not overflow, and all bins in it.
+
+    A sampled oscillation moves the means of bins slowly, but not the middles of their bands; noise
+    moves the middles more.  A wave is no trend.
+    """
+    unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
+    bins = bins.scaled(1 / unit)
+    parts = (Part(bins, bins.means), Part(bins, (bins.lows + bins.highs) / 2))
+    whole = min(parts, key=lambda part: part.slope.uncertainty)
+    rest = without_wave(bins.times, whole.values)
+    return unit, whole if rest is whole.values else Part(bins, rest)
+
+
+def _described(verdict: str, part: Part) -> Judgement:
+    slope = part.slope
+    spread = max(slope.uncertainty * part.length, 1e-300)
+    return Judgement(
+        verdict,
+        slope=slope.mean,
+        uncertainty=slope.uncertainty,
+        bound=slope.bound,
+        share=part.move / part.width,
+        is_evident=slope.chance < levels.EVIDENT,
+        independent=12 * (part.fluctuation / spread) ** 2,
+        fluctuation=part.fluctuation,
+    )
+
+
+def _moved(whole: Part) -> Judgement | None:
+    """Return the judgement if the energy moves for good, in one of the windows up to the end."""
+    ranks = np.unique(whole.values, return_inverse=True)[1].astype(float)
+    for share in levels.WINDOWS:
+        part = whole.last(share)
+        if not part.exceeds(levels.MATERIAL, part.move):
+            continue
+        last_ranks = ranks[-len(part.values) :]
+        ranked = slope_of(part.bins.times, last_ranks, 1.0)
+        rises = ranked.mean * part.length
+        for slope, level, values, move in (
+            (part.slope, levels.MOVES, whole.values, part.move),
+            (ranked, levels.MOVES_BY_RANK, ranks, rises),
+        ):
+            is_certain = slope.chance < level * share and move * part.move > 0
+            if is_certain and is_new(values, values[-len(part.values) :], move):
+                return _described(GROWS if part.move > 0 else LOSES, whole)
+    return None
+
+
+def _rested(whole: Part) -> Judgement | None:
+    """Return the judgement if the energy has left its start, and perhaps rests elsewhere now.
+
+    It rests in the longest part up to the end that is bounded and away from the start.  It has left
+    for good, too, if its present band is small beside the way there.
+    """
+    gone = None
+    for share in levels.RESTS:
+        part = whole.last(share)
+        low = float(part.bins.lows.min())
+        high = float(part.bins.highs.max())
+        is_gone = max(low, -high) > levels.GONE * max(high - low, part.bins.rounding)
+        rises = low > 0
+        if not is_gone:
+            way = _way_from_start(whole, part)
+            if not way:
+                continue
+            rises = way > 0
+        rests = not part.why_not_bounded()
+        found = _described(GROWS if rises else LOSES, part)._replace(rests=rests)
+        if rests:
+            return found
+        if is_gone and not gone:
+            gone = found
+    return gone
+
+
+def _way_from_start(whole: Part, part: Part) -> float:
+    """Return how far a part is from a start that does not belong to it; 0 if it does.
+
+    Nothing before the part may lie beyond either.
+    """
+    size = max(1, len(whole.values) // 16)
+    first = whole.values[:size]
+    start = float(np.median(first))
+    level = float(part.values.mean())
+    belongs = is_like(start, blocks_of(part.values, size), levels.UNLIKE_START)
+    if belongs or not part.exceeds(levels.MATERIAL, level - start):
+        return 0.0
+    margin = part.width / 2
+    between = whole.values[: len(whole.values) - len(part.values)]
+    lowest = min(float(first.min()), level) - margin
+    highest = max(float(first.max()), level) + margin
+    return level - start if lowest <= between.min() and between.max() <= highest else 0.0
+
+
+def growth_of(bins: Bins) -> float | None:
+    """Return the slope of ln of the energy, from errors beyond E0, if it is the straighter."""
+    if bins.lows[-1] <= 1:
+        return None
+    logarithms = np.log1p(np.maximum(bins.means, 0))
+    bend, way = _bend_and_way(logarithms)
+    linear_bend, linear_way = _bend_and_way(bins.means / bins.means[-1])
+    if abs(bend * linear_way) > abs(linear_bend * way):
+        return None
+    return way / float(bins.times[-1] - bins.times[0])
+
+
+def _bend_and_way(values: Any) -> tuple[float, float]:
+    first = float(values[len(values) // 2] - values[0])
+    way = float(values[-1] - values[0])
+    return way - 2 * first, way
 
 
 def blocks_of(values: Any, size: int) -> Any:
@@ -107,194 +248,29 @@ def is_like(value: float, others: Any, level: float) -> bool:
     return 2 * min(below, 1 - below) > level
 
 
-def judge_bins(bins: Bins, steady: bool = False) -> Judgement:
-    """Judge bins.  `steady`: those of a run, which must not drift at all to be bounded."""
-    unit, bins = _normalized(bins)
-    return _Core(bins, steady).judgement().scaled(unit)
-
-
-def measure_bins(bins: Bins) -> Judgement:
-    """Return the slope of bins with its bounds, undecided."""
-    unit, bins = _normalized(bins)
-    return _Core(bins, steady=True).described(UNDECIDED).scaled(unit)
-
-
-def _normalized(bins: Bins) -> tuple[float, Bins]:
-    """Return a unit of energy, and the bins in it, whose squares do not overflow."""
-    unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
-    scaled = (each / unit for each in (bins.means, bins.lows, bins.highs, bins.spreads))
-    means, lows, highs, spreads = scaled
-    rounding = bins.rounding / unit
-    return unit, Bins(bins.times, means, lows, highs, spreads, rounding, bins.sizes)
-
-
-def growth_of(bins: Bins) -> float | None:
-    """Return the slope of ln of the energy, from errors beyond E0, if it is the straighter."""
-    if bins.lows[-1] <= 1:
-        return None
-    logarithms = np.log1p(np.maximum(bins.means, 0))
-    logarithmic = slope_of(bins.times, logarithms, bins.rounding)
-    _, bins = _normalized(bins)
-    linear = slope_of(bins.times, bins.means, bins.rounding)
-    is_straighter = logarithmic.mean * linear.deviation > linear.mean * logarithmic.deviation
-    return logarithmic.mean if is_straighter else None
-
-
-class _Core:
-    def __init__(self, bins: Bins, steady: bool) -> None:
-        self._steady = steady
-        means = Part(bins, bins.means, are_means=True)
-        middles = Part(bins, (bins.lows + bins.highs) / 2)
-        # a sampled oscillation moves the means slowly, but not the band; noise moves the band more
-        whole = min(means, middles, key=lambda part: part.slope.deviation)
-        cycles, waves = wave(bins.times, whole.values)
-        if cycles >= levels.MIN_CYCLES:
-            whole = Part(bins, whole.values - waves)
-        self._whole = whole
-
-    def judgement(self) -> Judgement:
-        whole = self._whole
-        if moved := self._moves():
-            return self.described(moved)
-        if rest := self._rests():
-            rises = rest.values.mean() > whole.values[0]
-            return self.described(GROWS if rises else LOSES, rest)._replace(rests=True)
-        if gone := self._gone():
-            return gone
-        why = self._why_not_bounded(whole, self._steady)
-        if not why:
-            return self.described(BOUNDED)
-        return self.described(UNDECIDED)._replace(reason=why)
-
-    def described(self, verdict: str, part: Part | None = None) -> Judgement:
-        part = part or self._whole
-        slope = part.slope
-        uncertainty = slope.within(levels.ONE_SIGMA, slope.mean)
-        independent = 12 * (part.fluctuation / max(uncertainty * part.bins.length, 1e-300)) ** 2
-        return Judgement(
-            verdict,
-            slope=slope.mean,
-            uncertainty=uncertainty,
-            bound=slope.within(levels.CERTAIN),
-            share=part.move / part.width,
-            is_evident=slope.chance() < levels.EVIDENT,
-            independent=independent,
-            fluctuation=part.fluctuation,
-        )
-
-    def _moves(self) -> str | None:
-        """Return whether the energy grows or loses, in one of the windows up to the end."""
-        ranks = _ranks(self._whole.values)
-        for share in levels.WINDOWS:
-            part = self._whole.last(share)
-            if not part.is_material:
-                continue
-            ranked = slope_of(part.bins.times, ranks[-len(part.values) :], 1.0)
-            rises = ranked.mean * part.bins.length
-            moves = part.slope.chance() < levels.MOVES * share and _is_new(
-                self._whole.values, part, part.move
-            )
-            steadily = ranked.chance() < levels.MOVES_BY_RANK * share and _is_new(
-                ranks, part, rises
-            )
-            if moves or (steadily and rises * part.move > 0):
-                return GROWS if part.move > 0 else LOSES
-        return None
-
-    def _why_not_bounded(self, part: Part, steady: bool) -> str:
-        """Return the reason; "" if it is bounded."""
-        slope = part.slope
-        chance = slope.chance()
-        if chance > levels.SUSPECT and part.widens:
-            return levels.WIDENS
-        if chance > levels.SUSPECT and not part.ends_alike:
-            return levels.UNLIKE_END
-        limit = part.width / part.bins.length
-        ahead = levels.AHEAD if steady else 1.0
-        if slope.around(0.0, limit / ahead) < levels.CERTAIN:
-            return self._open(part, (self._spread(part) * ahead / limit) ** 2)
-        if part.is_large or (chance < levels.SUSPECT and part.is_material):
-            if not _is_new(self._whole.values, part, part.move):
-                return levels.TURNED
-            return self._open(part, 2.0)
-        if steady and not self._is_steady(part):
-            return self._open(part, 2.0)
-        if part.widens:
-            return levels.WIDENS
-        return "" if part.ends_alike else levels.UNLIKE_END
-
-    def _is_steady(self, part: Part) -> bool:
-        half = part.last(0.5).slope
-        return part.slope.chance(True) > levels.STEADY and half.chance(True) > levels.STEADY_HALF
-
-    def _spread(self, part: Part) -> float:
-        return part.slope.within(levels.CERTAIN, part.slope.mean)
-
-    def _open(self, part: Part, factor: float) -> str:
-        """Return the reason where a trend is not excluded, with how much longer would decide."""
-        if part.slope.walk > 0.5:
-            return levels.WALKS
-        if not 1 < factor < 100:
-            return levels.OPEN.format(longer=levels.UNKNOWN)
-        return levels.OPEN.format(longer=levels.LONGER.format(factor=max(factor, 1.5)))
-
-    def _rests(self) -> Part | None:
-        """Return the longest part up to the end that is bounded, away from the start."""
-        values = self._whole.values
-        size = max(1, len(values) // 16)
-        start = float(np.median(values[:size]))
-        first = values[:size]
-        for share in levels.RESTS:
-            part = self._whole.last(share)
-            level = float(part.values.mean())
-            far = abs(start - level) >= levels.MATERIAL * part.fluctuation
-            if not far or is_like(start, blocks_of(part.values, size), levels.UNLIKE_START):
-                continue
-            margin = part.width / 2
-            low = min(float(first.min()), level) - margin
-            high = max(float(first.max()), level) + margin
-            between = values[: len(values) - len(part.values)]
-            within = low <= between.min() and between.max() <= high
-            if within and not self._why_not_bounded(part, steady=False):
-                return part
-        return None
-
-    def _gone(self) -> Judgement | None:
-        """Return the judgement where the present band is small beside its way from the start."""
-        for share in levels.RESTS:
-            part = self._whole.last(share)
-            low = float(part.bins.lows.min())
-            high = float(part.bins.highs.max())
-            if max(low, -high) > levels.GONE * max(high - low, part.bins.rounding):
-                rests = not self._why_not_bounded(part, steady=False)
-                return self.described(GROWS if low > 0 else LOSES, part)._replace(rests=rests)
-        return None
-
-
-def _is_new(values: Any, part: Part, move: float) -> bool:
-    """Return whether values end where they have not been before a part that moves them so far."""
-    count = len(part.values)
-    size = max(1, count // 8)
+def is_new(values: Any, last: Any, move: float) -> bool:
+    """Return whether the last values, which move so far, end where none have been before."""
+    size = max(1, len(last) // 8)
     way = math.copysign(1.0, move)
-    end = way * float(values[-size:].mean())
+    end = way * float(last[-size:].mean())
 
-    def beyond(past: Any) -> float:
-        return end - float((way * blocks_of(past, size)).max())
+    def beyond(past: Any, distance: float) -> bool:
+        return end - float((way * blocks_of(past, size)).max()) >= distance * abs(move)
 
-    before = values[: len(values) - count]
-    is_new = len(before) < size or beyond(before) >= levels.NEW * abs(move)
-    return is_new and beyond(values[: len(values) - count // 2]) >= levels.NEW / 2 * abs(move)
+    before = values[: len(values) - len(last)]
+    if len(before) >= size and not beyond(before, levels.NEW):
+        return False
+    return beyond(values[: len(values) - len(last) // 2], levels.NEW / 2)
 
 
-def wave(times: Any, values: Any) -> tuple[float, Any]:
-    """Return the cycles of the wave that explains what a line leaves, and it; 0: there is none."""
+def without_wave(times: Any, values: Any) -> Any:
+    """Return values without the wave that explains what a line leaves; if none does, as they are."""
     x = (times - times[0]) / (times[-1] - times[0])
     level = np.full_like(x, 1 / math.sqrt(len(x)))
     line = _unit(_without(x, (level,)))
     rest = _without(values, (level, line))
-    square = float((rest * rest).sum())
-    cycles = np.arange(0.5, len(x) / 2, 0.25)
-    for enough, step in ((0.5, 0.25 / 25), (levels.WAVE, 0.0)):
+    cycles = np.arange(levels.MIN_CYCLES, len(x) / 2, 0.25)
+    for steps in (np.arange(-25, 26) / 100, np.zeros(1)):
         angles = math.tau * cycles[:, None] * x
         cosines = _unit(_without(np.cos(angles), (level, line)))
         sines = _unit(_without(np.sin(angles), (level, line, cosines)))
@@ -302,17 +278,16 @@ def wave(times: Any, values: Any) -> tuple[float, Any]:
         by_sines = (sines * rest).sum(axis=1)
         explained = by_cosines**2 + by_sines**2
         best = int(np.argmax(explained))
-        if explained[best] < enough * square:
-            return 0.0, None
-        found = float(cycles[best])
-        cycles = found + step * np.arange(-25, 26)
+        cycles = cycles[best] + steps
+    if explained[best] < levels.WAVE * float((rest * rest).sum()):
+        return values
     cosine = np.cos(angles[best])
     sine = np.sin(angles[best])
     # of the wave itself: what it has in common with a line is no part of the line
     by_sine = by_sines[best] / float((sine * sines[best]).sum())
-    rest = by_cosines[best] - by_sine * float((sine * cosines[best]).sum())
-    by_cosine = rest / float((cosine * cosines[best]).sum())
-    return found, by_cosine * cosine + by_sine * sine
+    left = by_cosines[best] - by_sine * float((sine * cosines[best]).sum())
+    by_cosine = left / float((cosine * cosines[best]).sum())
+    return values - by_cosine * cosine - by_sine * sine
 
 
 def _without(rows: Any, basis: tuple[Any, ...]) -> Any:
@@ -324,9 +299,3 @@ def _without(rows: Any, basis: tuple[Any, ...]) -> Any:
 
 def _unit(rows: Any) -> Any:
     return rows / np.maximum(np.sqrt((rows * rows).sum(axis=-1, keepdims=True)), 1e-300)
-
-
-def _ranks(values: Any) -> Any:
-    ranks = np.empty(len(values))
-    ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
-    return ranks

@@ -60,18 +60,22 @@ def stride(period: float, h: float) -> int:
 
 
 class _Bin(NamedTuple):
-    """A part of a run."""
+    """Sums over the look points of a part of a run, and its lowest and highest error."""
 
-    step: float  # its middle
-    mean: float  # of the errors at its look points
+    count: int
+    steps: float
+    errors: float
     low: float
     high: float
 
     def joined(self, other: "_Bin") -> "_Bin":
-        """Return the bin of both, which are equally long."""
-        step = (self.step + other.step) / 2
-        mean = (self.mean + other.mean) / 2
-        return _Bin(step, mean, min(self.low, other.low), max(self.high, other.high))
+        return _Bin(
+            self.count + other.count,
+            self.steps + other.steps,
+            self.errors + other.errors,
+            min(self.low, other.low),
+            max(self.high, other.high),
+        )
 
 
 class Bands:
@@ -82,20 +86,19 @@ class Bands:
 
     def __init__(self) -> None:
         self.bins: list[_Bin] = []
-        self._open: list[_Bin] = []
+        self._open: _Bin | None = None
         self._size = 1  # look points in a bin
 
     def add(self, each: _Bin) -> bool:
         """Add a look point; return whether a bin is full."""
-        self._open = [*self._open, each]
-        if len(self._open) < self._size:
+        self._open = self._open.joined(each) if self._open else each
+        if self._open.count < self._size:
             return False
-        while len(self._open) > 1:
-            self._open = _merged(self._open)
-        self.bins = [*self.bins, *self._open]
-        self._open = []
+        self.bins = [*self.bins, self._open]
+        self._open = None
         if len(self.bins) == levels.MAX_BINS:
-            self.bins = _merged(self.bins)
+            pairs = zip(self.bins[::2], self.bins[1::2], strict=True)
+            self.bins = [earlier.joined(later) for earlier, later in pairs]
             self._size *= 2
         return True
 
@@ -107,10 +110,9 @@ class Bands:
     @property
     def one_way(self) -> float:
         """The share of moves from bin to bin that go the more common way: 0.5 to 1."""
-        middles = [each.low + each.high for each in self.bins]
-        rising = sum(a < b for a, b in pairwise(middles))
-        falling = sum(a > b for a, b in pairwise(middles))
-        return 0.5 + abs(rising - falling) / max(len(middles) - 1, 1) / 2
+        rises = [a.low + a.high < b.low + b.high for a, b in pairwise(self.bins)]
+        rising = sum(rises) / max(len(rises), 1)
+        return max(rising, 1 - rising)
 
     def as_bins(self, h: float, rounding: float) -> "Bins":
         """Return the bins for the core, in seconds."""
@@ -118,13 +120,9 @@ class Bands:
 
         from pendu_tui.engine.run.core import Bins
 
-        steps, means, lows, highs = np.array(self.bins).T
+        counts, steps, errors, lows, highs = np.array(self.bins).T
         spreads = (highs - lows) / math.sqrt(8)  # those of a sine
-        return Bins(steps * h, means, lows, highs, spreads, rounding)
-
-
-def _merged(bins: list[_Bin]) -> list[_Bin]:
-    return [a.joined(b) for a, b in zip(bins[::2], bins[1::2], strict=True)]
+        return Bins(steps / counts * h, errors / counts, lows, highs, spreads, rounding)
 
 
 class Judge:
@@ -136,18 +134,16 @@ class Judge:
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
         self._period = period
-        self._last: LookPoint | None = None
+        self._method = method
+        self._model = model
         self._start_error = 0.0  # at the first look point; bands are relative to it
+        self._last: LookPoint | None = None
         self._judged = 0  # the step of the last judgement
         self._bands = Bands()
-        self._conserved = model.conserves_energy  # else errors are ln(E/E_true)
-        self._epsilon = method.epsilon
-        self._min_energy = (levels.MIN_AMPLITUDE * method.epsilon * model.w0) ** 2  # s⁻²
-        self._returns = method.symplectic
+        self._has_left = False  # at an earlier judgement
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
         self._may_beat = fastest_turn < levels.MIN_STEPS_A_TURN * self._h
-        self._may_escape = not model.turns
         self._orbit: _Orbit | None = None
         if method.symplectic and method.general and not model.without_force:
             self._orbit = _Orbit(method, model, h, period)
@@ -165,112 +161,115 @@ class Judge:
             self._last = point
             self._start_error = point.error
             return
-        if not self._conserved:
-            true_energy = point.energy * math.exp(-point.error)
-            if min(point.energy, true_energy) < self._min_energy:
-                return  # mostly rounding
+        if self._is_rounded(point):
+            return
         if self._orbit:
             self._orbit.look(self._last, point)
-        start = self._start_error
         step = (self._last.step + point.step) / 2
+        start = self._start_error
+        each = _Bin(1, step, point.error - start, point.low - start, point.high - start)
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
-        full = self._bands.add(
-            _Bin(step, point.error - start, point.low - start, point.high - start)
-        )
+        is_full = self._bands.add(each) and len(self._bands.bins) >= levels.MIN_BINS
         is_due = self._swings >= levels.MIN_SWINGS and point.step >= levels.LONGER_BY * self._judged
-        if full and is_due and len(self._bands.bins) >= levels.MIN_BINS:
+        if is_full and is_due:
             self._judged = point.step
             self.judgement = self._judgement()
-        if self._orbit:
-            self._follow(self._orbit)
-        if self.judgement.verdict == UNDECIDED:
-            progress = self._progress()
-            reason = str(progress or self.judgement.reason)
-            self.judgement = self.judgement._replace(progress=progress, reason=reason)
-        self.judgement = self.judgement._replace(periods=self._swings)
-        if self._may_escape and point.error > levels.ESCAPED_ERROR:
-            self.judgement = self.judgement._replace(verdict=GROWS, progress=None, reason="")
+        self._add_evidence(point)
 
     def fail(self, steps: int) -> None:
         """Note that the numbers have ended, so many steps after the first look point."""
         self.judgement = Judgement(FAILED, periods=steps * self._h / self._period)
 
     @property
-    def _steps(self) -> int:
-        return self._last.step if self._last else 0
-
-    @property
     def _swings(self) -> float:
-        return self._steps * self._h / self._period
+        return self._last.step * self._h / self._period if self._last else 0.0
 
-    @property
-    def _rounding(self) -> float:
-        """How far roundings may have carried the error by now."""
-        walk = levels.WALK * self._epsilon * math.sqrt(self._steps)
-        return walk if self._conserved else max(walk, levels.REFERENCE_ERROR)
+    def _is_rounded(self, point: LookPoint) -> bool:
+        """Return whether a damped energy is mostly rounding."""
+        if self._model.conserves_energy:
+            return False
+        true_energy = point.energy * math.exp(-point.error)  # the error is ln(E/E_true)
+        least = (levels.MIN_AMPLITUDE * self._method.epsilon * self._model.w0) ** 2  # s⁻²
+        return min(point.energy, true_energy) < least
+
+    def _add_evidence(self, point: LookPoint) -> None:
+        """Complete the judgement by what is known at each look point."""
+        found = self.judgement._replace(periods=self._swings, progress=None, lyapunov=None)
+        if self._orbit:
+            verdict = self._orbit.verdict(found.verdict, self.peak, self._swings)
+            found = found._replace(verdict=verdict)
+            if verdict == CHAOTIC:
+                found = found._replace(lyapunov=self._orbit.lyapunov)
+        elif not self._model.turns and point.error > levels.ESCAPED_ERROR:
+            found = found._replace(verdict=GROWS)
+        if found.verdict != UNDECIDED:
+            found = found._replace(reason="")
+        elif progress := self._progress():
+            found = found._replace(progress=progress, reason=str(progress))
+        self.judgement = found
 
     def _judgement(self) -> Judgement:
+        """Return the judgement of the core, or what is known better of this run."""
         from pendu_tui.engine.run.core import growth_of, judge_bins, measure_bins
 
-        bins = self._bands.as_bins(self._h, self._rounding)
+        assert self._last
+        # how far roundings may have carried the error by now
+        rounding = levels.WALK * self._method.epsilon * math.sqrt(self._last.step)
+        if not self._model.conserves_energy:
+            rounding = max(rounding, levels.REFERENCE_ERROR)
+        bins = self._bands.as_bins(self._h, rounding)
         if self._orbit:
             measured = measure_bins(bins)
             return measured._replace(verdict=self.judgement.verdict, is_evident=False)
-        found = self._checked(judge_bins(bins, steady=True))
+        found = self._checked(judge_bins(bins, levels.AHEAD), rounding)
         if found.verdict == GROWS:
             found = found._replace(growth=growth_of(bins))
         return found
 
-    def _follow(self, orbit: "_Orbit") -> None:
-        """Give the verdict that is known of an orbit."""
-        verdict = orbit.verdict(self.judgement.verdict, self.peak, self._swings)
-        lyapunov = None
-        if verdict == CHAOTIC and orbit.steps:
-            lyapunov = orbit.log / orbit.steps / self._h
-        found = self.judgement._replace(verdict=verdict, lyapunov=lyapunov)
-        if verdict != UNDECIDED:
-            found = found._replace(progress=None, reason="")
-        self.judgement = found
-
-    def _checked(self, found: Judgement) -> Judgement:
+    def _checked(self, found: Judgement, rounding: float) -> Judgement:
         """Return a judgement of the core, or what is known better of this run."""
         low, high = self._bands.recent()
-        if self._conserved and high + self._start_error < levels.AT_REST:
-            return found._replace(verdict=LOSES, reason="")
-        leaves = found.verdict in LEAVES
-        if leaves and self._returns:
-            return found._replace(verdict=UNDECIDED, reason=levels.RETURNS)
-        straight = self._steps >= levels.LONG and self._bands.one_way >= levels.MIN_ONE_WAY
-        if leaves and self._may_beat and not straight:
-            return found._replace(verdict=UNDECIDED, reason=levels.BEATS)
         away = max(low, -high)  # how far the present band is from the start
-        if found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), self._rounding):
+        if found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
+            self._has_left = True
             return found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
-        if found.verdict == BOUNDED and away > self._rounding:
-            return found._replace(verdict=UNDECIDED, reason=levels.NEAR)
-        if found.verdict == BOUNDED and self._steps < levels.LONG:
-            return found._replace(verdict=UNDECIDED, reason=levels.SHORT)
-        before = self.judgement.verdict
-        if found.verdict == UNDECIDED and before in LEAVES:
+        if found.verdict == UNDECIDED:
+            before = self.judgement.verdict
             beyond = low if before == GROWS else -high
-            if beyond > -levels.AWAY * (high - low):
-                return found._replace(verdict=before, reason="")
-        return found
+            if before in LEAVES and beyond > -levels.AWAY * (high - low):
+                return found._replace(verdict=before)
+            return found
+        is_straight = self._is_long and self._bands.one_way >= levels.MIN_ONE_WAY
+        reason = ""
+        if self._may_beat and not is_straight:
+            reason = levels.BEATS
+        elif found.verdict in LEAVES:
+            self._has_left = True
+            if self._method.symplectic:
+                reason = levels.RETURNS
+        elif away > rounding:
+            reason = levels.NEAR
+        elif self._has_left:
+            reason = levels.TURNED
+        elif not self._is_long:
+            reason = levels.SHORT
+        return found._replace(verdict=UNDECIDED, reason=reason) if reason else found
+
+    @property
+    def _is_long(self) -> bool:
+        return bool(self._last and self._last.step >= levels.LONG)
 
     def _progress(self) -> Progress | None:
         """Return how far it is to the first possible verdict, or else to the last one.
 
         None: a verdict can come any time.
         """
-        steps_a_period = self._period / self._h
-        long = levels.LONG / steps_a_period
-        if self._orbit:
-            need = float(levels.MIN_PERIODS) if self._orbit.is_regular else long
-        elif self._swings < levels.MIN_SWINGS and not self._may_beat:
+        need = levels.LONG * self._h / self._period
+        if self._orbit and self._orbit.is_regular:
+            need = float(levels.MIN_PERIODS)
+        elif not self._orbit and not self._may_beat and self._swings < levels.MIN_SWINGS:
             need = float(levels.MIN_SWINGS)
-        else:
-            need = long
         if self._swings >= need:
             return None
         return Progress(int(self._swings), math.ceil(need), "swings")
@@ -298,6 +297,11 @@ class _Orbit(Stretching):
         needed = self._z > levels.REGULAR_Z and not self._linear
         if needed and self.steps < levels.LYAPUNOV_STEPS:
             self.carry((previous.theta, previous.omega), point.step - previous.step)
+
+    @property
+    def lyapunov(self) -> float | None:
+        """1/s, of the neighbour so far."""
+        return self.log / self.steps / abs(self._h) if self.steps else None
 
     @property
     def is_regular(self) -> bool:

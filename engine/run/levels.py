@@ -9,12 +9,9 @@ MOVES = 1e-3  # of a trend by chance, times the share of the record that shows i
 MOVES_BY_RANK = 1e-5  # likewise, of ranks: growth that is ever faster or slower
 SUSPECT = 0.05  # a material trend that is so unlikely by chance is not called bounded
 EVIDENT = 3e-3  # of a slope by chance: three sigmas
-STEADY = 0.025  # in a run, of a trend by chance, however small, in noises with a level
-STEADY_HALF = 0.006  # in its second half
 UNLIKE = 1e-3  # of an end as unlike the rest
 UNLIKE_START = 1e-4
 CERTAIN = 0.99  # of a bound, and that a trend is smaller than the band
-ONE_SIGMA = 0.68
 # Sizes:
 LARGE = 1.0  # standard deviations: a move that is not bounded, however likely it is by chance
 MATERIAL = 0.5  # standard deviations of the fluctuation: what a person sees in a plot
@@ -27,6 +24,7 @@ AHEAD = 10.0  # times its length for which a bounded run must stay in its band
 # Numbers:
 MAX_BINS = 64
 MIN_SAMPLES = 64
+MIN_JUMPS = 3  # of energies that repeat: there and back is no digit
 WINDOWS = (1.0, 0.5, 0.25, 0.125)  # shares of the bins, up to the end, in which it may move
 RESTS = (0.75, 0.625, 0.5, 0.375, 0.25)  # shares up to the end in which it may rest
 ENDS = (8, 16, 32)  # parts of the bins of which the last must be like the others
@@ -57,7 +55,6 @@ WALK = 32.0  # roundings: eight standard deviations of a random walk of sixteen 
 REFERENCE_ERROR = 1e-9  # of ln(E/E_true): ten times the error of the true motion
 MIN_AMPLITUDE = 1e5  # roundings of theta: a smaller damped amplitude is rounded by more than 1e-5
 ROUNDING = 1e-12  # of an energy: a million roundings, or a random walk of 1e7
-AT_REST = -1 + 1e-9  # an error: nothing is left to lose
 # When it is judged:
 LOOKS = 8  # a period: twice the Nyquist rate of the error's second harmonic
 MIN_SWINGS = 4

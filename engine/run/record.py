@@ -28,7 +28,7 @@ def judge_record(times: Any, energies: Any, failed: bool = False) -> Judgement:
         reason = levels.FEW.format(need=levels.MIN_SAMPLES)
         return Judgement(reason=reason, independent=float(len(times)))
     unit = float(np.abs(energies).max()) or 1.0
-    scaled = energies / unit  # squares must not overflow
+    scaled = energies / unit  # differences must not overflow
     bins = bins_of(times, scaled - scaled[0], max(resolution(scaled), levels.ROUNDING))
     judgement = judge_bins(bins).scaled(unit)
     return judgement._replace(independent=min(judgement.independent, float(len(times))))
@@ -42,23 +42,24 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
     means = np.add.reduceat(energies, begins) / sizes
     squares = np.add.reduceat((energies - np.repeat(means, sizes)) ** 2, begins) / sizes
     return Bins(
-        np.add.reduceat(times - times[0], begins) / sizes,
-        means,
-        np.minimum.reduceat(energies, begins),
-        np.maximum.reduceat(energies, begins),
-        np.sqrt(squares),
-        rounding,
-        sizes,
+        times=np.add.reduceat(times - times[0], begins) / sizes,
+        means=means,
+        lows=np.minimum.reduceat(energies, begins),
+        highs=np.maximum.reduceat(energies, begins),
+        spreads=np.sqrt(squares),
+        rounding=rounding,
     )
 
 
 def resolution(energies: Any) -> float:
     """Return the smallest difference of energies that repeat, as printed ones do; or rounding."""
+    rounding = 8 * float(np.finfo(float).eps)
     some = energies[:: len(energies) // 10_000 + 1]
     differences = np.diff(np.unique(some))
-    rounding = 8 * float(np.finfo(float).eps)
     differences = differences[differences > rounding]
-    return float(differences.min()) if 0 < len(differences) < len(some) / 2 else rounding
+    jumps = int((np.abs(np.diff(some)) > rounding).sum())
+    repeat = 0 < len(differences) < len(some) / 2 and jumps >= levels.MIN_JUMPS
+    return float(differences.min()) if repeat else rounding
 
 
 class Fluctuation(NamedTuple):

@@ -11,18 +11,17 @@ Sums are in a fixed order, without BLAS, so results have the same bits wherever 
 """
 
 import math
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from pendu_tui.engine.run import levels
+
 _EDGES = (7, 15, 31)  # and the last term
 _KNEES = (7, 15, 31)  # of 1/(1 + (j/k)²): correlation times of a 22nd, 47th and 97th of the record
 _PINK_PRIOR = 0.3  # of 1/j, which few integrators make; other shapes have 1
-_OCTAVE = math.log(
-    2 * math.log(1000)
-)  # what an octave's own variance costs: a flat prior of its ln
-_KNOWN = 60  # degrees of freedom of a known variance: as good as endless
+_OCTAVE = math.log(2 * math.log(1000))  # the cost of a variance: a flat prior of its logarithm
 _HALVINGS = 10  # of an interval that holds a quantile: to a thousandth of its size
 _NEGLIGIBLE = 1e-7  # weight of a model
 
@@ -32,7 +31,7 @@ class _Models(NamedTuple):
 
     cosines: Any  # (n - 1, n)
     inverse: Any  # 1/s, 0 beyond the edge: (models, n - 1)
-    freedoms: Any  # (models, 1)
+    freedoms: Any  # (models,)
     priors: Any  # ln of the prior and of what depends on the model alone
     octaves: Any  # ones in each octave beyond the edge: (models, octaves, n - 1)
     walks: Any  # whether the variance has no limit
@@ -43,75 +42,67 @@ def _models(count: int) -> _Models:
     angles = np.pi * np.arange(1, count) / count
     cosines = np.cos(angles[:, None] * (np.arange(count) + 0.5)) * math.sqrt(2 / count)
     j = np.arange(1.0, count)
-    shapes = [(1 + 0 * j, 1.0), *((1 / (1 + (j / k) ** 2), 1.0) for k in _KNEES)]
-    shapes += [(1 / j, _PINK_PRIOR), (1 / j**2, 1.0)]
+    shapes = [1 + 0 * j, *(1 / (1 + (j / knee) ** 2) for knee in _KNEES), 1 / j, 1 / j**2]
+    weights = [1.0] * (1 + len(_KNEES)) + [_PINK_PRIOR, 1.0]
     rows = []
     for edge in sorted({min(edge, count - 1) for edge in (*_EDGES, count - 1)}):
-        begins = [2**k for k in range(3, 7) if edge < 2**k < count]
         octaves = np.zeros((4, count - 1))
         prior = math.lgamma((edge - 1) / 2) + math.log((edge + 1) / 2)
-        for row, begin in enumerate(begins):
+        prior -= (edge - 1) / 2 * math.log(math.pi)
+        for row, begin in enumerate(2**k for k in range(3, 7) if edge < 2**k < count):
             octaves[row, begin - 1 : 2 * begin - 1] = 1
             size = min(2 * begin, count) - begin
             prior += math.lgamma(size / 2) - size / 2 * math.log(math.pi) - _OCTAVE
-        for shape, weight in shapes:
+        for shape, weight in zip(shapes, weights, strict=True):
             inverse = np.where(j <= edge, 1 / shape, 0.0)
-            log_shape = float(np.log(shape[:edge]).sum())
-            total = prior - (edge - 1) / 2 * math.log(math.pi) - log_shape / 2 + math.log(weight)
-            rows.append((inverse, edge - 1, total, octaves, shape[-1] * count**2 < 4))
-    inverse, freedoms, priors, octaves, walks = map(np.array, zip(*rows, strict=True))
-    return _Models(cosines, inverse, freedoms, priors, octaves, walks)
+            total = prior - float(np.log(shape[:edge]).sum()) / 2 + math.log(weight)
+            rows.append((inverse, edge - 1, total, octaves, shape is shapes[-1]))
+    return _Models(cosines, *map(np.array, zip(*rows, strict=True)))
 
 
 class Slope:
     """A distribution of the slope: a mixture of Student's t, one for each model of the noise."""
 
     def __init__(
-        self, slopes: Any, deviations: Any, freedoms: Any, walks: Any, weights: Any
+        self, centres: Any, deviations: Any, freedoms: Any, walks: Any, weights: Any
     ) -> None:
-        self._weights = weights
-        self.mean = float((weights * slopes).sum())
-        self.deviation = float(np.sqrt((weights * deviations**2).sum()))
+        self.mean = float((weights * centres).sum())
+        self.uncertainty = float((weights * deviations).sum())  # 68 % lie within
         self.walk = float(weights[walks].sum())  # probability of an endless variance
-        rows = zip(slopes, deviations, freedoms, weights, walks, strict=True)
-        self._parts = [
-            (float(slope), float(deviation), int(freedom), float(weight), bool(walk))
-            for slope, deviation, freedom, weight, walk in rows
-            if weight > _NEGLIGIBLE
-        ]
+        some = weights > _NEGLIGIBLE
+        columns = (centres, deviations, freedoms, weights)
+        self._parts = list(zip(*(column[some].tolist() for column in columns), strict=True))
 
-    def below(self, slope: float, stationary: bool = False) -> float:
-        """Return the probability of a smaller slope, perhaps only in noises with a level."""
-        total = 0.0
-        norm = 0.0
-        for centre, deviation, freedom, weight, walk in self._parts:
-            if not (stationary and walk):
-                norm += weight
-                total += weight * student(slope - centre, deviation, freedom)
-        return total / norm if norm else 0.5
+    def below(self, slope: float) -> float:
+        """Return the probability of a smaller slope."""
+        return sum(
+            weight * student(slope - centre, deviation, freedom)
+            for centre, deviation, freedom, weight in self._parts
+        )
 
-    def chance(self, stationary: bool = False) -> float:
-        """Return the probability of so large a slope of either sign by chance."""
-        below = self.below(0.0, stationary)
+    @cached_property
+    def chance(self) -> float:
+        """The probability of so large a slope of either sign by chance."""
+        below = self.below(0.0)
         return 2 * min(below, 1 - below)
 
-    def within(self, probability: float, centre: float = 0.0) -> float:
-        """Return how far from a centre the slope lies at most, with a probability."""
-        high = abs(self.mean - centre) + self.deviation
-        while self.around(centre, high) < probability and 0 < high < math.inf:
+    @cached_property
+    def bound(self) -> float:
+        """|slope| is below it with a probability of levels.CERTAIN."""
+        high = abs(self.mean) + self.uncertainty
+        while not self._is_within(high) and 0 < high < math.inf:
             high *= 2
         low = 0.0
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
-            if self.around(centre, middle) < probability:
-                low = middle
-            else:
+            if self._is_within(middle):
                 high = middle
+            else:
+                low = middle
         return high
 
-    def around(self, centre: float, distance: float) -> float:
-        """Return the probability of a slope so near to a centre."""
-        return self.below(centre + distance) - self.below(centre - distance)
+    def _is_within(self, size: float) -> bool:
+        return self.below(size) - self.below(-size) >= levels.CERTAIN
 
 
 def student(distance: float, deviation: float, freedom: float) -> float:
@@ -128,37 +119,20 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     return math.erfc(-normal / math.sqrt(2)) / 2
 
 
-def slope_of(times: Any, values: Any, rounding: float, white: float = 0.0) -> Slope:
-    """Return the slope of four values or more, each rounded to `rounding`.
-
-    `white`: the values' variance if they are means of independent samples, which is one more model.
-    """
+def slope_of(times: Any, values: Any, rounding: float) -> Slope:
+    """Return the slope of four values or more, each rounded to `rounding`."""
     models = _models(len(values))
     v = (models.cosines * times).sum(axis=1)
     x = (models.cosines * values).sum(axis=1)
     squares = (models.inverse * v * v).sum(axis=1)
-    slopes = (models.inverse * v * x).sum(axis=1) / squares
-    rest = (x - slopes[:, None] * v) ** 2 + max(rounding, 1e-150) ** 2 / 12
+    centres = (models.inverse * v * x).sum(axis=1) / squares
+    rest = (x - centres[:, None] * v) ** 2 + max(rounding, 1e-150) ** 2 / 12
     residual = (models.inverse * rest).sum(axis=1)
     sums = (models.octaves * rest[:, None, :]).sum(axis=2)
     sizes = models.octaves.sum(axis=2)
-    log_sums = np.where(sizes > 0, np.log(np.where(sizes > 0, sums, 1)), 0)
+    log_sums = np.log(np.where(sizes > 0, sums, 1.0))
     log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
     log = log - (sizes / 2 * log_sums).sum(axis=1)
     deviations = np.sqrt(residual / models.freedoms / squares)
-    freedoms = models.freedoms
-    walks = models.walks
-    if white > 0:
-        size = len(values) - 2
-        square = float((v * v).sum())
-        slope = float((v * x).sum()) / square
-        misfit = float(((x - slope * v) ** 2).sum()) / white
-        known = _OCTAVE + math.log(len(values) / 2) - math.log(square) / 2
-        known -= (size * math.log(math.tau * white) + misfit) / 2
-        slopes = np.append(slopes, slope)
-        deviations = np.append(deviations, math.sqrt(white / square))
-        freedoms = np.append(freedoms, _KNOWN)
-        walks = np.append(walks, False)
-        log = np.append(log, known)
     weights = np.exp(log - log.max())
-    return Slope(slopes, deviations, freedoms, walks, weights / weights.sum())
+    return Slope(centres, deviations, models.freedoms, models.walks, weights / weights.sum())
