@@ -25,13 +25,14 @@ class Bins(NamedTuple):
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        *columns, rounding = self
-        return Bins(*(column[-count:] for column in columns), rounding)
+        columns = {name: value[-count:] for name, value in self._asdict().items() if np.ndim(value)}
+        return self._replace(**columns)
 
     def scaled(self, factor: float) -> "Bins":
         """Return the bins of energies multiplied by a factor."""
-        times, *energies = self
-        return Bins(times, *(each * factor for each in energies))
+        energies = self._asdict()
+        times = energies.pop("times")
+        return Bins(times, **{name: value * factor for name, value in energies.items()})
 
 
 class Part:

@@ -62,7 +62,7 @@ def stride(period: float, h: float) -> int:
 class _Bin(NamedTuple):
     """Sums over the look points of a part of a run, and its lowest and highest error."""
 
-    count: int
+    looks: int
     steps: float
     errors: float
     low: float
@@ -70,7 +70,7 @@ class _Bin(NamedTuple):
 
     def joined(self, other: "_Bin") -> "_Bin":
         return _Bin(
-            self.count + other.count,
+            self.looks + other.looks,
             self.steps + other.steps,
             self.errors + other.errors,
             min(self.low, other.low),
@@ -92,7 +92,7 @@ class Bands:
     def add(self, each: _Bin) -> bool:
         """Add a look point; return whether a bin is full."""
         self._open = self._open.joined(each) if self._open else each
-        if self._open.count < self._size:
+        if self._open.looks < self._size:
             return False
         self.bins = [*self.bins, self._open]
         self._open = None

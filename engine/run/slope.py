@@ -75,10 +75,10 @@ class Slope:
 
     def below(self, slope: float) -> float:
         """Return the probability of a smaller slope."""
-        return sum(
-            weight * student(slope - centre, deviation, freedom)
-            for centre, deviation, freedom, weight in self._parts
-        )
+        total = 0.0
+        for centre, deviation, freedom, weight in self._parts:
+            total += weight * student(slope - centre, deviation, freedom)
+        return total
 
     @cached_property
     def chance(self) -> float:
