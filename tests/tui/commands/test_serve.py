@@ -147,6 +147,19 @@ async def test_each_tab_records_into_the_folder_that_was_asked_for(tmp_path):
     assert list(tmp_path.iterdir()) == [folder]
 
 
+async def test_a_tab_that_is_cut_off_under_a_flood_of_keys_leaves_a_whole_recording(tmp_path):
+    with serving("--record", str(tmp_path)) as server:
+        async with server.tab((120, 40)) as tab:
+            await tab.shows("REC ")
+            for _ in range(300):
+                await tab.press("v+-bpr .,")
+            tab.socket._response.connection.transport.abort()
+        await server.until_labs(0)
+    (path,) = tmp_path.iterdir()
+    result = verify(path)
+    assert (path.suffix, result.complete, result.identical) == (".mcap", True, True)
+
+
 REFUSED = [
     ({"Origin": "http://elsewhere.example"}, "403"),
     ({"Origin": "chrome-extension://{host}"}, "403"),

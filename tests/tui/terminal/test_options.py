@@ -26,10 +26,6 @@ def chosen(*arguments: str, encoding: str = "utf-8", **environment: str) -> Term
     return terminal_options_of(parser.parse_args(arguments), XTERM | environment, encoding)
 
 
-def test_on_most_terminals_the_lab_is_dark_in_braille_with_the_mouse_at_30_frames_a_second():
-    assert chosen() == TerminalOptions("dark", "braille", True, 30) == TerminalOptions()
-
-
 def test_what_is_asked_for_is_taken_whatever_the_terminal_says():
     asked = ("--theme", "light", "--pixels", "half", "--no-mouse", "--fps", "12")
     taken = TerminalOptions("light", "half", mouse=False, fps=12)
