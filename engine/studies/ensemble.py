@@ -18,6 +18,7 @@ from pendu_tui.engine.methods.method import compilable
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.models.model import Phase
+from pendu_tui.engine.run.loops import compiler_of_parts
 
 Floats = NDArray[np.float64]
 Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
@@ -74,8 +75,7 @@ def compiled(method: Method, model: Pendulum) -> Watch:
     if isinstance(method, OwnMethod):
         return plain(method, model)
     numba: Any = import_module("numba")
-    # functions that Python never calls compile twice as fast without wrappers
-    inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    inner = compiler_of_parts(numba)
     phases = numba.njit(compilable(method.phases))
     force = inner(model.force(np.sin))
     look = numba.njit(_looking(inner(model.energy(np.sin))))

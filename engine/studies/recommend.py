@@ -124,7 +124,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     too_few = math.ceil(study.time * fastest / math.pi) - 1  # a step of more than half a swing
     steps = min(most_steps, math.ceil(study.time * fastest))
     if not steps:
-        return Attempt(method, None, _no_h(most))
+        return Attempt(method, None, f"no usable h within {most} evaluations")
     best = None
     in_vain = 0  # times that rounding kept the error from falling
     point = study.run(method, steps)
@@ -178,10 +178,6 @@ def _confirmed(
 def _work(method: Method) -> int:
     """Return the force evaluations of a step; a term of a series takes about as long as one."""
     return method.force_evaluations or method.order
-
-
-def _no_h(most: int) -> str:
-    return f"no usable h within {most} evaluations"
 
 
 def _not_within(point: Point) -> str:

@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
 
 LARGEST = 12  # denominator of a fraction that counts as small
+BATCH = 25  # starts: a piece of a picture appears at once
 _CHUNK = 8  # steps between two rescalings of a displacement
 
 
@@ -45,16 +46,12 @@ def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) 
     return theta, omega
 
 
-def batches(starts: Points, size: int = 25) -> list[Points]:
-    """Return the starts in batches; `iterate` gives the same bits however they are cut."""
-    parts = [slice(first, first + size) for first in range(0, len(starts[0]), size)]
-    return [(starts[0][part], starts[1][part]) for part in parts]
-
-
 def pieces(method: Method, model: Model, h: float, starts: Points, steps: int) -> Iterator[Points]:
-    """Yield the orbits of batch after batch of starts."""
-    for batch in batches(starts):
-        yield iterate(method, model, h, batch, steps)
+    """Yield the orbits of batch after batch of starts; their bits do not depend on the batches."""
+    theta, omega = starts
+    for first in range(0, len(theta), BATCH):
+        batch = slice(first, first + BATCH)
+        yield iterate(method, model, h, (theta[batch], omega[batch]), steps)
 
 
 def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> Points:

@@ -162,3 +162,12 @@ def test_no_legal_start_gives_anything_but_finite_numbers(z, **start):
         sample = lockstep.sample()
         assert math.isfinite(sample.t)
         assert all(map(finite, sample.readings))
+
+
+def test_from_a_tiny_start_relative_errors_stay_finite_too():
+    lockstep = Lockstep(Scene(theta=1e-150, model="linear", h=100.0))
+    lockstep.advance(1000)
+    readings = lockstep.sample().readings
+    assert all(map(finite, readings))
+    assert readings[0].diverged_at is not None
+    assert readings[0].energy_error > 1e290

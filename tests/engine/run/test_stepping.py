@@ -95,11 +95,14 @@ def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
             yield theta, omega
 
     cast = replace(USUAL_CAST[0], key="bad", phases=doubling), USUAL_CAST[3]
-    lockstep = Lockstep(replace(DEFAULT_SCENE, cast=cast))
+    lockstep = Lockstep(replace(DEFAULT_SCENE, omega=3.0, cast=cast), judged=True)
     lockstep.set_stepping(Stepping(0.2, True, cast))
     lockstep.advance(1000)
     at = lockstep.sample().readings[0].diverged_at
     parts = round(at / 0.05)
     assert at == parts * 0.05
+    (failed,) = (each for each in lockstep.milestones if each.kind == "failed")
+    assert (failed.step, failed.t) == (math.ceil(parts / 4), at)
     # where omega²/2 leaves the range
-    assert (2.0 ** (parts - 1)) ** 2 / 2 < 1e300 < (2.0**parts) ** 2
+    assert (2.0 ** (parts + 1)) ** 2 / 2 < 1e300 < (2.0 ** (parts + 2)) ** 2
+    assert parts % 4 == 1  # it fails in the first part of a step
