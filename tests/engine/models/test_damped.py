@@ -85,3 +85,8 @@ def test_it_rotates_as_long_as_its_energy_is_beyond_the_separatrix(share, regime
     omega = 2 * math.sqrt(9.81 * share)
     assert DampedPendulum(9.81, 0.1).exact(0.0, omega).regime == regime
     assert DampedPendulum(9.81, 0.1).exact(0.0, 0.0).regime == "equilibrium"
+
+
+def test_an_area_shrinks_by_exp_of_minus_gamma_t():
+    assert DampedPendulum(9.81, 0.5).area_share(4.0) == pytest.approx(math.exp(-2.0))
+    assert Pendulum(9.81).area_share(4.0) == 1.0

@@ -129,3 +129,9 @@ def test_no_pure_state_has_less_energy_than_the_phase_at_rest(coupling, theta, s
     pure = np.array(s) / np.linalg.norm(s)
     assert math.hypot(*rest[2:]) == pytest.approx(1.0)
     assert energy(rest) <= energy((theta, 0.0, *pure)) + 1e-12
+
+
+@pytest.mark.parametrize("length", [0.9, 1.2])
+def test_the_probability_error_is_what_the_bloch_vector_is_longer_than_1(length):
+    seen = MODEL.observe((0.3, 0.0, 0.0, 0.6 * length, -0.8 * length))
+    assert seen.extra["probability_error"] == pytest.approx(length - 1)
