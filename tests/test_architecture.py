@@ -54,6 +54,7 @@ def test_the_first_paint_of_the_lab_does_not_wait_for_numpy_and_the_recorder():
 
 
 def test_every_command_in_the_table_has_a_function_and_every_module_is_in_the_table():
+    pytest.importorskip("textual_serve", reason="the extra web is not installed")
     room = pendu_tui.tui.commands
     places = {(each.place or f"{name}:run").partition(":")[::2] for name, each in COMMANDS.items()}
     modules = {module.name for module in pkgutil.iter_modules(room.__path__) if not module.ispkg}
