@@ -176,3 +176,9 @@ def test_imex_euler_is_stable_at_any_stiffness_and_stops_the_swing_too():
     phases = islice(IMEX_EULER.on(STIFF)(STIFF.start(1.0, 0.0), 0.02), 500)
     left = [STIFF.energy()(phase) / STIFF.reference(1.0, 0.0).start for phase in phases]
     assert (left[49], left[499]) == pytest.approx((0.52, 0.065), abs=0.01)  # after 1 and 10 s
+
+
+def test_a_compensation_goes_on_where_a_run_is_continued():
+    propagate = PlainLoops(VERLET_COMPENSATED, PENDULUM).propagate
+    whole = propagate((1.0, 0.0), 0.01, 2000)
+    assert propagate(propagate((1.0, 0.0), 0.01, 1000), 0.01, 1000) == whole

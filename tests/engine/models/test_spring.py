@@ -83,3 +83,8 @@ def test_the_true_motion_of_too_fast_a_spring_is_not_known():
 def test_a_spring_that_is_too_fast_has_no_reference(ratio, followed):
     exact = Spring(9.81, ratio**2 * 9.81).exact(1.0, 0.0)
     assert math.isfinite(exact.at(0.01).theta) == followed
+
+
+def test_an_error_of_theta_is_less_than_half_a_turn():
+    assert SPRING.theta_error(3.1, -3.1) == pytest.approx(6.2 - math.tau)
+    assert SPRING.theta_error(0.3, 0.1) == pytest.approx(0.2)

@@ -130,3 +130,11 @@ def test_a_method_far_dearer_than_another_is_given_up():
     assert cheapest.succeeded
     assert not dear.succeeded
     assert dear.point.force_evaluations <= MAX_TIMES * cheapest.point.force_evaluations
+
+
+def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
+    study = Study(replace(DRIFT, cast=(V, R)), 10.0, LOOPS)
+    best, other = least_cost(study, "theta", 1e-4).attempts
+    assert (best.method, best.times, other.method) == (R, 1.0, V)
+    ratio = other.point.force_evaluations / best.point.force_evaluations
+    assert 1 < other.times == ratio
