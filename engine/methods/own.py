@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, wraps
-from inspect import isgeneratorfunction, unwrap
+from inspect import CO_GENERATOR, unwrap
 from traceback import format_exception_only, walk_tb
 from typing import TYPE_CHECKING, Any
 
@@ -170,10 +170,11 @@ def guarded(function: Phases, file: str) -> Phases:
     """
     inner = unwrap(function)
     name = getattr(inner, "__name__", "it")
-    if not isgeneratorfunction(inner):
+    code = getattr(inner, "__code__", None)
+    if code is None or not code.co_flags & CO_GENERATOR:
         what = f"{file}: {name} is no generator function"
         raise OwnMethodError(f"{what}; make it one that takes (force, phase, h): {FORM}.")
-    where = f"{file}, line {inner.__code__.co_firstlineno}"
+    where = f"{file}, line {code.co_firstlineno}"
 
     @wraps(function)
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
