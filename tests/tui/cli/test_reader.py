@@ -13,7 +13,10 @@ import pytest
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
 from pendu_tui.tui.cli.tables import Series, Wanted
+from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS
 
+HEAD = "   Step  Temp  TotEng\n"
+LOOP = "Loop time of 1 on 1 procs for 1500 steps with 2000 atoms\n"
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
 
 
@@ -186,7 +189,51 @@ def test_energies_that_are_only_rarer_have_not_failed():
     assert series.skipped["without_numbers"] == 180
 
 
-HEAD = "   Step  Temp  TotEng\n"
+@pytest.mark.parametrize(("end", "failed_at"), [("45.0,\n", None), ("45.0,\n45.5,\n", 45.0)])
+def test_one_row_may_be_cut_while_it_is_written(end, failed_at):
+    (series,) = tables("t,E\n" + rows("{t},{e}") + end)
+    assert (len(series.times), series.failed_at) == (90, failed_at)
+
+
+def test_printed_values_after_the_first_nan_are_nan_too():
+    stream = io.BytesIO((rows("t = {t}, E = nan") + rows("t = 1{n:02}, E = {e}")).encode())
+    (sheet,) = read_sheets(io.BufferedReader(stream), Wanted())
+    (series,) = sheet.series()
+    series.finish(Wanted(), 40.0)
+    assert series.failed_at == 40.0
+
+
+def test_names_that_differ_in_a_digit_are_columns_of_their_own():
+    (series,) = tables(rows("t = {t}\nE1 = {k}\nE2 = {e}"), energy="E2")
+    assert list(series.energies) == ENERGIES
+
+
+def test_a_print_with_more_numbers_than_others_leaves_them_in_place():
+    text = rows("t = {t}, E = {e}") + "t = 45-46, E = 1\n" + rows("t = 1{n:02}, E = {e}")
+    (series,) = tables(text)
+    assert list(series.energies) == [*ENERGIES, 1, *ENERGIES]
+
+
+def test_words_that_were_no_head_may_be_one_later():
+    early = HEAD + rows("{s} {k} {e}", SAMPLES[:70]) + "Step TotEng\n1 2 3\n"
+    found = tables(early + LOOP + "Step TotEng\n" + rows("{s} {e}"))
+    assert list(found[-1].energies) == ENERGIES
+
+
+def test_lines_of_text_between_the_rows_are_passed_over():
+    text = "t E\n" + rows("{t} {e}\nwriting restart\nwrote file {n} at step {s}")
+    (series,) = tables(text)
+    assert list(series.energies) == ENERGIES
+
+
+def test_units_have_the_sizes_of_the_si():
+    joule = {"j": 1, "erg": 1e-7, "ev": 1.602176634e-19, "mev": 1.602176634e-22}
+    joule |= {"hartree": 4.3597447222060e-18, "ry": 2.1798723611030e-18}
+    joule |= {"kj/mol": 1e3 / 6.02214076e23, "kcal/mol": 4184 / 6.02214076e23, "k": 1.380649e-23}
+    assert {unit: 1.380649e-23 / size for unit, size in joule.items()} == pytest.approx(BOLTZMANN)
+    seconds = {"fs": 1e-15, "ps": 1e-12, "ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1}
+    seconds |= {"yr": 365.25 * 86400, "a.u.": 1.054571817e-34 / joule["hartree"]}
+    assert {unit: size * 1e9 for unit, size in seconds.items()} == pytest.approx(NANOSECONDS)
 
 
 @pytest.mark.parametrize(
@@ -218,7 +265,6 @@ def test_a_head_of_another_width_is_matched_by_the_values_or_not_at_all(text, fo
     assert (columns(series) if not series.choice.doubt else None) == found
 
 
-LOOP = "Loop time of 1 on 1 procs for 1500 steps with 2000 atoms\n"
 CP2K = "#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n"
 XVG = '@ xaxis label "Time (ps)"\n@ yaxis label "(kJ/mol)"\n'
 
@@ -244,7 +290,9 @@ XVG = '@ xaxis label "Time (ps)"\n@ yaxis label "(kJ/mol)"\n'
             [40, 51],
         ),
         (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[30:]), [90]),
+        (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[39:]), [90]),
         (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[40:]), [90]),
+        (rows("{e}", SAMPLES[:70]) + "-1.0-1.0\n1 2\n" + rows("{e}", SAMPLES[70:]), [70, 1, 20]),
         ("t,E\n" + rows("{t},{e}", SAMPLES[:40]) + rows("{t},{e}"), [40, 90]),
         (
             HEAD + rows("{s} {k} {e}", SAMPLES[:3]) + LOOP + rows("Step = {s}\nTotEng = {e}"),

@@ -77,6 +77,7 @@ def test_one_table_is_judged_and_named():
         assert judge(log, "--fail-if", gate, **names).code == code
     answer = judge(LOG, "--json", "--table", 1, **names).json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
+    assert judge(LOG, "--table", 2, **names).code == 0
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
 
 
@@ -192,9 +193,9 @@ def test_with_a_scale_of_std_nothing_depends_on_the_zero_of_the_energies():
 
 
 def test_scales():
-    zero = "t,E,K\n" + "".join(f"{n},{n},-4\n" for n in range(100))
+    zero = "t,E,K\n" + "".join(f"{n},{n},{-3 - n % 2 * 2}\n" for n in range(100))
     assert judge(zero).refused(2, "first' is 0", "--scale")
-    still = zero.replace(",-4", ",0")
+    still = zero.replace(",-3", ",0").replace(",-5", ",0")
     assert judge(still, "--scale", "kinetic:K").refused(2, "is 0", "--scale")
     for scale, size in (("50", 50), ("kinetic:K", 4)):
         assert judge(zero, "--json", "--scale", scale).json["max_energy_error"] == 99 / size
