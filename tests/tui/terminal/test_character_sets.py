@@ -23,7 +23,7 @@ def written(text, character_set):
 
 @pytest.mark.parametrize(
     ("character_set", "picture"),
-    [("half", [" ▄▄▄▄", " █  █", " ▀▀▀▀"]), ("ascii", [" ....", " :  :", " ''''"])],
+    [("half", ["  ▄▄▄", " █  █", " ▀▀▀▀"]), ("ascii", ["  ...", " :  :", " ''''"])],
 )
 def test_a_ring_of_braille_in_half_blocks_and_in_ascii(character_set, picture):
     canvas = Canvas(6, 3)
