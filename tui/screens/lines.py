@@ -275,7 +275,7 @@ def bar(position: float, length: float, ticks: Sequence[float], width: int) -> R
             played[at] = "┿"
         elif at > here:
             ahead[at - here - 1] = "┼"
-    return [("".join(played), TEXT), ("█", WARN), ("".join(ahead), FRAME)]
+    return [("".join(played), TEXT), ("█", TEXT), ("".join(ahead), FRAME)]
 
 
 def facts(source: Source, room: int) -> str:

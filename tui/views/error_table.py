@@ -53,16 +53,17 @@ class Column(NamedTuple):
 
 
 def _verdict(line: TableLine, width: int) -> str:
-    """Return "+ grows"; of an undecided one what is missing, as far as it fits."""
+    """Return "+ grows"; of an undecided one what is missing: "5 of 8 swings" or "5/8 swings"."""
     if line.held:
         return "held"
     verdict = VERDICTS[line.verdict]
-    texts = [f"{verdict.sign} {verdict.word}".strip()]
-    if (missing := line.judgement.progress) and not verdict.sign:
-        texts = [str(missing), f"{missing.have}/{missing.need} {missing.unit}", *texts]
-    elif line.judgement.reason:
-        texts.insert(0, str(line.judgement))
-    return next((text for text in texts if len(text) <= width), verdict.word)
+    if verdict.sign:
+        return f"{verdict.sign} {verdict.word}"
+    texts = [str(line.judgement), verdict.word]
+    if missing := line.judgement.progress:
+        count = f"{missing.have}/{missing.need}"
+        texts = [str(missing), f"{count} {missing.unit}", count]
+    return next(text for text in texts if len(text) <= width)
 
 
 def _angle(line: TableLine, width: int) -> str:
@@ -73,7 +74,7 @@ def _omega(line: TableLine, width: int) -> str:
     return decimal(line.reading.omega, width, max(width - 8, 3))
 
 
-VERDICT = Column(9, Head("verdict", 9, "verdict", 13), _verdict)
+VERDICT = Column(9, Head("verdict", 10, "verdict", 13), _verdict)
 COLUMNS = (
     VERDICT,
     Column(8, ENERGY_ERROR.head, lambda line, w: scientific(line.reading.energy_error, w)),
@@ -119,7 +120,7 @@ def _columns(
 
     while columns and needed() > room:
         columns.remove(min(columns, key=lambda column: column.keep))
-    spare = {VERDICT: min(room - needed(), 4)}  # "2 of 5 swings"
+    spare = {VERDICT: min(room - needed(), 3)}  # "2 of 5 swings"
     return [
         (str(column.head[first]), int(column.head[first + 1]) + spare.get(column, 0), column)
         for column in columns

@@ -131,7 +131,8 @@ def test_the_promise_of_a_scene_is_visible_in_its_shot(name, size):
     seen = Seen(name, seconds, size)
     assert getattr(seen, what)(*letters) >= least
     if what == "apart":
-        assert min(seen.shares(letters)) >= 0.45  # lines on each other: 19 and 21 of 40 columns
+        # four learned methods are two lines: half of the columns each, and less where all meet
+        assert min(seen.shares(letters)) >= (0.45 if name == "learned" else 0.5)
 
 
 @pytest.mark.parametrize("size", PORTRAITS)
