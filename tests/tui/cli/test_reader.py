@@ -215,8 +215,8 @@ def test_a_print_with_more_numbers_than_others_leaves_them_in_place():
 
 
 def test_words_that_were_no_head_may_be_one_later():
-    early = HEAD + rows("{s} {k} {e}", SAMPLES[:70]) + "Step TotEng\n1 2 3\n"
-    found = tables(early + LOOP + "Step TotEng\n" + rows("{s} {e}"))
+    early = "Step A B TotEng\n" + rows("{s} {k} {k} {e}", SAMPLES[:70]) + "Step TotEng\n1 2 3 4\n"
+    found = tables(early + "Step TotEng\n" + rows("{s} {e}"))
     assert list(found[-1].energies) == ENERGIES
 
 
@@ -292,7 +292,7 @@ XVG = '@ xaxis label "Time (ps)"\n@ yaxis label "(kJ/mol)"\n'
         (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[30:]), [90]),
         (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[39:]), [90]),
         (CP2K + rows("{n} {t} {e}", SAMPLES[:40]) + CP2K + rows("{n} {t} {e}", SAMPLES[40:]), [90]),
-        (rows("{e}", SAMPLES[:70]) + "-1.0-1.0\n1 2\n" + rows("{e}", SAMPLES[70:]), [70, 1, 20]),
+        (rows("{e}", SAMPLES[:70]) + "-1.0-1.0\n1\n1 2\n" + rows("{e}", SAMPLES[70:]), [71, 1, 20]),
         ("t,E\n" + rows("{t},{e}", SAMPLES[:40]) + rows("{t},{e}"), [40, 90]),
         (
             HEAD + rows("{s} {k} {e}", SAMPLES[:3]) + LOOP + rows("Step = {s}\nTotEng = {e}"),

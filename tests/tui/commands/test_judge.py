@@ -77,6 +77,8 @@ def test_one_table_is_judged_and_named():
         assert judge(log, "--fail-if", gate, **names).code == code
     answer = judge(LOG, "--json", "--table", 1, **names).json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
+    assert answer["energy_error"] == pytest.approx(math.sin(199) / 91)
+    assert (answer["lowest_energy"], answer["highest_energy"]) == pytest.approx((90, 92), abs=1e-3)
     assert judge(LOG, "--table", 2, **names).code == 0
     assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
 
@@ -174,6 +176,8 @@ def test_trends_have_the_units_of_the_heads():
     assert (answer["trend_unit"], answer["energy_unit"]) == ("1/ps", "eV")
     assert answer["energy_per_ns_per_atom"] == pytest.approx(1.0, rel=1e-3)
     assert answer["kt_per_ns_per_atom"] == pytest.approx(1 / 0.025852, rel=1e-3)
+    assert "times the band" in judge(GROWING, **names).out
+    assert "% of the band" in judge(table()).out
     assert "kT per ns" in judge(GROWING, *atoms, **names).out
     assert judge(table(), "--atoms", 5).refused(2, "--atoms needs the unit of time")
     assert judge(GROWING, "--temperature", 5, **names).refused(2, "belongs to --atoms")

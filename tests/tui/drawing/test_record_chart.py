@@ -30,6 +30,16 @@ def test_energy_trend_and_axes_fill_the_size_given():
     assert len(rows_of(picture, TREND)) > 3
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_the_trend_rises_where_its_slope_is_positive(sign):
+    picture = chart(errors=sign * ERRORS, slope=sign * 1e-3)
+    starts = []
+    for row in rows_of(picture, TREND):
+        inks = [ink for text, ink in picture.rows[row] for _ in text]
+        starts.append(sign * inks.index(TREND))
+    assert starts[0] > starts[-1]
+
+
 def test_a_level_trend_is_one_row_and_none_is_not_drawn():
     flat = 1e-3 * np.sin(7 * TIMES)
     assert len(rows_of(chart(errors=flat, slope=0.0), TREND)) == 1
