@@ -22,6 +22,7 @@ class Bins(NamedTuple):
     highs: Any
     spreads: Any  # standard deviations within each
     rounding: float  # differences up to this mean nothing
+    white: float = 0.0  # the variance of the means if all samples were independent; 0 if unknown
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
@@ -32,16 +33,20 @@ class Bins(NamedTuple):
         """Return the bins of energies multiplied by a factor."""
         energies = self._asdict()
         times = energies.pop("times")
-        return Bins(times, **{name: value * factor for name, value in energies.items()})
+        white = energies.pop("white") * factor**2
+        scaled = {name: value * factor for name, value in energies.items()}
+        return Bins(times, **scaled, white=white)
 
 
 class Part:
     """Some bins up to the end, and the slope of one value of each."""
 
-    def __init__(self, bins: Bins, values: Any) -> None:
+    def __init__(self, bins: Bins, values: Any, white: float = 0.0) -> None:
+        """`white` is as in `slope_of`."""
         self.bins = bins
         self.values = values
-        self.slope = slope_of(bins.times, values, bins.rounding)
+        self.white = white
+        self.slope = slope_of(bins.times, values, bins.rounding, white)
         count = len(values)
         # the middles of the bins cover one bin less
         self.length = float(bins.times[-1] - bins.times[0]) * count / (count - 1)
@@ -55,7 +60,7 @@ class Part:
     def last(self, share: float) -> "Part":
         """Return the last bins, at least 4."""
         count = max(4, round(len(self.values) * share))
-        return Part(self.bins.last(count), self.values[-count:])
+        return Part(self.bins.last(count), self.values[-count:], self.white)
 
     def exceeds(self, level: float, move: float) -> bool:
         """Return whether a move is so many standard deviations of the fluctuation."""
@@ -109,7 +114,7 @@ class Part:
 
 def judge_bins(bins: Bins, ahead: float = 1.0) -> Judgement:
     """Judge bins; `ahead` as in Part.why_not_bounded."""
-    unit, whole = _whole(bins)
+    unit, whole = whole_of(bins)
     found = _moved(whole) or _rested(whole)
     if not found:
         reason = whole.why_not_bounded(ahead)
@@ -119,11 +124,11 @@ def judge_bins(bins: Bins, ahead: float = 1.0) -> Judgement:
 
 def measure_bins(bins: Bins) -> Judgement:
     """Return the slope of bins with its bounds, undecided."""
-    unit, whole = _whole(bins)
+    unit, whole = whole_of(bins)
     return _described(UNDECIDED, whole).scaled(unit)
 
 
-def _whole(bins: Bins) -> tuple[float, Part]:
+def whole_of(bins: Bins) -> tuple[float, Part]:
     """Return a unit of energy in which squares do not overflow, and all bins in it.
 
     A sampled oscillation moves the means of bins slowly, but not the middles of their bands; noise
@@ -131,7 +136,7 @@ def _whole(bins: Bins) -> tuple[float, Part]:
     """
     unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
     bins = bins.scaled(1 / unit)
-    parts = (Part(bins, bins.means), Part(bins, (bins.lows + bins.highs) / 2))
+    parts = (Part(bins, bins.means, bins.white), Part(bins, (bins.lows + bins.highs) / 2))
     whole = min(parts, key=lambda part: part.slope.uncertainty)
     rest = without_wave(bins.times, whole.values)
     return unit, whole if rest is whole.values else Part(bins, rest)

@@ -140,7 +140,7 @@ class Judge:
         self._last: LookPoint | None = None
         self._judged = 0  # the step of the last judgement
         self._bands = Bands()
-        self._has_left = False  # at an earlier judgement
+        self._left = ""  # the word of an earlier judgement that it leaves
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
         self._may_beat = fastest_turn < levels.MIN_STEPS_A_TURN * self._h
@@ -167,7 +167,9 @@ class Judge:
             self._orbit.look(self._last, point)
         step = (self._last.step + point.step) / 2
         start = self._start_error
-        each = _Bin(1, step, point.error - start, point.low - start, point.high - start)
+        low = point.low - start
+        high = point.high - start
+        each = _Bin(1, step, (low + high) / 2, low, high)
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
         is_full = self._bands.add(each) and len(self._bands.bins) >= levels.MIN_BINS
@@ -232,8 +234,9 @@ class Judge:
         low, high = self._bands.recent()
         away = max(low, -high)  # how far the present band is from the start
         if found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
-            self._has_left = True
-            return found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
+            found = found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
+            self._left = self._left or found.verdict
+            return found
         if found.verdict == UNDECIDED:
             before = self.judgement.verdict
             beyond = low if before == GROWS else -high
@@ -244,14 +247,14 @@ class Judge:
         reason = ""
         if self._may_beat and not is_straight:
             reason = levels.BEATS
+        elif found.verdict in LEAVES and self._method.symplectic:
+            reason = levels.RETURNS
+        elif self._left not in ("", found.verdict):
+            reason = levels.TURNED
         elif found.verdict in LEAVES:
-            self._has_left = True
-            if self._method.symplectic:
-                reason = levels.RETURNS
+            self._left = found.verdict
         elif away > rounding:
             reason = levels.NEAR
-        elif self._has_left:
-            reason = levels.TURNED
         elif not self._is_long:
             reason = levels.SHORT
         return found._replace(verdict=UNDECIDED, reason=reason) if reason else found

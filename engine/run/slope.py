@@ -22,6 +22,7 @@ _EDGES = (7, 15, 31)  # and the last term
 _KNEES = (7, 15, 31)  # of 1/(1 + (j/k)²): correlation times of a 22nd, 47th and 97th of the record
 _PINK_PRIOR = 0.3  # of 1/j, which few integrators make; other shapes have 1
 _OCTAVE = math.log(2 * math.log(1000))  # the cost of a variance: a flat prior of its logarithm
+_KNOWN = 60  # degrees of freedom of a known variance: as good as endless
 _HALVINGS = 10  # of an interval that holds a quantile: to a thousandth of its size
 _NEGLIGIBLE = 1e-7  # weight of a model
 
@@ -119,8 +120,11 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     return math.erfc(-normal / math.sqrt(2)) / 2
 
 
-def slope_of(times: Any, values: Any, rounding: float) -> Slope:
-    """Return the slope of four values or more, each rounded to `rounding`."""
+def slope_of(times: Any, values: Any, rounding: float, white: float = 0.0) -> Slope:
+    """Return the slope of four values or more, each rounded to `rounding`.
+
+    `white`: the values' variance if they are means of independent samples, which is one more model.
+    """
     models = _models(len(values))
     v = (models.cosines * times).sum(axis=1)
     x = (models.cosines * values).sum(axis=1)
@@ -134,5 +138,18 @@ def slope_of(times: Any, values: Any, rounding: float) -> Slope:
     log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
     log = log - (sizes / 2 * log_sums).sum(axis=1)
     deviations = np.sqrt(residual / models.freedoms / squares)
+    freedoms = models.freedoms
+    walks = models.walks
+    if white > 0:
+        square = float((v * v).sum())
+        centre = float((v * x).sum()) / square
+        misfit = float(((x - centre * v) ** 2).sum()) / white
+        known = _OCTAVE + math.log(len(values) / 2) - math.log(square) / 2
+        known -= ((len(values) - 2) * math.log(math.tau * white) + misfit) / 2
+        centres = np.append(centres, centre)
+        deviations = np.append(deviations, math.sqrt(white / square))
+        freedoms = np.append(freedoms, _KNOWN)
+        walks = np.append(walks, False)
+        log = np.append(log, known)
     weights = np.exp(log - log.max())
-    return Slope(centres, deviations, models.freedoms, models.walks, weights / weights.sum())
+    return Slope(centres, deviations, freedoms, walks, weights / weights.sum())
