@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from pendu_tui.engine.methods import GENERAL
+from pendu_tui.engine.methods import GENERAL, Method
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.record import judge_record
+from pendu_tui.engine.run.verdicts import CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.bench.truths import WINDOWS, letter, runner
 from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
@@ -102,8 +103,16 @@ def contradictions(share: float) -> list[tuple[Any, ...]]:
 
 
 def _contradictions(scene: Scene) -> Iterator[tuple[Any, ...]]:
+    for method, of_run, alone in judgements(scene, SECONDS):
+        if exclude(of_run, alone):
+            words = (of_run.verdict, alone.verdict)
+            yield scene.name, scene.theta, scene.z, method.key, *words, of_run.slope, alone.bound
+
+
+def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement, Judgement]]:
+    """Yield each method with the judgements of its run and of the run's energies alone."""
     lockstep = Lockstep(scene, loops=compiled, judged=True)
-    steps = round(SECONDS / scene.h)
+    steps = round(seconds / scene.h)
     every = max(1, steps // SAMPLES)
     samples = [lockstep.sample()]
     while lockstep.step < steps:
@@ -115,11 +124,23 @@ def _contradictions(scene: Scene) -> Iterator[tuple[Any, ...]]:
         readings = [reading for reading in readings if reading.diverged_at is None]
         times = np.abs([sample.t for sample in samples[: len(readings)]])
         energies = np.array([getattr(reading, name) for reading in readings])
+        unit = energies[0] if name == "energy" else 1.0
         failed = len(readings) < len(samples)
-        alone = judge_record(times, energies, failed=failed)
-        words = (of_run.verdict, alone.verdict)
-        if words[0] != words[1] and "undecided" not in words and words[0] != "chaotic":
-            yield scene.name, scene.theta, scene.z, scene.cast[index].key, *words
+        yield scene.cast[index], of_run, judge_record(times, energies / unit, failed=failed)
+
+
+def exclude(of_run: Judgement, alone: Judgement) -> bool:
+    """Return whether words or slopes of the same energies exclude each other.
+
+    Slopes do if that of the run is outside the record's bound by three uncertainties; words do not
+    where one judges what rests and the other the way there.
+    """
+    words = {of_run.verdict, alone.verdict} - {UNDECIDED, CHAOTIC}
+    if len(words) == 2 and not (of_run.rests or alone.rests):
+        return True
+    if of_run.slope is None or of_run.uncertainty is None or alone.bound is None:
+        return False
+    return abs(of_run.slope) > alone.bound + 3 * of_run.uncertainty
 
 
 def early_trends() -> int:

@@ -9,13 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import SCENES, Scene
+from tests.bench.judging import exclude, judgements
 
 DRIFT = SCENES["drift"]
 
@@ -131,6 +132,21 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str) ->
     if available():
         fast = moved(scene, [steps], compiled)
         assert (fast.milestones, fast.judgements) == (whole.milestones, whole.judgements)
+
+
+@pytest.mark.parametrize("name", ["drift", "gentle", "crossover", "spin", "damped", "learned"])
+def test_a_run_and_its_energies_alone_do_not_exclude_each_other(name: str) -> None:
+    found = list(judgements(SCENES[name], 60.0))
+    assert not [method.key for method, of_run, alone in found if exclude(of_run, alone)]
+    assert all(of_run.slope is not None for _, of_run, _ in found)
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)  # tests/bench/judging.py: 200
+@given(theta=st.floats(0.05, 3.0), z=st.floats(0.02, 1.5), method=st.sampled_from(GENERAL))
+def test_a_random_run_and_its_energies_do_not_exclude_each_other(theta, z, method) -> None:
+    scene = Scene(theta=theta, h=z / Scene().w0, cast=(method,))
+    ((_, of_run, alone),) = judgements(scene, 40.0)
+    assert not exclude(of_run, alone)
 
 
 @settings(max_examples=20, deadline=None)
