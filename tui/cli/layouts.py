@@ -21,7 +21,7 @@ class Layout:
     """The look of a program's lines, for each that is not a plain row of the table before it.
 
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
-    columns below, or only of the first `columns`; a `row`, which may begin with words; a `name`
+    columns below; a `row`, which may begin with words; a `name`
     and its `value`, perhaps with a `unit`; `over`, names above a line of numbers; the `place` of a
     column, from 1, or the `set` of xmgrace, from 0, and its `label`; the name of the `first`
     column, `units` of the others; the beginning of a new run (`part`); the `end` of the data, until
@@ -120,11 +120,6 @@ LAYOUTS = (
         programs="i-PI, heads of a line for each column",
         line=r"^# *(?:col(?:umn|s)?\.?)? *(?P<place>\d+)[-\d]* *(?:-->|[:=])"
         r" *(?P<label>.+?) *(?: : .*)?$",
-    ),
-    Layout(
-        programs="ASE with stresses",
-        line=r"^(?P<columns>Time\[ps\].*?) +-{4,} *stress",
-        cells=r"\S+",
     ),
     Layout(
         programs="PLUMED",

@@ -28,7 +28,6 @@ MAX_LINES = 5_000_000  # some seconds; the input may be endless
 TOO_MANY = f"more than {MAX_LINES:,} lines; leave some out."
 MAX_DOCUMENT = 1 << 28  # characters of JSON
 MAX_COLUMNS = 5000
-MAX_NAMES = 500  # of values that are printed with their names
 MAX_SHAPES = 10_000
 MAX_HEADS = 20  # lines that may be the head of the next row
 BLOCK = 1 << 16  # characters
@@ -322,8 +321,6 @@ class _Text:
                 return False
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
-            case {"columns": text}:
-                self._columns = re.findall(layout.cells, text)
             case {"over": text}:
                 self._over = [name.strip() for name in re.findall(layout.cells, text)]
             case {"row": text}:
@@ -344,9 +341,7 @@ class _Text:
         return True
 
     def _print(self, name: str, value: float | None, unit: str = "") -> None:
-        sheet = self._prints[-1]
-        if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
-            sheet.put(sheet.place(name, unit or self._unit(name)), self._line, value)
+        self._prints[-1].print(name, unit or self._unit(name), self._line, value)
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or that of its layout's times or energies."""
@@ -567,9 +562,7 @@ def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
     sheet = Sheet(wanted, is_printed=True)
     for line, item in enumerate(items):
         for name, text in _flat(item):
-            value = number(str(text))
-            if value is not None and (name in sheet.places or len(sheet.places) < MAX_NAMES):
-                sheet.put(sheet.place(name, split_unit(name)[1]), line, value)
+            sheet.print(name, split_unit(name)[1], line, number(str(text)))
     return [sheet]
 
 

@@ -19,6 +19,7 @@ from pendu_tui.tui.cli.units import plain, shown, split_unit
 
 LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
+MAX_NAMES = 500  # of values that are printed with their names
 NOT_TIMES = "its time never increases; name the column of times with --time."
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 REASONS = {
@@ -228,6 +229,11 @@ class Sheet:
     def put(self, place: int, line: int, value: float) -> None:
         self._lines[place].append(line)
         self._values[place].append(value)
+
+    def print(self, name: str, unit: str, line: int, value: float | None) -> None:
+        """Add a value that is printed with its name."""
+        if value is not None and (name in self.places or len(self.places) < MAX_NAMES):
+            self.put(self.place(name, unit), line, value)
 
     def put_row(self, line: int, numbers: Mapping[int, float | None]) -> None:
         for place in self.kept:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendu_tui.engine import library
+from pendu_tui.engine.run.record import Order, fluctuation, order_of
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli import units
@@ -226,8 +227,6 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
 
 def _finish(series: Series, options: argparse.Namespace) -> None:
     """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
-    from pendu_tui.tui.cli.tables import Wanted
-
     wanted = Wanted(units=options.units, step=options.step)
     series.finish(wanted, options.start, options.end)
     rows = len(series.times)
@@ -287,8 +286,6 @@ def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
 
 def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:
     """Return the orders as --fail-if compares them: as high as they may be, or not known."""
-    from pendu_tui.engine.run.record import Order
-
     power = orders.get("fluctuation_order")
     uncertainty = orders.get("fluctuation_order_uncertainty")
     if power is None or uncertainty is None:
@@ -303,8 +300,6 @@ def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict
 
     The drift has no order unless it is significant at each step size.
     """
-    from pendu_tui.engine.run.record import fluctuation, order_of
-
     drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
     orders = {
         "fluctuation_order": None,
