@@ -1,8 +1,8 @@
 """Measure what the project promises: one JSON object with each figure beside its limit.
 
 python -m tests.bench                     # everything; takes hours
-python -m tests.bench kill signals        # some benches
-python -m tests.bench monkey --share 0.1  # a tenth of the attempts
+python -m tests.bench kill peers          # some benches
+python -m tests.bench kill --share 0.1    # a tenth of the attempts
 python -m tests.bench golden OUT          # what the program says, to compare after a move: golden.py
 
 A bench is a module with `measure(share)`, which returns figures, and LIMITS, the largest values
@@ -19,16 +19,10 @@ from multiprocessing import get_context
 from typing import Any
 
 BENCHES = (
-    "damage",
     "foreign",
-    "hostile",
-    "ink",
     "judging",
     "kill",
-    "monkey",
     "peers",
-    "recording",
-    "signals",
     "yardstick",
 )
 

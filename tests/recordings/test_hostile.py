@@ -7,7 +7,7 @@ import pytest
 from tests.recordings.hostile import FILES, false_heads, write_file
 from tests.tui.command_line import pendu
 
-MANY = 500  # tests/bench/hostile.py: 90 000
+MANY = 500
 MAX_SECONDS = 10.0  # on a busy machine
 
 

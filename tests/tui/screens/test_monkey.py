@@ -1,4 +1,4 @@
-"""Hundreds of random events over all views, live and replay; tests/bench/monkey.py has more of them."""
+"""Hundreds of random events over all views, live and replay."""
 
 import itertools
 import os
