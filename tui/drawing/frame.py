@@ -326,7 +326,7 @@ def spread(wanted: Sequence[float], room: int) -> list[int]:
 
 
 def _mean(group: Sequence[float]) -> int:
-    return round(sum(group) / len(group))
+    return math.floor(sum(group) / len(group) + 0.5)
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:

@@ -63,7 +63,7 @@ def _verdict(line: TableLine, width: int) -> str:
     if missing := line.judgement.progress:
         count = f"{missing.have}/{missing.need}"
         texts = [str(missing), f"{count} {missing.unit}", count]
-    return next(text for text in texts if len(text) <= width)
+    return next((text for text in texts if len(text) <= width), verdict.word)
 
 
 def _angle(line: TableLine, width: int) -> str:

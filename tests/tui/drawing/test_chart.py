@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -182,7 +184,7 @@ def test_letters_have_rows_of_their_own_in_the_order_of_their_lines(wanted, room
     assert all(0 <= row < room for row in rows)
     if len(wanted) <= room:
         assert len(set(rows)) == len(rows)
-    own = [round(each) for each in wanted]
+    own = [math.floor(each + 0.5) for each in wanted]
     if len(set(own)) == len(own) and all(0 <= row < room for row in own):
         assert rows == own  # moved only where they must
 

@@ -5,6 +5,7 @@ import re
 import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN
 from pendu_tui.tui.playback.live import Live
@@ -77,6 +78,16 @@ def test_red_is_for_failures_and_errors_as_large_as_the_energy_and_signs_stand_f
     calm = after(SCENES["halving"], 40.0)
     assert verdicts(calm)[0] == ("+ grows", TEXT)  # by 19 % in a minute
     assert [ink for words, ink in verdicts(lab(1.0))] == [QUIET] * 4
+
+
+@pytest.mark.parametrize(
+    ("need", "width", "words"),
+    [(8, 120, "5 of 8 swings"), (8, 80, "5/8 swings"), (10**9, 80, "undecided")],
+)
+def test_an_undecided_verdict_says_how_far_it_is_if_there_is_room(need, width, words):
+    live = lab()
+    live.judgements = [Judgement(progress=Progress(5, need, "swings"))] * 4
+    assert all(line[22:].startswith(f"{words} ") for line in rows(live, width)[1:])
 
 
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
