@@ -290,7 +290,7 @@ def axes(viewport: Viewport) -> list[Word]:
     high = viewport.omega_at(0.0)
     words: list[Word] = [
         (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
-        for omega, label in number_ticks(low, high, max(bottom // 3, 1))
+        for omega, label in number_ticks(low, high, max(bottom // 2, 1))
     ]
     # pi may be at the very edge
     left = viewport.theta_at(0.0)
