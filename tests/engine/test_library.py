@@ -58,6 +58,13 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
 
 
+def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
+    monkeypatch.setattr("pendu_tui.engine.library.MAX_READINGS", 40)
+    assert len(simulate(h=0.1, time=2, methods="rk4,verlet").t) == 21
+    with pytest.raises(ValueError, match="21 steps are too many"):
+        simulate(h=0.1, time=2.1, methods="rk4,verlet")
+
+
 def test_results_print_briefly_and_refuse_other_methods_with_a_sentence():
     run = simulate(time=60, methods="rk4,verlet")
     for results in (run, limits(methods="rk4,verlet", steps=5)):
@@ -112,6 +119,11 @@ def test_a_judged_series_prints_as_the_command_does():
     assert lines[0].endswith("bounded")
     assert "nan" not in str(judge(TIMES, [*WAVE[:-1], math.nan]))
     assert "end at 1999" in str(judge(TIMES, [*WAVE[:-1], math.nan]))
+
+
+def test_the_trend_is_printed_in_percent_of_the_band():
+    half_the_band = WAVE + TIMES / len(TIMES)  # rises by 1, in a band from -1 to 1
+    assert "+50 % of its band" in str(judge(TIMES, half_the_band))
 
 
 def test_an_energy_that_never_changes_is_bounded_on_every_scale():

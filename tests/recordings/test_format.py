@@ -221,6 +221,11 @@ def test_texts_of_a_file_cannot_control_a_terminal(text):
     assert named.name == named.watch == printable(text)
 
 
+def test_a_text_that_is_too_long_is_cut_off_with_an_ellipsis_at_the_limit():
+    assert printable("x" * MAX_TEXT) == "x" * MAX_TEXT
+    assert printable("x" * (MAX_TEXT + 1)) == "x" * (MAX_TEXT - 1) + "…"
+
+
 @pytest.mark.parametrize("function", ["sin", "sqrt"])
 def test_a_fingerprint_is_reproducible_and_differs_if_one_value_does(monkeypatch, function):
     right = getattr(math, function)
