@@ -136,21 +136,12 @@ class AccuracyPane(Chooser[Point]):
         self.all = False  # whether to include methods outside the cast
         self._chosen: ErrorKind | None = None
         self._chart = Memo(self._charted)
-        self._start: object = None
+        self._study = Memo(self._begun)
 
     def _compute_missing(self, source: Source) -> None:
         scene = source.scene
         own = source.stepping.own
-        start = (scene.theta, scene.omega, scene.equations, self.cast, self.all)
-        if start != self._start:
-            self._start = start
-            self.workers.cancel_node(self)
-            self.time, self.steps = usual(scene, self.all)
-            self.here = ()
-            self.points = {}
-            self.cursor = self.pointer = None
-            every = with_all_methods(scene) if self.all else scene
-            self.compute(measured, every, self.time, self.steps, group="ladder")
+        self._study(scene.theta, scene.omega, scene.equations, self.cast, self.all)
         here = [max(1, round(self.time / abs(h))) for h in own]
         if here != self.here:
             self.here = here
@@ -159,8 +150,19 @@ class AccuracyPane(Chooser[Point]):
             if wanted:  # more steps would take too long
                 self.compute(measured, scene, self.time, wanted, group="here")
 
+    def _begun(self, *_: object) -> None:
+        """Begin a study, of which there is nothing yet."""
+        scene = self.source.scene
+        self.workers.cancel_node(self)
+        self.time, self.steps = usual(scene, self.all)
+        self.here = ()
+        self.points = {}
+        self.cursor = self.pointer = None
+        every = with_all_methods(scene) if self.all else scene
+        self.compute(measured, every, self.time, self.steps, group="ladder")
+
     def forget(self) -> None:
-        self._start = None
+        self._study.forget()
 
     def add(self, result: Point) -> None:
         self.points[result.method.key, result.steps] = result
@@ -207,7 +209,7 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def _state(self) -> tuple[object, ...]:
-        computed = self._start, self.here, len(self.points)
+        computed = self._study.arguments, self.here, len(self.points)
         chosen = self.index, self.cursor, self.chart
         return self.room, computed, chosen, self.shown
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
     from pendu_tui.engine.studies.section import Points
     from pendu_tui.tui.drawing.canvas import Canvas
-    from pendu_tui.tui.views.portrait import Section
+    from pendu_tui.tui.views.portrait import Portrait, Section
 
 TRAIL_SECONDS = 0.09  # of the clock, for which trails stay as they are: three frames
 DOTS = 4  # an arrow key moves the crosshair so far
@@ -54,8 +54,7 @@ class PhasePane(Chooser[State]):
         self.ring: Neighbourhood | None = None
         self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
-        self._ground: Canvas | None = None  # with trails, and what it shows
-        self._ground_key: object = None
+        self._ground = Memo(self._drawn_ground)
         self._ground_t = 0.0  # s, simulated
 
     @property
@@ -94,7 +93,6 @@ class PhasePane(Chooser[State]):
             Portrait,
             caption,
             method_points,
-            phase_ground,
             phase_picture,
             ring_text,
         )
@@ -106,16 +104,21 @@ class PhasePane(Chooser[State]):
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
-        line = self.shown.line
-        key = portrait.viewport, source.scene, self.cursor, self.aim, self.shown, sample.run
         seconds = abs(sample.t - self._ground_t) / abs(source.playhead.speed)
-        is_late = seconds >= TRAIL_SECONDS or source.playhead.paused
-        if is_late or key != self._ground_key:
-            self._ground_key = key
-            self._ground_t = sample.t
-            self._ground = phase_ground(portrait, points, self.cursor, self.aim, line)
-        plot = phase_picture(portrait, points, self._ground)
+        if seconds >= TRAIL_SECONDS or source.playhead.paused:
+            self._ground.forget()
+        state = source.scene, self.cursor, self.aim, self.shown, sample.run
+        plot = phase_picture(portrait, points, self._ground(portrait, *state))
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
+
+    def _drawn_ground(self, portrait: "Portrait", *_: object) -> "Canvas":
+        """Draw the trails, and what else stays the same for some frames."""
+        from pendu_tui.tui.views.portrait import method_points, phase_ground
+
+        assert self.sample is not None
+        self._ground_t = self.sample.t
+        points = method_points(self.source, self.sample, self.shown, self.ring)
+        return phase_ground(portrait, points, self.cursor, self.aim, self.shown.line)
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         scene = source.scene
