@@ -207,7 +207,7 @@ class Sheet:
         self.places: dict[str, int] = {}  # of columns by name
         self._lines: list[array[int]] = []
         self._values: list[array[float]] = []
-        self._wanted = wanted
+        self.wanted = wanted
         self._is_printed = is_printed
 
     def add_column(self, name: str, unit: str = "") -> int:
@@ -272,7 +272,7 @@ class Sheet:
             for place in reversed(once):
                 for columns in (self.names, self.units, self._lines, self._values):
                     del columns[place]
-        self.choice = choose(self.names, self.units, samples, self._wanted)
+        self.choice = choose(self.names, self.units, samples, self.wanted)
         self.kept = (self.choice or Choice()).columns
         if not self.kept and len(self):
             self.kept = [0]  # to count rows
@@ -405,9 +405,10 @@ class Series:
         parts = zip(bare, group, strict=True)
         return "+".join(name or f"column {place + 1}" for name, place in parts) or "row"
 
-    def finish(self, wanted: Wanted, start: float = -math.inf, end: float = math.inf) -> None:
+    def finish(self, start: float = -math.inf, end: float = math.inf) -> None:
         """Apply step and units, add up columns, leave out and count rows that cannot be used."""
         choice = self.choice
+        wanted = self.sheet.wanted
         self.units = self._units(wanted)
         times = np.where(np.abs(self.times) < LATEST, self.times, -np.inf)
         if wanted.step:

@@ -227,8 +227,7 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
 
 def _finish(series: Series, options: argparse.Namespace) -> None:
     """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
-    wanted = Wanted(units=options.units, step=options.step)
-    series.finish(wanted, options.start, options.end)
+    series.finish(options.start, options.end)
     rows = len(series.times)
     if series.skipped["time_not_later"] > rows:
         raise unreadable(

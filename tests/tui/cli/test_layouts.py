@@ -221,6 +221,6 @@ def test_each_layout_reads_its_case(layout):
     stream = io.BufferedReader(io.BytesIO(text.encode()))
     sheets = read_sheets(stream, Wanted(), layout.file.replace("\\", ""))
     series = [series for sheet in sheets for series in sheet.series()][-1]
-    series.finish(Wanted())
+    series.finish()
     assert described(series) == finds
     assert series.choice.doubt == ""

@@ -30,12 +30,11 @@ def rows(form: str, samples=SAMPLES) -> str:
 def tables(data: str | bytes, **wanted) -> list[Series]:
     """Return the tables of a file, finished."""
     stream = io.BytesIO(data.encode() if isinstance(data, str) else data)
-    ask = Wanted(**wanted)
-    sheets = read_sheets(io.BufferedReader(stream), ask)
+    sheets = read_sheets(io.BufferedReader(stream), Wanted(**wanted))
     found = [series for sheet in sheets for series in sheet.series()]
     for series in found:
         if series.choice.energy:
-            series.finish(ask)
+            series.finish()
     return found
 
 
@@ -199,7 +198,7 @@ def test_printed_values_after_the_first_nan_are_nan_too():
     stream = io.BytesIO((rows("t = {t}, E = nan") + rows("t = 1{n:02}, E = {e}")).encode())
     (sheet,) = read_sheets(io.BufferedReader(stream), Wanted())
     (series,) = sheet.series()
-    series.finish(Wanted(), 40.0)
+    series.finish(40.0)
     assert series.failed_at == 40.0
 
 

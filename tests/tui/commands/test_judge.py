@@ -32,13 +32,12 @@ def table(form: str = "{t},{e}", head: str = "t,E") -> str:
 def read(data: str | bytes, time: str | None = None, energy: str | None = None) -> Series:
     """Return the last table, finished."""
     stream = io.BytesIO(data.encode() if isinstance(data, str) else data)
-    wanted = Wanted(time, energy)
-    sheets = read_sheets(io.BufferedReader(stream), wanted)
+    sheets = read_sheets(io.BufferedReader(stream), Wanted(time, energy))
     found = [series for sheet in sheets for series in sheet.series() if sheet.choice]
     if not found:
         raise UserError("nothing")
     found[-1].count = len(found)
-    found[-1].finish(wanted)
+    found[-1].finish()
     return found[-1]
 
 
