@@ -160,9 +160,7 @@ class Judged:
     uncertainty: float | None  # of the slope: 68 % lie within
     bound: float | None  # |slope| is below it with a probability of 99 %
     share: float | None  # what the slope adds up to, over the width of the band
-    rests: (
-        bool  # the energy has left its start and stays in another band; the slope is that of rest
-    )
+    rests: bool  # the energy left its start and stays in another band; the slope is of that rest
     error: float  # the distance of the last energy from the first, over the scale
     max_error: float  # the largest such distance
     fluctuation: float | None  # standard deviation about a line, over the scale

@@ -59,8 +59,8 @@ class SceneList:
 def scenes_of(options: argparse.Namespace, lesson: bool = False) -> SceneList:
     """Return the scenes that the options describe; of a file with a `lesson`, the first.
 
-    Raises UserError for an unknown name, SceneError for
-    bad numbers in any combination, and OwnMethodError for a bad function.
+    Raises UserError for an unknown name, SceneError for bad numbers in any combination, and
+    OwnMethodError for a bad function.
     """
     if options.scene and options.scene_option:
         raise UserError(

@@ -303,9 +303,8 @@ class Sheet:
             here &= has_value
         last = np.flatnonzero(here).max(initial=-1)
         inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
-        if (
-            len(here) - 1 - last > max(inner, 1) and last >= 0
-        ):  # the energy ended, it is not only rarer
+        missing = len(here) - 1 - last  # rows after the last energy
+        if last >= 0 and missing > max(inner, 1):  # it ended, it is not only rarer
             here[last + 1 :] = True
         columns = {place: column[here] for place, column in columns.items()}
         rows = int(np.count_nonzero(here))
