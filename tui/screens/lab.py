@@ -54,6 +54,7 @@ from pendu_tui.tui.words.numbers import seconds
 from pendu_tui.tui.words.plain_text import description, event_lines, numbered
 
 STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
+LEFT_LESSON = "T resumes the lesson; u brings back the run before it."
 
 
 class State(NamedTuple):
@@ -424,7 +425,7 @@ class LabScreen(SizedScreen[None]):
     async def action_lesson(self) -> None:
         """Begin or resume the lesson, or leave it."""
         if self.is_guided:
-            self._leave_lesson("T goes on with the lesson; u brings back the run before it.")
+            self._leave_lesson(LEFT_LESSON)
             return
         before = (self.state, self.view, self.lesson)
         self.guide = self.guide or tour()
@@ -478,7 +479,7 @@ class LabScreen(SizedScreen[None]):
     def action_back(self) -> None:
         """Leave the lesson, else the zoom of the chart."""
         if self.is_guided:
-            self._leave_lesson("T goes on with the lesson; u brings back the run before it.")
+            self._leave_lesson(LEFT_LESSON)
         elif self.shown.stretch:
             self.change_shown(self.shown.zoomed(None))
 
