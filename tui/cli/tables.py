@@ -99,19 +99,12 @@ def find(names: Sequence[str], text: str) -> Group | None:
     known |= {str(place + 1): place for place in range(len(names))}
     known.pop("", None)
     for parts in ([text.strip()], text.split("+")):
-        keys = [
-            next(
-                (
-                    way
-                    for way in (part.strip(), part.strip().casefold(), _bare(part))
-                    if way in known
-                ),
-                None,
-            )
-            for part in parts
-        ]
-        if None not in keys:
-            return tuple(known[key] for key in keys if key is not None)
+        found = []
+        for part in parts:
+            spellings = (part.strip(), part.strip().casefold(), _bare(part))
+            found += [known[each] for each in spellings if each in known][:1]
+        if len(found) == len(parts):
+            return tuple(found)
     return None
 
 
