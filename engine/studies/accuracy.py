@@ -270,9 +270,7 @@ def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, i
     return _cached_study(scene, time, loops).run(scene.cast[index], steps)
 
 
-@lru_cache(maxsize=1)
-def _cached_study(scene: Scene, time: float, loops: LoopsOf) -> Study:
-    return Study(scene, time, loops)
+_cached_study = lru_cache(maxsize=1)(Study)
 
 
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
