@@ -270,7 +270,7 @@ def is_new(values: Any, last: Any, move: float) -> bool:
 
 
 def without_wave(times: Any, values: Any) -> Any:
-    """Return values without the wave that explains what a line leaves; if none does, as they are."""
+    """Return values without the wave that explains what a line leaves, or unchanged without one."""
     x = (times - times[0]) / (times[-1] - times[0])
     level = np.full_like(x, 1 / math.sqrt(len(x)))
     line = _unit(_without(x, (level,)))

@@ -21,18 +21,18 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 929_000,
-    "characters_of_engine": 282_600,
-    "characters_of_recordings": 79_300,
-    "characters_of_tui": 567_300,
-    "characters_of_tests": 758_300,
-    "characters_of_bench": 95_600,
-    "files": 190,
+    "characters": 897_000,
+    "characters_of_engine": 272_100,
+    "characters_of_recordings": 73_100,
+    "characters_of_tui": 552_000,
+    "characters_of_tests": 786_000,
+    "characters_of_bench": 80_000,
+    "files": 131,
     "long_lines": 0,
     "parallel_assignments": 15,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
-    "numeric_constants": 239,
+    "numeric_constants": 238,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 

@@ -25,7 +25,7 @@ class Layout:
     and its `value`, perhaps with a `unit`; `over`, names above a line of numbers; the `place` of a
     column, from 1, or the `set` of xmgrace, from 0, and its `label`; the name of the `first`
     column, `units` of the others; the beginning of a new run (`part`); the `end` of the data, until
-    they begin `again`.  A group of any other name is a value of that name.
+    they begin `again`.  A group `step` is a value of that name.
     """
 
     programs: str
