@@ -16,7 +16,7 @@ from pendu_tui.engine.methods import GENERAL, Method
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.record import judge_record
-from pendu_tui.engine.run.verdicts import CHAOTIC, UNDECIDED, Judgement
+from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.bench.truths import WINDOWS, letter, runner
 from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
@@ -132,14 +132,16 @@ def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement
 def exclude(of_run: Judgement, alone: Judgement) -> bool:
     """Return whether words or slopes of the same energies exclude each other.
 
-    Slopes do if that of the run is outside the record's bound by three uncertainties; words do not
-    where one judges what rests and the other the way there.
+    Slopes do if that of the run is outside a bounded record's bound by three uncertainties; words
+    do not where one judges what rests and the other the way there.
     """
     words = {of_run.verdict, alone.verdict} - {UNDECIDED, CHAOTIC}
     if len(words) == 2 and not (of_run.rests or alone.rests):
         return True
-    if of_run.slope is None or of_run.uncertainty is None or alone.bound is None:
+    if alone.verdict != BOUNDED or of_run.slope is None:
         return False
+    assert alone.bound is not None
+    assert of_run.uncertainty is not None
     return abs(of_run.slope) > alone.bound + 3 * of_run.uncertainty
 
 

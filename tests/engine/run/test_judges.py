@@ -142,10 +142,11 @@ def test_a_run_and_its_energies_alone_do_not_exclude_each_other(name: str) -> No
 
 
 @settings(max_examples=10, deadline=None, derandomize=True)  # tests/bench/judging.py: 200
-@given(theta=st.floats(0.05, 3.0), z=st.floats(0.02, 1.5), method=st.sampled_from(GENERAL))
+@given(theta=st.floats(0.05, 2.5), z=st.floats(0.02, 1.5), method=st.sampled_from(GENERAL))
 def test_a_random_run_and_its_energies_do_not_exclude_each_other(theta, z, method) -> None:
+    """Over twenty swings: an unfinished one of few is a slope in a run's bins."""
     scene = Scene(theta=theta, h=z / Scene().w0, cast=(method,))
-    ((_, of_run, alone),) = judgements(scene, 40.0)
+    ((_, of_run, alone),) = judgements(scene, 60.0)
     assert not exclude(of_run, alone)
 
 
