@@ -20,6 +20,7 @@ from typing import Any
 
 BENCHES = (
     "foreign",
+    "ink",
     "judging",
     "kill",
     "peers",
