@@ -43,7 +43,7 @@ def test_the_wheel_holds_each_file_of_the_three_rooms_and_nothing_else(built):
     ours = {name for name in names if not name.startswith(f"{DIST_INFO}/")}
     assert ours == {f"pendu_tui/{name}" for name in tracked()}
     kinds = {Path(name).suffix for name in ours}
-    assert {".tcss", ".mcap", ".json"} <= kinds, "styles, golden recordings and the Foxglove layout"
+    assert {".tcss", ".mcap", ".toml"} <= kinds, "styles, golden recordings, the tour"
 
 
 def test_a_wheel_of_the_sdist_would_hold_the_same_files(built):
