@@ -194,10 +194,11 @@ class Scene:
             }
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
-        other = replace(self, **fields)
-        if other == self:
+        if all(value == getattr(self, name) for name, value in fields.items()):
             return self
-        return replace(other, name="custom", watch="", often_said="", shot=Shot())
+        return replace(
+            self, **{**fields, "name": "custom", "watch": "", "often_said": "", "shot": Shot()}
+        )
 
     def with_cast(self, cast: Cast) -> "Scene":
         """Return the scene with other methods; `watch` stays if all its methods stay."""
