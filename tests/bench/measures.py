@@ -26,7 +26,7 @@ CEILINGS = {
     "characters_of_recordings": 73_100,
     "characters_of_tui": 552_000,
     "characters_of_tests": 786_000,
-    "characters_of_bench": 80_000,
+    "characters_of_bench": 86_000,
     "files": 131,
     "long_lines": 0,
     "parallel_assignments": 15,
