@@ -138,14 +138,14 @@ def when_continued(handler: Callable[..., object]) -> None:
 
 def is_stopped(process: int) -> bool:
     """Return whether a process has been stopped by a signal."""
-    if sys.platform == "win32":
-        return False
-    try:
-        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2]
-    except OSError:  # macOS
-        import subprocess
+    state = ""
+    if sys.platform != "win32":
+        try:
+            state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2]
+        except OSError:  # macOS
+            import subprocess
 
-        state = subprocess.getoutput(f"ps -o state= -p {process}")
+            state = subprocess.getoutput(f"ps -o state= -p {process}")
     return state.strip().startswith("T")
 
 
