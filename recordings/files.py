@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os.path import lexists
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import NamedTuple
 
 from pendu_tui.recordings.system import lock, rename
 
@@ -95,17 +95,24 @@ def free_path(path: Path) -> Path:
     return candidate
 
 
-def check_target(path: Path, force: bool = False) -> None:
-    """Raise DiskError if the name is taken, its folder is missing, or it is "-"."""
+def check_target(path: Path, force: bool | None = False) -> None:
+    """Raise DiskError if no file can be written under this name.
+
+    With `force` it may be taken; None: where --force is no option.  A device or a pipe is fine.
+    """
+    if is_stream(path):
+        return
     if str(path) == "-":
         raise DiskError("is no name for a file; choose another", path)
     why = "already exists; choose another name"
-    if path.is_dir():
+    if path.is_dir() or (force is None and lexists(path)):
         raise NameTakenError(why, path)
-    if not force and os.path.lexists(path):
+    if not force and lexists(path):
         raise NameTakenError(f"{why}, or --force to overwrite it", path)
     if not path.parent.is_dir():
         raise DiskError(f"no folder {path.parent}; choose a folder that exists", path)
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise DiskError("its folder is not writable; choose another", path)
 
 
 def is_stream(path: Path) -> bool:
@@ -150,26 +157,20 @@ def new_path(where: Path | None = None) -> Path:
     return free_path((where or folder()) / name)
 
 
-def listing(where: Path | None = None) -> list[Item]:
-    """Return the recordings that no lab is making, finished or not, the newest first."""
+def listing(where: Path | None = None, being_made: bool = False) -> list[Item]:
+    """Return the recordings that no lab is making, or that one is, the newest first."""
     items = []
     for path in _files(where):
         with suppress(OSError):  # deleted meanwhile
-            if path.suffix == PART and in_use(path):
-                continue
-            status = path.stat()
-            items.append(Item(path, status.st_size, status.st_mtime))
+            if (path.suffix == PART and in_use(path)) == being_made:
+                status = path.stat()
+                items.append(Item(path, status.st_size, status.st_mtime))
     return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
 
 
 def golden_names() -> list[str]:
     """Return the names of the bundled recordings."""
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
-
-
-def being_made(where: Path | None = None) -> list[Path]:
-    """Return the recordings that a lab is making."""
-    return [path for path in _files(where) if path.suffix == PART and in_use(path)]
 
 
 def _files(where: Path | None) -> list[Path]:
@@ -202,13 +203,3 @@ def in_use(path: Path) -> bool:
     except OSError:
         return True
     return False
-
-
-def open_file(path: Path) -> BinaryIO:
-    """Open a file to read."""
-    if is_stream(path):
-        raise RecordingError("this is a device or a pipe; save it as a file")
-    try:
-        return path.open("rb")
-    except OSError as error:
-        raise RecordingError(error.strerror or str(error)) from error

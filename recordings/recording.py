@@ -16,7 +16,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene, SceneError
 from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
-from pendu_tui.recordings.files import RecordingError, named, open_file
+from pendu_tui.recordings.files import RecordingError, is_stream, named
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
@@ -99,7 +99,9 @@ class Recording:
         Raises RecordingError if it has another format or no run.
         """
         with named(path):
-            stream = open_file(path)
+            if is_stream(path):
+                raise RecordingError("this is a device or a pipe; save it as a file")
+            stream = path.open("rb")
             try:
                 return cls(path, stream, read_contents(stream, check))
             except BaseException:
@@ -130,20 +132,13 @@ class Recording:
         later = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start"))
         chunk = max(0, later - 1)
         entry = bisect_right(self._decode(chunk), round(clock, 9), key=attrgetter("clock"))
-        return self.previous(SamplePlace(chunk, entry)) or self.next(SamplePlace(0, -1))
+        return self.beside(SamplePlace(chunk, entry), -1) or self.beside(SamplePlace(0, -1), 1)
 
     def sample(self, place: SamplePlace) -> Entry:
         return self._decode(place.chunk)[place.entry]
 
-    def next(self, place: SamplePlace) -> SamplePlace | None:
-        """Return the next sample; None after the last."""
-        return self._sample_from(place, 1)
-
-    def previous(self, place: SamplePlace) -> SamplePlace | None:
-        """Return the sample before; None before the first."""
-        return self._sample_from(place, -1)
-
-    def _sample_from(self, place: SamplePlace, direction: int) -> SamplePlace | None:
+    def beside(self, place: SamplePlace, direction: int) -> SamplePlace | None:
+        """Return the next sample (1) or the one before (-1); None where there is none."""
         chunk, entry = place
         while 0 <= chunk < len(self._places):
             entries = self._decode(chunk)
@@ -199,7 +194,7 @@ class Recording:
         chunks_to_read.append(len(self._places) - 1)
         for chunk in dict.fromkeys(chunks_to_read):
             entries = self._decode(chunk)
-            if last_before := self.previous(SamplePlace(chunk, 0)):
+            if last_before := self.beside(SamplePlace(chunk, 0), -1):
                 entries = [self.sample(last_before), *entries]
             for clock, sample in entries:
                 if isinstance(sample, Sample):

@@ -11,7 +11,6 @@ from pendu_tui.recordings.files import (
     GOLDEN,
     DiskError,
     RecordingError,
-    being_made,
     listing,
     new_path,
 )
@@ -104,7 +103,7 @@ def test_a_recording_in_progress_is_not_listed_among_the_unfinished(folder):
         recorder.event(start(), 0.0)
         recorder.flush()
         assert [item.path for item in listing()] == [killed]
-        assert being_made() == [recorder.part]
+        assert [item.path for item in listing(being_made=True)] == [recorder.part]
 
 
 def test_files_of_other_programs_are_not_listed(folder):

@@ -32,11 +32,11 @@ def expected():
 
 def places(recording):
     place = recording.at(0.0)
-    while recording.previous(place):
-        place = recording.previous(place)
+    while recording.beside(place, -1):
+        place = recording.beside(place, -1)
     while place:
         yield place
-        place = recording.next(place)
+        place = recording.beside(place, 1)
 
 
 def test_everything_recorded_is_read_in_order(recording):
@@ -54,7 +54,7 @@ def test_stepping_reaches_every_sample_in_both_directions(recording):
     assert samples_of(recording) == samples
     assert [clock for clock, _ in samples].count(2.5) == 2
     back = [forth[-1]]
-    while before := recording.previous(back[-1]):
+    while before := recording.beside(back[-1], -1):
         back.append(before)
     assert back[::-1] == forth
 

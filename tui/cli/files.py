@@ -27,10 +27,10 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
     from pendu_tui.recordings.files import check_target, is_stream, publish, writing
 
+    check_target(path, force)
     if is_stream(path):
         yield path
         return
-    check_target(path, force)
     with writing(path):
         handle, name = mkstemp(".part", f".{path.name[:100]}.", path.parent)
         os.close(handle)
@@ -54,14 +54,6 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
         return
     with whole_file(path, force) as part, part.open("w", encoding="utf-8", newline="") as stream:
         yield stream
-
-
-def check_free(path: Path, force: bool) -> None:
-    """Raise DiskError if this name is taken and must not, or cannot, be overwritten."""
-    from pendu_tui.recordings.files import check_target, is_stream
-
-    if not is_stream(path):
-        check_target(path, force)
 
 
 def keep_older(path: Path | None) -> None:

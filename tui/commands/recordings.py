@@ -9,7 +9,6 @@ from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.files import check_free
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.commands.report import Column, Report, Table, fields_of
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
@@ -32,7 +31,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _list(options: argparse.Namespace) -> Report:
     rows = [_facts(item) for item in files.listing()]
-    notes = [f"recording now: {path.with_suffix('')}" for path in files.being_made()]
+    notes = [
+        f"recording now: {item.path.with_suffix('')}" for item in files.listing(being_made=True)
+    ]
     if not (rows or notes):
         notes = [f"No recordings in {files.folder()} yet; start pendu-tui to make one."]
     columns = (
@@ -127,7 +128,7 @@ def _recover(options: argparse.Namespace) -> Report:
     if options.output is None:
         raise UserError("name the file to write: -o OUT.")
     path = resolve(options.file)
-    check_free(options.output, options.force)
+    files.check_target(options.output, options.force)
     if options.output.exists() and path.samefile(options.output):
         raise UserError(f"{path} is read by this command; choose another name to write.")
     result = recover(path, options.output, options.force)

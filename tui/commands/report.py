@@ -18,9 +18,9 @@ from rich.table import Table as RichTable
 from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.files import printable
+from pendu_tui.recordings.files import check_target, printable
 from pendu_tui.tui.cli.errors import MAX_CELL, UserError, say
-from pendu_tui.tui.cli.files import FIGURES, check_free, text_file, whole_file
+from pendu_tui.tui.cli.files import FIGURES, text_file, whole_file
 
 Form = Literal["table", "json", "csv", "figure"]
 
@@ -228,7 +228,7 @@ def check_output(options: argparse.Namespace) -> Form:
     """
     form = form_of(options)
     if options.output:
-        check_free(options.output, options.force)
+        check_target(options.output, options.force)
     if form == "figure" and find_spec("matplotlib") is None:
         suffix = options.output.suffix
         raise UserError(f"{suffix} files need an extra: pip install 'pendu-tui[plot]'.")

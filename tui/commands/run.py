@@ -18,10 +18,11 @@ from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
+from pendu_tui.recordings.files import check_target
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
-from pendu_tui.tui.cli.files import check_free, keep_older, stop_requests
+from pendu_tui.tui.cli.files import keep_older, stop_requests
 from pendu_tui.tui.cli.scene import SceneList, scenes_of
 from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.cli.workers import work_of
@@ -84,7 +85,7 @@ def _check_time(scene: Scene, seconds: float) -> None:
 def run_one(scene: Scene, options: Namespace, gate: Gate | None) -> Exit:
     if options.record:
         check_fits(scene.cast)
-        check_free(options.record, options.force)
+        check_target(options.record, options.force)
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
     began = time.perf_counter()

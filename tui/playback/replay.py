@@ -121,9 +121,9 @@ class Replay(Source):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        move = self.recording.next if n > 0 else self.recording.previous
+        direction = int(math.copysign(1, n))
         for _ in range(abs(n)):
-            if not self._closed and (place := move(self._place)):
+            if not self._closed and (place := self.recording.beside(self._place, direction)):
                 self._show(place)
         self.playhead.position = self.recording.sample(self._place).clock
         self._know()
@@ -167,7 +167,7 @@ class Replay(Source):
         # files round clocks to nanoseconds
         target = self.recording.at(self.playhead.position + 1e-9) or self._place
         for _ in range(MAX_FOLLOWED):
-            if self._place < target and (following := self.recording.next(self._place)):
+            if self._place < target and (following := self.recording.beside(self._place, 1)):
                 self._show(following)
         if target != self._place:
             self._show(target, jump=self._place < target)

@@ -53,19 +53,12 @@ def check(options: argparse.Namespace) -> None:
 def recording_path(file: Path | None, folder: Path | None = None) -> Path:
     """Return where to record: the given file, or a new one in the library.
 
-    Raises UserError or OSError.
+    Raises OSError if it cannot be written.
     """
-    if file is not None and file.exists():
-        raise UserError(f"{file} exists already: choose another name or delete it.", Exit.DISK)
     path = file or files.new_path(folder)
     if file is None:
         path.parent.mkdir(parents=True, exist_ok=True)
-    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
-        raise UserError(
-            f"{path.parent} is not writable: choose another folder with --record or "
-            "PENDU_RECORDINGS, or turn recording off with --no-record.",
-            Exit.DISK,
-        )
+    files.check_target(path, force=None)
     return path
 
 

@@ -26,7 +26,7 @@ def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path
 def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):
     path = tmp_path / "mine.mcap"
     path.write_bytes(b"precious")
-    taken = ("exists already", "choose another name")
+    taken = ("already exists", "choose another name")
     assert pendu("live", "--plain", "--record", path).refused(5, *taken)
     assert path.read_bytes() == b"precious"
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
