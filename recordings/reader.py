@@ -31,7 +31,9 @@ _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, an
 _INDEX = struct.Struct("<BQQQQQI")  # opcode, length, start, end [ns], offset, size, that of its map
 _CHUNK_INDEX = int(Opcode.CHUNK_INDEX)
 _IN_MAP = 10  # bytes of a channel's number, of which the lowest is the first, and its offset
-_CHUNK = struct.Struct("<BQQQQI8sQ")  # see _Head
+_CHUNK = struct.Struct(
+    "<BQQQQI8sQ"
+)  # opcode, length, start, end [ns], size, CRC, _ZSTD, packed size
 _ZSTD = b"\x04\x00\x00\x00zstd"
 _BEFORE_ZSTD = 37  # bytes of a chunk's record
 _MAX_HEAD = _CHUNK.size + 18  # with the largest head of a zstd frame
@@ -45,19 +47,6 @@ class Group(NamedTuple):
     log_time: int  # ns
     channels: list[int]
     data: list[bytes]
-
-
-class _Head(NamedTuple):
-    """The head of a chunk."""
-
-    opcode: int
-    length: int  # of what follows
-    start: int  # ns, log_time of its first message
-    end: int  # ns, log_time of its last message
-    size: int  # bytes of its contents
-    checksum: int  # of its contents
-    compression: bytes
-    packed: int  # bytes of its compressed contents
 
 
 class Place(NamedTuple):
@@ -147,7 +136,7 @@ def _read_index(data: bytes) -> Contents:
     while at < len(data):
         if data[at] == _CHUNK_INDEX:
             _, length, start, end, offset, size, map_size = _INDEX.unpack_from(data, at)
-            if offset < chunks_end or not start <= end <= MAX_TIME:
+            if offset < chunks_end:
                 raise ValueError
             chunks_end = offset + size
             begin = at + _INDEX.size
@@ -170,47 +159,36 @@ def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Group
 
     Raises RecordingError if there is no intact chunk.
     """
-    stream.seek(offset)
-    head = _head_at(stream.read(_MAX_HEAD), 0)
-    if head is None:
-        raise RecordingError("a chunk is damaged")
-    return _unpacked(stream, offset, head)
-
-
-def _head_at(block: bytes, at: int) -> _Head | None:
-    """Return the head of a chunk, or None if its numbers and its frame cannot be those of one."""
     try:
-        head = _Head(*_CHUNK.unpack_from(block, at))
-        is_possible = (
-            head.opcode == Opcode.CHUNK
-            and head.compression == _ZSTD
-            and head.length == _CHUNK.size - _RECORD.size + head.packed
-            and head.length <= MAX_RECORD
-            and head.size <= min(MAX_RECORD, MAX_EXPANSION * (head.length + 128))
-            and head.start <= head.end <= MAX_TIME
-        )
-        if is_possible:
-            frame = block[at + _CHUNK.size : at + _MAX_HEAD]
-            if zstandard.frame_content_size(frame) == head.size:  # what zstandard allocates
-                return head
-    except (struct.error, zstandard.ZstdError):
-        pass
-    return None
-
-
-def _unpacked(stream: BinaryIO, offset: int, head: _Head) -> tuple[list[Channel], list[Group]]:
-    """Return the channels and messages of a chunk whose head has been read."""
-    try:
+        stream.seek(offset)
+        packed, checksum = _head_at(stream.read(_MAX_HEAD), 0)
         stream.seek(offset + _CHUNK.size)
-        data = zstandard.ZstdDecompressor().decompress(stream.read(head.packed))
-        if zlib.crc32(data) != head.checksum:
+        data = zstandard.ZstdDecompressor().decompress(stream.read(packed))
+        if zlib.crc32(data) != checksum:
             raise ValueError
-        channels, groups = _records(data)
-        if (groups[0].log_time, groups[-1].log_time) != (head.start, head.end):
-            raise ValueError
+        return _records(data)
     except Exception as error:  # see _read_summary
         raise RecordingError("a chunk is damaged") from error
-    return channels, groups
+
+
+def _head_at(block: bytes, at: int) -> tuple[int, int]:
+    """Return the compressed size of a chunk's contents, and their checksum, from its head.
+
+    Raises ValueError, ZstdError or struct.error if its numbers cannot be those of a chunk.
+    """
+    opcode, length, _, _, size, checksum, compression, packed = _CHUNK.unpack_from(block, at)
+    is_possible = (
+        opcode == Opcode.CHUNK
+        and compression == _ZSTD
+        and length == _CHUNK.size - _RECORD.size + packed
+        and length <= MAX_RECORD
+        and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
+    )
+    frame = block[at + _CHUNK.size : at + _MAX_HEAD]
+    # what zstandard allocates
+    if not is_possible or zstandard.frame_content_size(frame) != size:
+        raise ValueError
+    return packed, checksum
 
 
 def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
@@ -227,8 +205,8 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
         opcode, length, channel, sequence, log_time, _ = _MESSAGE.unpack_from(data, at)
         end = at + before + length
         if opcode == is_message:
-            if log_time < latest:
-                raise ValueError("time runs back")
+            if not latest <= log_time <= MAX_TIME:
+                raise ValueError("time runs back, or is too late")
             if sequence != current or log_time > latest:
                 latest = log_time
                 current = sequence
@@ -240,6 +218,8 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
         elif opcode == Opcode.CHANNEL:
             declared.append(Channel.read(ReadDataStream(BytesIO(data[at + before : end]))))
         at = end
+    if not groups:
+        raise ValueError("no messages")
     return declared, groups
 
 
@@ -285,16 +265,15 @@ def _intact_chunks(stream: BinaryIO, size: int) -> Iterator[tuple[int, list[Chan
         following = begin + _BLOCK - _MAX_HEAD  # a head is whole in one of two blocks
         at = -1
         while (at := block.find(_ZSTD, at + 1 + _BEFORE_ZSTD) - _BEFORE_ZSTD) >= 0:
-            head = _head_at(block, at)
-            if head is None:
-                continue
+            packed = 0
             try:
-                channels, groups = _unpacked(stream, begin + at, head)
-            except RecordingError:
-                in_vain += head.packed
+                packed, _ = _head_at(block, at)
+                channels, groups = read_chunk(stream, begin + at)
+            except (ValueError, struct.error, zstandard.ZstdError, RecordingError):
+                in_vain += packed
                 continue
             yield begin + at, channels, groups
-            following = begin + at + _RECORD.size + head.length
+            following = begin + at + _CHUNK.size + packed
             break
         begin = following
 

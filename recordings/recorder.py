@@ -6,8 +6,8 @@ It writes NAME.mcap.part, which becomes NAME.mcap when it is finished.
 import json
 import os
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from threading import RLock, Thread
@@ -252,19 +252,13 @@ class LiveRecorder(Recorder):
         Thread(target=self._keep, name="recorder", daemon=True).start()
 
     def event(self, event: Event, clock: float) -> None:
-        with self._turn() as is_open:
-            if is_open:
-                super().event(event, clock)
+        self._in_turn(super().event, event, clock)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        with self._turn() as is_open:
-            if is_open:
-                super().sample(sample, clock)
+        self._in_turn(super().sample, sample, clock)
 
     def close(self) -> None:
-        with self._turn() as is_open:
-            if is_open:
-                super().close()
+        self._in_turn(super().close)
 
     def _publish_time(self, log_time: int) -> int:
         return time.time_ns()
@@ -272,22 +266,20 @@ class LiveRecorder(Recorder):
     def _keep(self) -> None:
         while not self._file.closed:
             time.sleep(FLUSH_EVERY)
-            with self._turn() as is_open:
-                if is_open and self._unflushed:
-                    self.flush()
+            if self._unflushed:
+                self._in_turn(self.flush)
 
-    @contextmanager
-    def _turn(self) -> Iterator[bool]:
-        """Keep other threads away in the block; yield whether it may write.
+    def _in_turn(self, write: Callable[..., None], *arguments: Any) -> None:
+        """Write, if that is possible, while other threads wait.
 
         A disk that blocks another thread for too long counts as failed.
         """
         if not self._lock.acquire(timeout=MAX_WAIT):
             self._fail(DiskError("the disk does not answer", self.part))
-            yield False
             return
         try:
-            yield self.failed is None and not self._file.closed
+            if self.failed is None and not self._file.closed:
+                write(*arguments)
         except NameTakenError:
             pass  # `close` has found another name
         except DiskError as error:
