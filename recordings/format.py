@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 import msgspec
 
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
-from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES, RECORDED
+from pendu_tui.engine.models.model import Number
+from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES, RECORDED, Quantity
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
 from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
@@ -80,8 +81,9 @@ class Field(NamedTuple):
         return schema
 
 
-def _ascii(unit: str) -> str:
-    return unit.replace("⁻", "^-").replace("¹", "1").replace("²", "2")
+def _field(number: Quantity | Number, required: bool = True) -> Field:
+    unit = number.unit.replace("⁻", "^-").replace("¹", "1").replace("²", "2")
+    return Field(number.name, unit, number.about, required=required)
 
 
 def _optional(type: str, *names: str) -> tuple[Field, ...]:
@@ -91,29 +93,23 @@ def _optional(type: str, *names: str) -> tuple[Field, ...]:
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
 """The run and the time of a sample or an event."""
 
-READING = tuple(
-    Field(each.name, _ascii(each.unit), each.about, required=each.recorded == "always")
-    for each in RECORDED
-)
+READING = tuple(_field(each, required=each.recorded == "always") for each in RECORDED)
 """The attributes of a Reading except `extra`."""
 
-EXTRA = {
-    key: tuple(Field(own.name, _ascii(own.unit), own.about) for own in model.variables)
-    for key, model in MODELS.items()
-}
+EXTRA = {key: tuple(map(_field, model.variables)) for key, model in MODELS.items()}
 """The additional variables of each model."""
 
 EVENT = (
     Field("kind", type="string", values=get_args(EventKind)),
     *_optional("string", "scene", "model", "watch"),
-    *(Field(each.name, _ascii(each.unit), required=False) for each in NUMBERS.values()),
+    *(_field(each, required=False) for each in NUMBERS.values()),
     *_optional("array", "methods", "sources"),  # source code of a user's own methods
     *_optional("integer", "numerics"),
     *_optional("string", "sin", "sqrt"),  # fingerprints
     *_optional("boolean", "equal_cost"),
     Field("speed", about="times real time", required=False),
     *_optional("string", "text", "milestone", "method", "verdict", "other"),
-    Field(ENERGY_ERROR.name, about=ENERGY_ERROR.about, required=False),
+    _field(ENERGY_ERROR, required=False),
     Field("trend", "s^-1", required=False),
     Field("lyapunov", "s^-1", required=False),
 )
