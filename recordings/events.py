@@ -7,7 +7,7 @@ import math
 import struct
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from pendu_tui.engine.methods import Method, method_of
 from pendu_tui.engine.models import MODELS
@@ -21,7 +21,6 @@ from pendu_tui.recordings.files import RecordingError
 
 if TYPE_CHECKING:
     from pendu_tui.engine.methods.own import OwnMethod
-    from pendu_tui.recordings.recorder import Recorder  # which imports this module
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 SAMPLE_EVERY = 1 / 30  # s of simulated time, headless, as often as the live lab paints
@@ -93,6 +92,14 @@ class Entry(NamedTuple):
 
     clock: float  # s, running time since the recording began, pauses excluded
     value: Sample | Event | None  # None: a gap, where entries are lost
+
+
+class Writes(Protocol):
+    """What records a run: a Recorder, whose module is slow to load and imports this one."""
+
+    def event(self, event: Event, clock: float) -> None: ...
+
+    def sample(self, sample: Sample, clock: float) -> None: ...
 
 
 def noticed(run: int, milestone: Milestone) -> Event:
@@ -171,7 +178,7 @@ def steps_for(scene: Scene, time: float) -> int:
 def simulate(
     scene: Scene,
     time: float,
-    recorder: "Recorder | None" = None,
+    recorder: Writes | None = None,
     sample_every: int | None = None,
     loops: LoopsOf = PlainLoops,
     lockstep: Lockstep | None = None,
