@@ -13,12 +13,13 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import msgspec
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.models.model import Number
 from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES, RECORDED, Quantity
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
-from pendu_tui.engine.scenes import MAX_METHODS, Scene, SceneError
+from pendu_tui.engine.scenes import MAX_METHODS, Scene
 from pendu_tui.recordings.events import (
     Arithmetic,
     Event,
@@ -247,7 +248,7 @@ def decode_event(data: bytes) -> Event:
         return Event(kind, run, step, t, **{name: fields[name] for name in names if name in fields})
     except KeyError as error:
         raise RecordingError(f"an event has no {error}") from error
-    except SceneError as error:
+    except InputError as error:
         raise RecordingError(f"run {run} cannot have been recorded: {error}") from error
 
 

@@ -11,10 +11,11 @@ from operator import attrgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, Self
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.run.verdicts import Milestone
-from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
 from pendu_tui.recordings.files import RecordingError, is_stream, named
 from pendu_tui.recordings.format import (
@@ -251,7 +252,7 @@ class Recording:
             try:
                 stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
                 stepping.check(run.scene.w0)
-            except SceneError as error:
+            except InputError as error:
                 why = f"run {event.run} cannot have been recorded: {error}"
                 raise RecordingError(why) from error
         return event

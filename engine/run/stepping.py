@@ -64,7 +64,7 @@ class Stepping(NamedTuple):
         return self._replace(equal_cost=not self.equal_cost).with_smallest(self.smallest)
 
     def check(self, w0: float) -> None:
-        """Raise SceneError unless each own step suits the frequency w0 [rad/s]."""
+        """Raise InputError unless each own step suits the frequency w0 [rad/s]."""
         for h in dict.fromkeys((self.h, *self.own)):
             check_h(h, w0)
 

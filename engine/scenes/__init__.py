@@ -6,7 +6,6 @@ from pendu_tui.engine.scenes.scene import (
     Z_LIMITS,
     Line,
     Scene,
-    SceneError,
     Shot,
     check_h,
 )
@@ -19,7 +18,6 @@ __all__ = [
     "Z_LIMITS",
     "Line",
     "Scene",
-    "SceneError",
     "Shot",
     "check_h",
 ]

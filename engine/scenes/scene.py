@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.models.model import ExactMotion, Model
@@ -15,35 +16,27 @@ MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
 
-class SceneError(ValueError):
-    """A scene that cannot be run; its text is a sentence for the user."""
-
-    def __init__(self, sentence: str, models: tuple[str, ...] = ()) -> None:
-        super().__init__(sentence)
-        self.models = models  # scenes of these would do
-
-
 def _names(model: type[Model]) -> list[str]:
     return [parameter.name for parameter in model.parameters]
 
 
 def check_h(h: float, w0: float, forwards: bool = False) -> None:
-    """Raise SceneError unless |h|, or `forwards` h itself, is a usable step for this w0."""
+    """Raise InputError unless |h|, or `forwards` h itself, is a usable step for this w0."""
     low, high = Z_LIMITS
     if not low <= (h if forwards else abs(h)) * w0 <= high:  # also refuses nan
-        raise SceneError(
+        raise InputError(
             f"h = {h:g} s is not a usable step; use {low / w0:.2g} to {high / w0:.2g} s, for "
             f"example {0.15 / w0:.1g}."
         )
 
 
 def _check_range(name: str, value: float, w0: float = math.inf) -> None:
-    """Raise SceneError unless a number lies within its limits for this w0 [rad/s]."""
+    """Raise InputError unless a number lies within its limits for this w0 [rad/s]."""
     low = NUMBERS[name].min
     high = min(NUMBERS[name].max, NUMBERS[name].max_over_w0 * w0)
     if not low <= value <= high:  # also refuses nan
         unit = NUMBERS[name].unit
-        raise SceneError(
+        raise InputError(
             f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}."
         )
 
@@ -111,14 +104,14 @@ class Scene:
                 _check_range(each.name, self.parameters[each.name], self.w0)
         check_h(self.h, self.w0, forwards=True)
         if not 0 < self.speed < math.inf:
-            raise SceneError(
+            raise InputError(
                 f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time."
             )
         for method in self.cast:
             if known and self.model not in method.models:
                 why = f"{method.label} is not for the model {self.model}"
                 why += f"; it is for {' and '.join(method.models)}."
-                raise SceneError(why, method.models)
+                raise InputError(why, method.models)
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; unchanged without a model."""
@@ -129,7 +122,7 @@ class Scene:
             if name not in own and value:
                 why = f"the model {self.model} has no {name}; take a scene that has."
                 owners = [key for key, model in MODELS.items() if name in _names(model)]
-                raise SceneError(why, tuple(owners))
+                raise InputError(why, tuple(owners))
         return {name: given.get(name, default) for name, default in own.items()}
 
     @property

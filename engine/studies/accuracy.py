@@ -125,7 +125,7 @@ class Study:
         """Take so many steps; compare `comparisons` or more, and the last, with the exact swing.
 
         An error counts as rounding if it lies below the rounding floor and does not fall with h.
-        Raises SceneError if time/steps is no usable h.
+        Raises InputError if time/steps is no usable h.
         """
         errors, diverged = self._errors(method, steps, comparisons)
         flaws = Flaws("diverged", "diverged", "diverged")

@@ -7,9 +7,10 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
-from pendu_tui.engine.scenes import Z_LIMITS, SceneError
+from pendu_tui.engine.scenes import Z_LIMITS
 from pendu_tui.engine.studies.accuracy import (
     FITTED_BELOW,
     Clock,
@@ -64,12 +65,12 @@ def least_cost(
 ) -> Advice:
     """Return each method's cheapest run for a target, by force evaluations or a clock.
 
-    `show` is called with the share of methods tried.  Raises SceneError for a target as large as
+    `show` is called with the share of methods tried.  Raises InputError for a target as large as
     the swing itself.
     """
     size = study.sizes[kind]
     if target >= size:
-        raise SceneError(
+        raise InputError(
             f"a target of {target:g} is as large as the swing; use less than {size:g}."
         )
     attempts: list[Attempt] = []

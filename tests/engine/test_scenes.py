@@ -7,10 +7,11 @@ from statistics import fmean
 
 import pytest
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene
 from tests.sine import needs_rounded_sine
 from tests.truths import LIMITS
 
@@ -22,13 +23,13 @@ def test_a_value_beyond_its_limits_is_refused_in_a_sentence(field):
     low, high = LIMITS[field]
     beyond = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
     for value in (*beyond, math.nan, math.inf, -math.inf):
-        with pytest.raises(SceneError, match=rf"^{field} = .* is out of range; use .* to .*\.$"):
+        with pytest.raises(InputError, match=rf"^{field} = .* is out of range; use .* to .*\.$"):
             Scene(**{field: value})
 
 
 @pytest.mark.parametrize("h", [0.0, -0.05, math.nan, math.inf, -math.inf, 1e9, 1e-12])
 def test_a_useless_step_size_is_refused_and_a_good_one_is_named(h):
-    with pytest.raises(SceneError, match=r"^h = .* is not a usable step; .* for example 0\.05\.$"):
+    with pytest.raises(InputError, match=r"^h = .* is not a usable step; .* for example 0\.05\.$"):
         Scene(h=h)
 
 
@@ -289,7 +290,7 @@ def test_a_speed_changes_no_number():
     assert replace(DEFAULT_SCENE, speed=3.0) == DEFAULT_SCENE
     assert DEFAULT_SCENE.altered(theta=2.0, speed=3.0).speed == 3.0
     for speed in (0.0, -1.0, math.inf, math.nan):
-        with pytest.raises(SceneError, match="speed"):
+        with pytest.raises(InputError, match="speed"):
             Scene(speed=speed)
 
 
@@ -303,13 +304,13 @@ def test_the_limit_of_friction_goes_with_the_frequency(gravity, most):
         return Scene(model="damped", gravity=gravity, cast=cast, parameters=parameters)
 
     assert damped(0.999 * most).parameters["friction"] == 0.999 * most
-    with pytest.raises(SceneError, match="friction = "):
+    with pytest.raises(InputError, match="friction = "):
         damped(1.001 * most)
 
 
 def test_a_parameter_that_the_model_lacks_may_be_0_only():
     assert Scene(parameters={"friction": 0.0}).parameters == {}
-    with pytest.raises(SceneError, match="has no friction"):
+    with pytest.raises(InputError, match="has no friction"):
         Scene(parameters={"friction": 0.1})
 
 

@@ -45,15 +45,16 @@ def explained(error: BaseException) -> UserError:
     if place := _entry(error):
         return UserError(f"{place}: {type(error).__name__}: {error}")
     # imported here: --help and --version do not need them
+    from pendu_tui.engine.inputs import InputError
     from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.engine.scenes import SCENES, SceneError
+    from pendu_tui.engine.scenes import SCENES
     from pendu_tui.recordings.files import RecordingError
 
     match error:
-        case SceneError(models=(_, *_)):
+        case InputError(models=(_, *_)):
             suited = [name for name, scene in SCENES.items() if scene.model in error.models]
             return UserError(f"{error} Scenes that would do: {', '.join(suited[:3])}.")
-        case SceneError() | OwnMethodError():
+        case InputError() | OwnMethodError():
             return UserError(str(error))
         case RecordingError():
             return UserError(str(error), Exit.INPUT_UNREADABLE)

@@ -9,10 +9,10 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
+from pendu_tui.engine.inputs import angle as angle
+from pendu_tui.engine.inputs import number as number
+from pendu_tui.engine.inputs import seconds as seconds
 from pendu_tui.engine.methods import Method, named
-from pendu_tui.engine.models.model import angle as angle
-from pendu_tui.engine.models.model import number as number
-from pendu_tui.engine.models.model import seconds as seconds
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from pendu_tui.engine import scenes
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, Cast, Method
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import (
@@ -24,7 +25,6 @@ from pendu_tui.engine.scenes import (
     SCENES,
     Line,
     Scene,
-    SceneError,
     Shot,
 )
 from pendu_tui.recordings.files import printable
@@ -59,7 +59,7 @@ class SceneList:
 def scenes_of(options: argparse.Namespace, lesson: bool = False) -> SceneList:
     """Return the scenes that the options describe; of a file with a `lesson`, the first.
 
-    Raises UserError for an unknown name, SceneError for bad numbers in any combination, and
+    Raises UserError for an unknown name, InputError for bad numbers in any combination, and
     OwnMethodError for a bad function.
     """
     if options.scene and options.scene_option:
@@ -225,7 +225,7 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
         if shot is not None:
             texts["shot"] = _shot(shot, scene)
         return replace(scene, **{"name": scene.name, **texts})
-    except SceneError as error:
+    except InputError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise _FieldError(error, *named[:1]) from None
 

@@ -145,7 +145,7 @@ def measure(results: Results) -> Work:
 
 
 def _ladder(results: Results) -> list[int]:
-    """Return the numbers of steps to chart.  Raises UserError and SceneError."""
+    """Return the numbers of steps to chart.  Raises UserError and InputError."""
     w0 = results.scene.w0
     if results.options.h_values:
         largest, smallest, rungs = results.options.h_values

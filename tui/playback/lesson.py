@@ -76,7 +76,7 @@ class Lesson:
         return self.stage == "watching" and has_moment and not is_same
 
     def begin(self, live: Live, index: int) -> None:
-        """Start the run of a page.  Raises SceneError or OwnMethodError."""
+        """Start the run of a page.  Raises InputError or OwnMethodError."""
         page = self.pages[index]
         if (live.scene, live.sample.step) != (page, 0):
             live.start(page)

@@ -180,7 +180,7 @@ class Live(Source):
     def start(self, scene: Scene) -> None:
         """Begin a new run.
 
-        Raises SceneError for a step too large at equal cost, or OwnMethodError; then nothing has
+        Raises InputError for a step too large at equal cost, or OwnMethodError; then nothing has
         changed.
         """
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
@@ -233,7 +233,7 @@ class Live(Source):
     def change(self, stepping: Stepping) -> None:
         """Change the step from here on.
 
-        Raises SceneError for an absurd step size, or OwnMethodError; then nothing has changed.
+        Raises InputError for an absurd step size, or OwnMethodError; then nothing has changed.
         """
         stepping.check(self.scene.w0)
         if self._run.in_past:

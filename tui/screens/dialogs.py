@@ -17,9 +17,10 @@ from textual.screen import ModalScreen, ScreenResultType
 from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, Method
 from pendu_tui.engine.models import NUMBERS
-from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
 from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.lines import SizedScreen, key_text
@@ -341,7 +342,7 @@ class StartForm(Form[Scene]):
                 name = str(field.id)
                 values[name] = NUMBERS[name].read(field.value.strip())
             self._scene = scene = self._before.altered(**values)
-        except SceneError as error:
+        except InputError as error:
             verdict.update(str(error))
         except ValueError as error:
             verdict.update(f"{name}: {error}.")

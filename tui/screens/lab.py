@@ -16,10 +16,11 @@ from textual.reactive import var
 from textual.screen import ModalScreen
 from textual.widget import Widget
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.errors import UserError, explained
@@ -295,7 +296,7 @@ class LabScreen(SizedScreen[None]):
                 change(live)
                 if live is not self.source:
                     self.record(live)
-            except (SceneError, OwnMethodError, RecordingError, UserError, OSError) as error:
+            except (InputError, OwnMethodError, RecordingError, UserError, OSError) as error:
                 self.warn(str(explained(error)))
                 return False
             self.keep(before)

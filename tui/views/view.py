@@ -14,10 +14,11 @@ from textual.content import Content
 from textual.message import Message
 from textual.worker import Worker, WorkerState
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.drawing.picture import TEXT, Picture, Row
@@ -180,7 +181,7 @@ class Pane(CellWidget):
         h = h or self.source.stepping.smallest
         try:
             scene = self.source.scene.altered(theta=theta, omega=omega, h=h)
-        except SceneError as error:  # zoomed out, omega may be beyond the scene's limits
+        except InputError as error:  # zoomed out, omega may be beyond the scene's limits
             self.notify(str(error), severity="warning")
         else:
             self.post_message(SceneChosen(scene))

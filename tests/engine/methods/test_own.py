@@ -10,12 +10,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, compiled
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.engine.studies.stability import Grid, Part
 from tests.own_methods import load
 
@@ -90,7 +91,7 @@ def test_a_method_that_takes_rates_integrates_friction_too():
         lockstep.advance(300)
         own, listed = lockstep.sample().readings
         assert (own.theta, own.omega) == (listed.theta, listed.omega)
-    with pytest.raises(SceneError, match="is for pendulum and linear"):
+    with pytest.raises(InputError, match="is for pendulum and linear"):
         SCENES["damped"].with_cast((load(VERLET),))
 
 

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.models.damped import ACCURACY, STEP, DampedPendulum
 from pendu_tui.engine.models.pendulum import Pendulum, exact_pendulum
 from pendu_tui.engine.models.reference import Reference, compose_verlet
-from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.engine.scenes import Scene
 
 TIMES = [0.37 * n for n in range(163)]  # a minute
 
@@ -69,14 +70,14 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits():
     damped = Scene(model="damped", parameters={"friction": 0.1}, cast=())
     assert damped.equations == DampedPendulum(9.81, 0.1)
     assert damped.fields()["friction"] == 0.1
-    with pytest.raises(SceneError, match=r"^the model pendulum has no friction; "):
+    with pytest.raises(InputError, match=r"^the model pendulum has no friction; "):
         Scene(parameters={"friction": 0.1})
     with pytest.raises(
-        SceneError, match=r"^friction = -1 s⁻¹ is out of range; use 0 to 100 s⁻¹\.$"
+        InputError, match=r"^friction = -1 s⁻¹ is out of range; use 0 to 100 s⁻¹\.$"
     ):
         replace(damped, parameters={"friction": -1.0})
     slow = replace(damped, length=1e4, gravity=1.0, h=1.0)  # far above w0
-    with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
+    with pytest.raises(InputError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
         replace(slow, parameters={"friction": 2.0})
 
 

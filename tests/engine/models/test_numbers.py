@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pendu_tui.engine.models.model import angle, number, seconds, start_angle
+from pendu_tui.engine.inputs import angle, number, seconds, start_angle
 
 
 @pytest.mark.parametrize(

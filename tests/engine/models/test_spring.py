@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.models.reference import Reference, compose_verlet
 from pendu_tui.engine.models.spring import ACCURACY, STEP, Spring
-from pendu_tui.engine.scenes import Scene, SceneError
+from pendu_tui.engine.scenes import Scene
 
 SPRING = Spring(9.81, 2500.0)
 places = st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3)
@@ -68,9 +69,9 @@ def test_its_fastest_frequency_is_the_springs():
 
 
 def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing():
-    with pytest.raises(SceneError, match=r"^the model linear has no stiffness; "):
+    with pytest.raises(InputError, match=r"^the model linear has no stiffness; "):
         Scene(model="linear", parameters={"stiffness": 1.0})
-    with pytest.raises(SceneError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 "):
+    with pytest.raises(InputError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 "):
         Scene(model="spring", cast=())
 
 

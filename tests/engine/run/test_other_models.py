@@ -6,12 +6,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import SCENES, Scene, SceneError
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.format import without_extremes
 
 NAMES = [n for n, s in SCENES.items() if s.why_not_mapped]
@@ -114,7 +115,7 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model):
         if model in method.models:
             assert Scene(model=model, cast=(method,), parameters=own).cast == (method,)
         else:
-            with pytest.raises(SceneError, match=rf"is not for the model {model}; it is for \w+"):
+            with pytest.raises(InputError, match=rf"is not for the model {model}; it is for \w+"):
                 Scene(model=model, cast=(method,), parameters=own)
 
 

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SceneError
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from tests.sine import needs_rounded_sine
 
 STEPPINGS = st.builds(
@@ -62,7 +63,7 @@ def test_costs_that_do_not_divide_are_rounded_to_whole_parts():
 def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused(h):
     for usable in (2e-9, -2e-9, 1000.0, -1000.0):
         Stepping(usable).check(1.0)
-    with pytest.raises(SceneError, match="not a usable step"):
+    with pytest.raises(InputError, match="not a usable step"):
         Stepping(h, equal_cost=True).check(1.0)
 
 

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST, Method
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
-from pendu_tui.engine.scenes import SCENES, SceneError
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import (
     Study,
     compilable,
@@ -184,5 +185,5 @@ def test_seconds_are_the_shortest_of_several_runs_with_their_spread():
 
 
 def test_a_time_and_steps_that_make_no_usable_h_are_refused():
-    with pytest.raises(SceneError, match="not a usable step"):
+    with pytest.raises(InputError, match="not a usable step"):
         Study(DRIFT, 1e6).run(R, 1)

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
+from pendu_tui.engine.inputs import InputError
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import angle, number, seconds, values
@@ -78,7 +79,7 @@ def test_a_negative_number_after_an_option_is_its_value(text):
     "argument", ["--h=0", "--h=-0.05", "--length=0", "--gravity=0", "--theta=inf", "--omega=nan"]
 )
 def test_a_number_out_of_range_is_refused_with_its_name(argument):
-    with pytest.raises(SceneError, match=re.split("[-=]+", argument)[1]):
+    with pytest.raises(InputError, match=re.split("[-=]+", argument)[1]):
         scene_from(argument)
 
 

@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, SceneError
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback.live import FRAME_BUDGET
 from pendu_tui.tui.playback.source import Playhead, doubled
@@ -228,7 +229,7 @@ def test_an_absurd_step_size_is_refused_and_changes_nothing(h):
     bench.run(1)
     bench.live.step(-3)
     events = len(bench.keeper.events)
-    with pytest.raises(SceneError):
+    with pytest.raises(InputError):
         bench.live.change(Stepping(h))
     assert (bench.live.stepping.h, bench.live.sample.run) == (0.05, 1)
     assert len(bench.keeper.events) == events

@@ -1,0 +1,57 @@
+"""What a user gives: numbers with units, names, and the error if they cannot be used."""
+
+import math
+import re
+
+
+class InputError(ValueError):
+    """What a user gave cannot be used; its text is a sentence: what, why, and what to do."""
+
+    def __init__(self, sentence: str, models: tuple[str, ...] = ()) -> None:
+        super().__init__(sentence)
+        self.models = models  # scenes of these would do
+
+
+def number(text: str) -> float:
+    """Return a number, `0.05` or `5%`.  Raises ValueError with a clause, as all readers do."""
+    return _float(re.sub("%$", "e-2", text), text, "a number", "0.05 or 1e-3")
+
+
+def angle(text: str) -> float:
+    """Return an angle [rad] from `2`, `2rad`, `115deg`, `115°`, `pi/2` or `-2pi/3`.
+
+    An angular velocity may end in `/s`.
+    """
+    bare = re.sub(r"\s*(deg|°|rad)(/s)?$", "", text)
+    multiple = re.fullmatch(r"([-+]?)([\d.]*)\*?(?:pi|π)(?:/([1-9]\d{,9}))?", bare)
+    if multiple:
+        bare = f"{multiple[1]}{multiple[2] or 1}"
+    value = _float(bare, text, "an angle", "2 (radians), pi/2 or 115deg")
+    if multiple:
+        return value * math.pi / int(multiple[3] or 1)
+    return math.radians(value) if re.search("deg|°", text) else value
+
+
+def start_angle(text: str) -> float:
+    """Return an angle [rad]; above a turn it needs a unit, because degrees may be meant."""
+    value = angle(text)
+    if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
+        turns = abs(value) / math.tau
+        raise ValueError(f"{text} is {turns:.3g} turns: {text}deg or {text}rad?")
+    return value
+
+
+def seconds(text: str) -> float:
+    """Return a time [s] from `2`, `2s`, `50ms`, `1min` or `1h`."""
+    bare = re.sub(r"\s*(ms|s|min|h)$", "", text)
+    unit = text[len(bare) :].strip()
+    value = _float(bare, text, "a time", "0.05 (seconds), 50ms or 1min")
+    return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
+
+
+def _float(bare: str, text: str, what: str, example: str) -> float:
+    """Return the number in a text, without its unit."""
+    try:
+        return float(bare)
+    except ValueError:
+        raise ValueError(f"{text!r} is not {what}; use for example {example}") from None
