@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterable
 
 
 class InputError(ValueError):
@@ -10,6 +11,27 @@ class InputError(ValueError):
     def __init__(self, sentence: str, models: tuple[str, ...] = ()) -> None:
         super().__init__(sentence)
         self.models = models  # scenes of these would do
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that is most like this one, "" if none is."""
+    from difflib import get_close_matches  # slow to load, and few words are wrong
+
+    return next(iter(get_close_matches(word[:200], known, n=1)), "")  # longer ones take seconds
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return the end of a sentence about an unknown word, "" without a suggestion."""
+    near = nearest(word, known)
+    return near and f": did you mean {near}?"
+
+
+def check_name(what: str, name: str, known: Iterable[str]) -> None:
+    """Raise InputError unless the name is known; `what` is what it is a name of."""
+    names = [*known]
+    if name not in names:
+        advice = did_you_mean(name, names) or f"; choose from {', '.join(names)}."
+        raise InputError(f"there is no {what} {name[:60]!r}{advice}")
 
 
 def number(text: str) -> float:

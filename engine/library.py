@@ -1,19 +1,19 @@
 """The library: what `from pendu_tui.engine import ...` gives.  NumPy is loaded by the first call.
 
-Arguments that cannot be used raise ValueError with a sentence.
+Arguments that cannot be used raise InputError, a ValueError with a sentence.
 """
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from functools import partial, wraps
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pendu_tui.engine import methods as listed
 from pendu_tui.engine import scenes
-from pendu_tui.engine.methods import Cast, Method, matching, named
+from pendu_tui.engine.inputs import InputError, check_name
+from pendu_tui.engine.methods import Cast, Method, all_named, matching
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.scenes import Scene
 
@@ -60,12 +60,12 @@ def _public(method: Method) -> Method:
     @wraps(method.phases)
     def phases(force: Any, phase: Any, h: float) -> Iterator[Any]:
         if not method.general:
-            raise ValueError(
+            raise InputError(
                 f"{method.label} is made for the scenes of the lab, not for any force and arrays; "
                 "use a method of METHODS with general=True."
             )
         if not _number("h", h):
-            raise ValueError("h = 0 leads nowhere; use a step above zero, or below to go back.")
+            raise InputError("h = 0 leads nowhere; use a step above zero, or below to go back.")
         return method.phases(partial(_fresh, force), phase, h)
 
     return replace(method, phases=phases)
@@ -142,11 +142,11 @@ def simulate(
 def _stops(scene: Scene, time: float, every: int) -> list[int]:
     steps = round(min(time, 1e15) / scene.h)
     if steps < 1:
-        raise ValueError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
+        raise InputError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
     if not isinstance(every, int) or every < 1:
-        raise ValueError(f"every = {every!r} is not a whole number of steps above zero.")
+        raise InputError(f"every = {every!r} is not a whole number of steps above zero.")
     if steps / every * len(scene.cast) > MAX_READINGS:
-        raise ValueError(f"{steps} steps are too many to keep; use every={steps // 10_000}.")
+        raise InputError(f"{steps} steps are too many to keep; use every={steps // 10_000}.")
     return [*range(0, steps, every), steps]
 
 
@@ -239,11 +239,11 @@ def measure(step: "Phases") -> "Measured":
     from pendu_tui.engine.methods.own import OwnMethodError
 
     if not callable(step):
-        raise ValueError(f"{step!r} is no function; give a generator function (force, phase, h).")
+        raise InputError(f"{step!r} is no function; give a generator function (force, phase, h).")
     try:
         return measured_function(step)
     except OwnMethodError as error:
-        raise ValueError(str(error)) from None
+        raise InputError(str(error)) from None
 
 
 def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "Order":
@@ -264,7 +264,7 @@ def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "
         try:
             fluctuations.append(fluctuation(t, e))
         except ValueError as error:
-            raise ValueError(f"h = {h:g}: {error}") from None
+            raise InputError(f"h = {h:g}: {error}") from None
     return order_of(steps, fluctuations)
 
 
@@ -296,9 +296,9 @@ def limits(
     chosen = _general(scene, methods, numbers)
     theta = amplitude(chosen)
     if theta is None or not chosen.equations.turns:
-        raise ValueError("limits are those of a pendulum that swings; use another start or scene.")
+        raise InputError("limits are those of a pendulum that swings; use another start or scene.")
     if not isinstance(steps, int) or steps < 1:
-        raise ValueError(f"steps = {steps!r} is not a whole number above zero.")
+        raise InputError(f"steps = {steps!r} is not a whole number above zero.")
     grid = ladder_of(chosen, [theta], None, steps)
     rows = []
     for row in table(chosen, grid, grid.cells()):
@@ -332,19 +332,18 @@ def recommend(
 
     chosen = _general(scene, methods, numbers)
     if chosen.theta == chosen.omega == 0:
-        raise ValueError("the pendulum hangs at rest; use another theta or omega.")
-    if error not in ("theta", "energy", "final"):
-        raise ValueError(f"error = {error!r} is none of theta, energy and final.")
+        raise InputError("the pendulum hangs at rest; use another theta or omega.")
+    check_name("error", error, ("theta", "energy", "final"))
     wanted = _number("target", target)
     seconds, _ = usual(chosen)
     if time is not None:
         seconds = _number("time", time)
     if wanted <= 0 or seconds <= 0:
-        raise ValueError("target and time must be above zero.")
+        raise InputError("target and time must be above zero.")
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
     successes = [attempt for attempt in attempts if attempt.succeeded]
     if not successes:
-        raise ValueError(
+        raise InputError(
             f"no method keeps its {error} error within {wanted:g} over {seconds:g} s; "
             f"{attempts[0].method.label}: {attempts[0].why_not}."
         )
@@ -353,49 +352,34 @@ def recommend(
 
 def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
     if isinstance(scene, str):
-        if scene not in SCENES:
-            raise ValueError(f"there is no scene {scene!r}; choose from {', '.join(SCENES)}.")
+        check_name("scene", scene, SCENES)
         scene = SCENES[scene]
     if not isinstance(scene, Scene):
-        raise ValueError(f"scene = {scene!r} is neither a name nor a Scene.")
+        raise InputError(f"scene = {scene!r} is neither a name nor a Scene.")
     for name in numbers:
-        if name not in NUMBERS:
-            hint = f"use {', '.join(NUMBERS)}."
-            if near := get_close_matches(name, NUMBERS):
-                hint = f"did you mean {near[0]!r}?"
-            raise ValueError(f"unknown parameter {name!r}; {hint}")
-    changes = {name: _number(name, value) for name, value in numbers.items()}
-    scene = scene.altered(**changes)
-    if methods is None:
-        return scene
-    return scene.with_cast(_cast(methods))
+        check_name("number", name, NUMBERS)
+    scene = scene.altered(**{name: _number(name, value) for name, value in numbers.items()})
+    return scene if methods is None else scene.with_cast(_cast(methods))
 
 
 def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
     """Return a scene for a study, by default with all general methods."""
     chosen = _scene(scene, listed.GENERAL if methods is None else methods, numbers)
     if chosen.why_not_mapped:
-        raise ValueError(chosen.why_not_mapped)
+        raise InputError(chosen.why_not_mapped)
     return chosen
 
 
 def _cast(methods: Methods) -> Cast:
-    names = methods.split(",") if isinstance(methods, str) else methods
-    if not isinstance(names, Iterable):
-        raise ValueError(
+    given = methods.split(",") if isinstance(methods, str) else methods
+    if not isinstance(given, Iterable):
+        raise InputError(
             f"methods = {methods!r} is not a list of methods; use for example 'rk4,verlet'."
         )
-    cast = tuple(dict.fromkeys(map(_method, names)))
-    if not cast:
-        raise ValueError("methods is empty; name one at least, for example rk4.")
-    return cast
-
-
-def _method(name: str | Method) -> Method:
-    """Return the method of a name or of the start of a key; methods of one's own as they are."""
-    if isinstance(name, Method) and name.key not in set(METHODS):
-        return name
-    return named(getattr(name, "key", str(name)))
+    given = [*given]
+    own = [each for each in given if isinstance(each, Method) and each.key not in METHODS]
+    names = [getattr(each, "key", str(each)) for each in given]
+    return all_named(names, (*own, *listed.METHODS))
 
 
 def _number(name: str, value: Any) -> float:
@@ -404,7 +388,7 @@ def _number(name: str, value: Any) -> float:
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise ValueError(f"{name} = {value!r:.60} is not a finite number.")
+    raise InputError(f"{name} = {value!r:.60} is not a finite number.")
 
 
 def _array(name: str, values: Any) -> "Floats":
@@ -413,11 +397,11 @@ def _array(name: str, values: Any) -> "Floats":
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a list of numbers, or an array.") from None
+        raise InputError(f"{name} must be a list of numbers, or an array.") from None
     if not array.size:
-        raise ValueError(f"{name} is empty; give one for each sample.")
+        raise InputError(f"{name} is empty; give one for each sample.")
     if array.ndim != 1:
-        raise ValueError(f"{name} must be a list of numbers; their shape is {array.shape}.")
+        raise InputError(f"{name} must be a list of numbers; their shape is {array.shape}.")
     return array
 
 
@@ -426,13 +410,13 @@ def _finite(name: str, array: "Floats") -> "Floats":
 
     if not np.isfinite(array).all():
         place = int(np.argmin(np.isfinite(array)))
-        raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
+        raise InputError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
     return array
 
 
 def _same_length(times: "Floats", energies: "Floats") -> None:
     if len(times) != len(energies):
-        raise ValueError(f"{len(times)} times and {len(energies)} energies do not belong together.")
+        raise InputError(f"{len(times)} times and {len(energies)} energies do not belong together.")
 
 
 def _increasing(times: "Floats") -> "Floats":
@@ -441,7 +425,7 @@ def _increasing(times: "Floats") -> "Floats":
     later = np.diff(times) > 0
     if not later.all():
         place = int(np.argmin(later)) + 1
-        raise ValueError(
+        raise InputError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
     return times
@@ -450,7 +434,7 @@ def _increasing(times: "Floats") -> "Floats":
 def _size(energies: Any, scale: float | str) -> float:
     """Return the energy that errors are relative to."""
     if isinstance(scale, str) and scale not in ("std", "first"):
-        raise ValueError(f"scale = {scale!r} is none of std, first and a number.")
+        raise InputError(f"scale = {scale!r} is none of std, first and a number.")
     if not isinstance(scale, str):
         size = _number("scale", scale)
     elif scale == "first":
@@ -459,5 +443,5 @@ def _size(energies: Any, scale: float | str) -> float:
         largest = float(abs(energies).max()) or 1.0
         return float((energies / largest).std()) * largest or largest
     if size <= 0:
-        raise ValueError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
+        raise InputError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size

@@ -10,10 +10,10 @@ each.
 import copyreg
 import re
 import unicodedata
-from collections.abc import Callable, Sequence
-from difflib import get_close_matches
+from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 
+from pendu_tui.engine.inputs import InputError, nearest
 from pendu_tui.engine.methods import implicit, learned, parts, runge_kutta, splitting, verlet
 from pendu_tui.engine.methods.method import Method as Method
 from pendu_tui.engine.methods.parts import TAYLOR_20 as TAYLOR_20
@@ -53,25 +53,40 @@ def method_of(key: str) -> Method:
 def named(name: str, methods: Sequence[Method] = METHODS, model: str | None = None) -> Method:
     """Return the method with a name, or whose key, or a word in it, starts like this.
 
-    Raises ValueError with a sentence, which suggests methods for the model if it is given.
+    Raises InputError, which suggests methods for the model if it is given.
     """
     found = matching(name, methods)
     if len(found) == 1:
         return found[0]
     if found:
         keys = " or ".join(method.key for method in found)
-        raise ValueError(f"{name!r} may be {keys}; write more of it.")
+        raise InputError(f"{name!r} may be {keys}; write more of it.")
     if matching(name, (TAYLOR_20,)):
-        raise ValueError(f"{WHY_NOT}.")
+        raise InputError(f"{WHY_NOT}.")
     suited = [method for method in methods if model is None or model in method.models]
     known = {simplified(each): method.key for method in suited for each in method.names}
-    near = get_close_matches(simplified(name)[:200], known, n=1)
+    near = nearest(simplified(name), known)
     families = groupby([method.key for method in suited], family_of)
     listed = [f"{family}: {', '.join(keys)}" for family, keys in families]
     advice = f": choose from {'; '.join(listed)}."
     if near:
-        advice = f": did you mean {known[near[0]]}?"
-    raise ValueError(f"there is no method {name!r}{advice}")
+        advice = f": did you mean {known[near]}?"
+    raise InputError(f"there is no method {name!r}{advice}")
+
+
+def all_named(
+    names: Iterable[str], methods: Sequence[Method] = METHODS, model: str | None = None
+) -> Cast:
+    """Return the methods of names, as `named` does.  Raises InputError, also if two are one."""
+    cast: list[Method] = []
+    for name in names:
+        method = named(name, methods, model)
+        if method in cast:
+            raise InputError(f"{method.key} is given twice; name each method once.")
+        cast.append(method)
+    if not cast:
+        raise InputError("no method is given; name one at least, for example rk4.")
+    return tuple(cast)
 
 
 def family_of(key: str) -> str:

@@ -8,11 +8,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method
+from pendu_tui.engine.inputs import InputError
+from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, all_named
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import find
+from pendu_tui.tui.cli.options import given_by
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -33,19 +34,14 @@ def cast_of(
     it are suggested.  Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
-    cast = list(default)
+    cast = default
     if options.methods is not None:
-        cast = []
         known = (*METHODS, *own)
         if getattr(options, "cost", None) == "seconds":
             known = (*known, TAYLOR_20)
-        for name in options.methods.split(","):
-            method = find(name.strip(), known, model=model)
-            if method in cast:
-                raise UserError(f"--methods: {method.key} is given twice; name each method once.")
-            cast.append(method)
-    cast += [method for method in own if method not in cast]
-    return tuple(cast)
+        with given_by("--methods"):
+            cast = all_named(options.methods.split(","), known, model)
+    return (*cast, *(method for method in own if method not in cast))
 
 
 def check_fits(cast: Cast) -> None:
@@ -60,8 +56,9 @@ def check_fits(cast: Cast) -> None:
 def own_methods(options: argparse.Namespace) -> tuple[OwnMethod, ...]:
     """Return the user's own methods, measured.  Raises UserError and OwnMethodError."""
     own: list[OwnMethod] = []
-    for text in options.method:
-        own.append(own_method_at(text, own))
+    with given_by("--method"):
+        for text in options.method:
+            own.append(own_method_at(text, own))
     return tuple(own)
 
 
@@ -72,29 +69,26 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     name, _, letter = text.partition(",letter=")
     path, _, key = name.rpartition(":")
     if not path:
-        raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION.")
+        raise InputError(f"{text!r} is not FILE.py:FUNCTION.")
     if not (key.isidentifier() and key.isascii() and len(key) <= 30):
-        raise UserError(
-            f"--method: {key!r} cannot be a method's name; use a function's with at most 30 ASCII "
-            "letters."
+        raise InputError(
+            f"{key!r} cannot be a method's name; use a function's with at most 30 ASCII letters."
         )
     taken = (*METHODS, *others)
     if key in [method.key for method in taken]:
-        raise UserError(
-            f"--method: there is a method {key} already; give your function another name."
-        )
+        raise InputError(f"there is a method {key} already; give your function another name.")
     letters = {method.letter for method in taken}
     wishes = (*key.lower(), *key.upper(), *string.ascii_uppercase)
     free = [each for each in wishes if each.isalpha() and each not in letters]
     letter = letter or free[0]
     if letter in letters or letter not in string.ascii_letters + string.digits or len(letter) > 1:
-        raise UserError(f"--method: {letter!r} is taken or no letter; use letter={free[0]}.")
+        raise InputError(f"{letter!r} is taken or no letter; use letter={free[0]}.")
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(MAX_SOURCE + 1)
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
-        raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
+        raise UserError(f"{path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
     return own_method(source, key, letter, path, _tried(source, key, path))
 
 

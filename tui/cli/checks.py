@@ -21,12 +21,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
-from pendu_tui.engine.methods import USUAL_CAST, Cast
+from pendu_tui.engine.inputs import InputError, check_name
+from pendu_tui.engine.methods import USUAL_CAST, Cast, named
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, advice, outcome
-from pendu_tui.tui.cli.errors import Exit, UserError, warn
-from pendu_tui.tui.cli.options import did_you_mean, find
+from pendu_tui.tui.cli.errors import Exit, warn
+from pendu_tui.tui.cli.options import given_by
 
 _OWN = dict.fromkeys(each.name for model in MODELS.values() for each in model.variables)
 FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)
@@ -77,18 +78,21 @@ def parse(
     under the key "".
     """
     source = " ".join(text.split())
-    if len(source) > 10_000:
-        raise UserError("--fail-if: it is longer than 10,000 characters.")
-    source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
     grammar = _Grammar(fields, cast, words)
-    if "#" in source:  # a comment would hide what follows
-        raise grammar.no_comparison(source)
-    try:
-        with warnings.catch_warnings(action="ignore"):  # about odd but legal code, such as `1or`
-            node = ast.parse(source, mode="eval").body
-        return grammar.gate(node)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise grammar.no_comparison(source) from None
+    with given_by("--fail-if"):
+        if len(source) > 10_000:
+            raise InputError("it is longer than 10,000 characters.")
+        source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
+        if "#" in source:  # a comment would hide what follows
+            raise grammar.no_comparison(source)
+        try:
+            with warnings.catch_warnings(action="ignore"):  # about odd code, such as `1or`
+                node = ast.parse(source, mode="eval").body
+            return grammar.gate(node)
+        except InputError:
+            raise
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            raise grammar.no_comparison(source) from None
 
 
 @dataclass(frozen=True)
@@ -100,7 +104,7 @@ class _Grammar:
     words: Words
 
     def gate(self, node: ast.expr) -> Gate:
-        """Return the gate of a node.  Raises UserError."""
+        """Return the gate of a node.  Raises InputError."""
         match node:
             case ast.BoolOp(op, parts):
                 return partial(_joined, [self.gate(part) for part in parts], type(op) is ast.And)
@@ -110,7 +114,7 @@ class _Grammar:
                 key, _, field = ast.unparse(left).rpartition(".")
             case _:
                 raise self.no_comparison(ast.unparse(node))
-        _check("field", field, (*(self.fields or FIELDS), *self.words))
+        check_name("field", field, (*(self.fields or FIELDS), *self.words))
         if field in self.words:
             limit: float | str = _word(sign, value, field, self.words[field])
         else:
@@ -119,27 +123,27 @@ class _Grammar:
         if key in ("any", "all"):
             methods = [method.key for method in self.cast]
         elif key:
-            methods = [find(key, self.cast, "--fail-if").key]
+            methods = [named(key, self.cast).key]
         found = [partial(_found, method, field, _SIGNS[type(sign)], limit) for method in methods]
         return partial(_joined, found, key == "all")
 
-    def no_comparison(self, text: str) -> UserError:
+    def no_comparison(self, text: str) -> InputError:
         form = "METHOD.FIELD"
         example = f"velocity_verlet.{LARGEST.name} > 1e-2"
         if self.fields:
             form = "FIELD"
             example = f"{self.fields[0]} > 1e-2"
-        return UserError(
-            f"--fail-if: {_quoted(text)} is not a comparison; write {form} > NUMBER, for example "
+        return InputError(
+            f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example "
             f"{example!r}; comparisons are joined by and, or and parentheses."
         )
 
 
 def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> str:
     if not isinstance(sign, ast.Eq | ast.NotEq):
-        raise UserError(f"--fail-if: {field} is a word: compare it with == or !=.")
+        raise InputError(f"{field} is a word: compare it with == or !=.")
     word = ast.unparse(node).strip("'")
-    _check(field, word, words)
+    check_name(field, word, words)
     return word
 
 
@@ -151,13 +155,7 @@ def _number(node: ast.expr) -> float:
     except (ArithmeticError, ValueError):
         pass
     text = _quoted(ast.unparse(node))
-    raise UserError(f"--fail-if: {text} is not a finite number; use for example 0.05 or 1e-2.")
-
-
-def _check(what: str, name: str, names: Sequence[str]) -> None:
-    if name not in names:
-        advice = did_you_mean(name, names) or f": choose from {', '.join(names)}."
-        raise UserError(f"--fail-if: there is no {what} {_quoted(name)}{advice}")
+    raise InputError(f"{text} is not a finite number; use for example 0.05 or 1e-2.")
 
 
 def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:

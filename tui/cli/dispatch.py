@@ -16,6 +16,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pendu_tui.engine.inputs import did_you_mean
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
 
@@ -150,7 +151,7 @@ def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
 
 def parser_of(name: str) -> "Parser":
     """Return a command's parser.  Raises UserError if there is none."""
-    from pendu_tui.tui.cli.options import Parser, did_you_mean
+    from pendu_tui.tui.cli.options import Parser
 
     if name not in COMMANDS:
         from pendu_tui.engine.scenes import SCENES

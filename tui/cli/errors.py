@@ -10,6 +10,8 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, TextIO
 
+from pendu_tui.engine.inputs import InputError
+
 MAX_CELL = 1000  # characters of a line
 
 
@@ -26,8 +28,8 @@ class Exit(IntEnum):
     PIPE_CLOSED = 141  # what shells report of programs that write into a closed pipe
 
 
-class UserError(Exception):
-    """An error that the user can fix: one sentence, what is wrong, why, and what to do."""
+class UserError(InputError):
+    """A sentence for the user, and an exit code."""
 
     def __init__(self, message: str, code: Exit = Exit.USAGE) -> None:
         super().__init__(message)
@@ -45,7 +47,6 @@ def explained(error: BaseException) -> UserError:
     if place := _entry(error):
         return UserError(f"{place}: {type(error).__name__}: {error}")
     # imported here: --help and --version do not need them
-    from pendu_tui.engine.inputs import InputError
     from pendu_tui.engine.methods.own import OwnMethodError
     from pendu_tui.engine.scenes import SCENES
     from pendu_tui.recordings.files import RecordingError

@@ -1,19 +1,16 @@
 """Options that several commands share, and the readers of their values."""
 
 import argparse
-import difflib
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import angle as angle
-from pendu_tui.engine.inputs import number as number
-from pendu_tui.engine.inputs import seconds as seconds
-from pendu_tui.engine.methods import Method, named
-from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.engine.inputs import InputError, did_you_mean, number, seconds
+from pendu_tui.tui.cli.errors import Exit, UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
 MAX_RUNGS = 1000  # of a ladder of step sizes
@@ -142,20 +139,14 @@ def count(text: str) -> int:
     return int(text)
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the end of a sentence about an unknown word, "" without a suggestion."""
-    near = difflib.get_close_matches(word[:200], known, n=1)  # long words would take seconds
-    return f": did you mean {near[0]}?" if near else ""
-
-
-def find(
-    name: str, methods: Sequence[Method], option: str = "--methods", model: str | None = None
-) -> Method:
-    """Return the method that `engine.methods.named` finds.  Raises UserError."""
+@contextmanager
+def given_by(option: str) -> Iterator[None]:
+    """Put the option before the sentence of an InputError."""
     try:
-        return named(name, methods, model)
-    except ValueError as error:
-        raise UserError(f"{option}: {error}") from None
+        yield
+    except InputError as error:
+        code = getattr(error, "code", Exit.USAGE)
+        raise UserError(f"{option}: {error}", code) from None
 
 
 def ladder(text: str) -> tuple[float, float, int]:

@@ -9,15 +9,17 @@ import json
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from contextlib import contextmanager
+from dataclasses import asdict, fields, replace
 from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import Any, get_type_hints
 
 from pendu_tui.engine import scenes
-from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods import METHODS, Cast, Method
+from pendu_tui.engine.inputs import InputError, check_name, number, seconds
+from pendu_tui.engine.methods import METHODS, Cast, Method, all_named
+from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import (
     DEFAULT_SCENE,
@@ -30,37 +32,13 @@ from pendu_tui.engine.scenes import (
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.cast import cast_of, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import did_you_mean, find, number, seconds
 
 
-@dataclass(frozen=True, slots=True)
-class SceneList:
-    """All combinations of the given values; the last axis changes fastest."""
+def scenes_of(options: argparse.Namespace, lesson: bool = False) -> list[Scene]:
+    """Return all combinations of the numbers that the options give; the last changes fastest.
 
-    base: Scene
-    axes: Mapping[str, Sequence[float]]  # the values of each number that is given
-
-    def __len__(self) -> int:
-        return math.prod(map(len, self.axes.values()))
-
-    def __iter__(self) -> Iterator[Scene]:
-        return self._combined(self.axes)
-
-    def corners(self) -> list[Scene]:
-        """Return the combinations of the extremes; if they are valid, all are."""
-        ends = {name: sorted({axis[0], axis[-1]}) for name, axis in self.axes.items()}
-        return list(self._combined(ends))
-
-    def _combined(self, axes: Mapping[str, Sequence[float]]) -> Iterator[Scene]:
-        for numbers in product(*axes.values()):
-            yield self.base.altered(**dict(zip(axes, numbers, strict=True)))
-
-
-def scenes_of(options: argparse.Namespace, lesson: bool = False) -> SceneList:
-    """Return the scenes that the options describe; of a file with a `lesson`, the first.
-
-    Raises UserError for an unknown name, InputError for bad numbers in any combination, and
-    OwnMethodError for a bad function.
+    Of a file with a `lesson`, the first scene.  Raises InputError for an unknown name and for bad
+    numbers in any combination, and OwnMethodError for a bad function.
     """
     if options.scene and options.scene_option:
         raise UserError(
@@ -68,14 +46,15 @@ def scenes_of(options: argparse.Namespace, lesson: bool = False) -> SceneList:
         )
     name = options.scene or options.scene_option
     scene = scene_named(name, lesson) if name else DEFAULT_SCENE
-    axes: dict[str, Sequence[float]] = {}
-    for each in NUMBERS:
-        given = getattr(options, each)
-        if given is not None:
-            axes[each] = given if isinstance(given, list) else [given]
-    scenes = SceneList(scene.with_cast(cast_of(options, scene.cast, model=scene.model)), axes)
-    scenes.corners()
-    return scenes
+    scene = scene.with_cast(cast_of(options, scene.cast, model=scene.model))
+    given = {name: getattr(options, name) for name in NUMBERS}
+    axes = {
+        name: value if isinstance(value, list) else [value]
+        for name, value in given.items()
+        if value is not None
+    }
+    combinations = product(*axes.values())
+    return [scene.altered(**dict(zip(axes, each, strict=True))) for each in combinations]
 
 
 def scene_of(options: argparse.Namespace, lesson: bool = False) -> Scene:
@@ -85,15 +64,13 @@ def scene_of(options: argparse.Namespace, lesson: bool = False) -> Scene:
 
 
 def scene_named(name: str, lesson: bool = False) -> Scene:
-    """Return a listed scene or that of a file, of a `lesson` the first.  Raises UserError."""
+    """Return a listed scene or that of a file, of a `lesson` the first.  Raises InputError."""
     if name.endswith(".toml"):
         first, *others = read_scenes(Path(name)).values()
         if others and not lesson:
             raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")
         return first
-    if name not in SCENES:
-        hint = did_you_mean(name, SCENES) or "; pendu-tui scenes lists them."
-        raise UserError(f"there is no scene {name!r}{hint}")
+    check_name("scene", name, SCENES)
     return SCENES[name]
 
 
@@ -122,18 +99,6 @@ _SCENE = {
     **dict.fromkeys(NUMBERS, float),
 }
 _SHOT = get_type_hints(Shot)
-_EXAMPLES: dict[Any, str] = {
-    str: '"text"',
-    bool: "true",
-    int: "1",
-    float: "1.5",
-    float | None: "12.5",
-    list[str]: '["velocity_verlet", "mine.py:step"]',
-    tuple[str, ...]: '["rk4"]',
-    dict[str, Any]: '{view = "phase"}',
-    Line | None: '{quantity = "theta_error", value = 0.01, name = "0.01 rad"}',
-}
-"""By the type of a field."""
 
 
 class _FieldError(Exception):
@@ -151,6 +116,15 @@ class _FieldError(Exception):
             if found:
                 start = found.end()
         return f", line {text[:start].count(chr(10)) + 1}" if self.names else ""
+
+
+@contextmanager
+def _at(*names: str) -> Iterator[None]:
+    """Give an InputError the path to its field."""
+    try:
+        yield
+    except InputError as error:
+        raise _FieldError(error, *names) from None
 
 
 @cache
@@ -205,15 +179,19 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
 
 def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
     """Return the scene of a table; the user's own methods are in the folder."""
-    found = _values(given, _SCENE)
+    found = _values("scene", given, _SCENE)
     base = Scene()
-    if listed := found.pop("from", ""):
-        base = _known(SCENES, listed, "from")
+    if "from" in found:
+        listed = found.pop("from")
+        with _at("from"):
+            check_name("scene", listed, SCENES)
+        base = SCENES[listed]
     model = found.get("model", base.model)
-    if model not in MODELS:
-        raise _FieldError(f"there is no model {model!r}; choose from {', '.join(MODELS)}.", "model")
+    with _at("model"):
+        check_name("model", model, MODELS)
     if "methods" in found:
-        found["cast"] = _methods(found.pop("methods"), folder)
+        with _at("methods"):
+            found["cast"] = _cast(found.pop("methods"), folder)
     elif model != base.model:
         found["cast"] = _cast_for(model)
     texts: dict[str, Any] = {
@@ -230,13 +208,6 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
         raise _FieldError(error, *named[:1]) from None
 
 
-def _known(listed: Mapping[str, Any], name: str, field: str) -> Any:
-    if name not in listed:
-        hint = did_you_mean(name, listed) or "; pendu-tui scenes lists them."
-        raise _FieldError(f"{field}: there is no {name!r}{hint}", field)
-    return listed[name]
-
-
 def _cast_for(model: str) -> Cast:
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
     suited = tuple(method for method in METHODS if model in method.models)
@@ -244,17 +215,14 @@ def _cast_for(model: str) -> Cast:
 
 
 def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
-    shot = Shot(**_values(given, _SHOT, "shot"))
-    charted = [each.name for each in scene.equations.charted()]
-    keys = [method.key for method in scene.cast]
-    for name, words, known in (
-        ("view", [shot.view], ["lab", "phase", "stability", "accuracy"]),
-        ("quantity", [shot.quantity], charted),
-        ("front", shot.front, keys),
-    ):
-        if unknown := [word for word in words if word not in known]:
-            why = f"a shot has no {unknown[0]!r}; choose from {', '.join(known)}."
-            raise _FieldError(why, "shot", name)
+    shot = Shot(**_values("shot", given, _SHOT, "shot"))
+    with _at("shot", "view"):
+        check_name("view", shot.view, ["lab", "phase", "stability", "accuracy"])
+    with _at("shot", "quantity"):
+        check_name("quantity", shot.quantity, [each.name for each in scene.equations.charted()])
+    with _at("shot", "front"):
+        for key in shot.front:
+            check_name("method", key, [method.key for method in scene.cast])
     if shot.moment is None and (shot.question or shot.returns):
         why = "it needs a moment; use for example moment = 12.5."
         raise _FieldError(why, "shot", "question" if shot.question else "returns")
@@ -269,26 +237,34 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
     return shot
 
 
-def _values(given: Mapping[str, Any], types: Mapping[str, Any], *above: str) -> dict[str, Any]:
-    """Return the values of a table's fields; `above` is the table's name, if any."""
+def _values(
+    what: str, given: Mapping[str, Any], types: Mapping[str, Any], *above: str
+) -> dict[str, Any]:
+    """Return the values of the fields of a scene or shot; `above` is its path."""
     import msgspec
 
     found: dict[str, Any] = {}
     for name, value in given.items():
-        if name not in types:
-            advice = did_you_mean(name, types) or f"; choose from {', '.join(types)}."
-            owner = above[0] if above else "scene"
-            raise _FieldError(f"a {owner} has no field {printable(name, 40)}{advice}", *above, name)
+        with _at(*above, name):
+            check_name(f"field of a {what}", name, types)
         try:
             if name in _READERS:
                 value = _READERS[name](str(value))
             found[name] = _printable(msgspec.convert(value, types[name]))
         except msgspec.ValidationError as error:
-            why = f"{error}; use for example {name} = {_EXAMPLES[types[name]]}."
-            raise _FieldError(f"{name}: {why}", *above, name) from None
+            why = f"{name}: {error}; use for example {_example(name)}"
+            raise _FieldError(why, *above, name) from None
         except ValueError as error:  # of a reader
             raise _FieldError(f"{name}: {error}", *above, name) from None
     return found
+
+
+def _example(name: str) -> str:
+    """Return a line of a scene file with this field."""
+    texts = (*map(scene_text, SCENES.values()), TOUR.read_text(encoding="utf-8"))
+    found = re.search(rf"^\[?{name}\b.*", "\n".join(texts), re.MULTILINE)
+    assert found
+    return found[0]
 
 
 def _printable(value: Any) -> Any:
@@ -301,23 +277,16 @@ def _printable(value: Any) -> Any:
     return value
 
 
-def _methods(keys: Sequence[str], folder: Path) -> Cast:
+def _cast(names: Sequence[str], folder: Path) -> Cast:
     """Return the methods of a scene file; FILE.py:FUNCTION is relative to its folder."""
-    if not keys:
-        raise _FieldError(f"methods: use for example {_EXAMPLES[list[str]]}.", "methods")
-    cast: list[Method] = []
-    for key in keys:
-        try:
-            if ".py:" in key:
-                found: Method = own_method_at(f"{folder / key}", cast)
-            else:
-                found = find(key, METHODS, "methods")
-        except UserError as error:
-            raise _FieldError(error, "methods") from None
-        if found in cast:
-            raise _FieldError(f"methods: {key} is given twice.", "methods")
-        cast.append(found)
-    return tuple(cast)
+    own: list[OwnMethod] = []
+    keys = []
+    for name in names:
+        if ".py:" in name:
+            own.append(own_method_at(f"{folder / name}", own))
+            name = own[-1].key
+        keys.append(name)
+    return all_named(keys, (*own, *METHODS))
 
 
 def scene_text(scene: Scene) -> str:

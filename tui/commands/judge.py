@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendu_tui.engine import library
+from pendu_tui.engine.inputs import did_you_mean
 from pendu_tui.engine.run.record import Order, fluctuation, order_of
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
@@ -23,7 +24,6 @@ from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
-from pendu_tui.tui.cli.options import did_you_mean
 from pendu_tui.tui.cli.reader import read_sheets, unreadable
 from pendu_tui.tui.cli.tables import REASONS, Series, Wanted, find
 from pendu_tui.tui.commands.report import Report, fields_of, finite, form_of, publish

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from pendu_tui.engine.inputs import angle, number
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import CHAOTIC, VERDICTS
@@ -24,12 +25,10 @@ from pendu_tui.tui.cli.files import FIGURES
 from pendu_tui.tui.cli.options import (
     LIST,
     Suggestions,
-    angle,
     count,
     duration,
     ladder,
     moment,
-    number,
     positive,
     record_time,
     scale,

@@ -13,6 +13,7 @@ from typing import Any
 
 from pendu_tui.engine import quantities
 from pendu_tui.engine.methods import Method
+from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
@@ -23,7 +24,7 @@ from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
 from pendu_tui.tui.cli.files import keep_older, stop_requests
-from pendu_tui.tui.cli.scene import SceneList, scenes_of
+from pendu_tui.tui.cli.scene import scenes_of
 from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.cli.workers import work_of
 from pendu_tui.tui.commands.report import (
@@ -59,13 +60,11 @@ def run(options: argparse.Namespace) -> int:
         raise UserError("--time is missing; use for example --time 60.")
     gate = None
     if options.fail_if is not None:
-        gate = parse(options.fail_if, cast=scenes.base.cast)
-    for scene in scenes.corners():
-        _check_time(scene, options.time)
+        gate = parse(options.fail_if, cast=scenes[0].cast)
+    _check_time(max(scene.h for scene in scenes), options.time)
     form = check_output(options)
     if len(scenes) == 1:
-        (scene,) = scenes
-        return run_one(scene, options, gate)
+        return run_one(scenes[0], options, gate)
     if options.record:
         raise UserError("--record is for one run; leave it out, or give each number one value.")
     if form == "figure":
@@ -73,12 +72,12 @@ def run(options: argparse.Namespace) -> int:
     return run_list(scenes, options, gate)
 
 
-def _check_time(scene: Scene, seconds: float) -> None:
+def _check_time(h: float, seconds: float) -> None:
     if seconds > MAX_TIME:
         raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
-    if round(seconds / scene.h) == 0:
+    if round(seconds / h) == 0:
         raise UserError(
-            f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
+            f"--time {seconds:g} s is shorter than one step of {h:g} s; use a longer time."
         )
 
 
@@ -320,40 +319,27 @@ def _column(name: str) -> str:
     return f"start_{name}" if name in ("theta", "omega") else name
 
 
-def _tasks(scenes: SceneList, options: Namespace) -> Iterator[Task]:
-    """Yield the runs of a list, in order."""
+def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate | None) -> Exit:
+    """Run every scene and print the rows; an interrupt keeps those that are there."""
+    lists = {name: _column(name) for name in NUMBERS if len(getattr(options, name) or "") > 1}
     steps = 0  # compiled loops cannot be shared by runs with other parameters
-    if scenes.axes.keys() <= {"theta", "omega", "h"}:
-        corners = scenes.corners()
-        total = sum(steps_for(scene, options.time) for scene in corners)
-        steps = total * len(scenes) // len(corners)
-    for scene in scenes:
-        yield Task(scene, options.time, steps, not options.no_compiled)
-
-
-def run_list(scenes: SceneList, options: Namespace, gate: Gate | None) -> Exit:
-    """Run every combination and print the rows; an interrupt keeps those that are there."""
+    if lists.keys() <= {"theta", "omega", "h"}:
+        steps = sum(steps_for(scene, options.time) for scene in scenes)
     kept: list[Row] = []
     checks: list[Check] = []
+    tasks = (Task(scene, options.time, steps, not options.no_compiled) for scene in scenes)
     with work_of(options, "runs", len(scenes)) as work:
-        for rows in work.run(Task.rows, _tasks(scenes, options)):
+        for rows in work.run(Task.rows, tasks):
             kept += rows
-            checks.append(check_of(_place(scenes, rows[0]), rows, gate))
+            place = ", ".join(f"{name} {rows[0][column]:g}" for name, column in lists.items())
+            checks.append(check_of(place, rows, gate))
             work.step()
-    publish(_list_report(scenes, options.time, kept, is_whole=work.ended is None), options)
-    return work.conclude() or conclude(options.fail_if, checks)
-
-
-def _place(scenes: SceneList, row: Row) -> str:
-    return ", ".join(f"{name} {row[_column(name)]:g}" for name in scenes.axes)
-
-
-def _list_report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:
-    starts = [_column(name) for name, axis in scenes.axes.items() if len(axis) > 1]
-    return Report(
+    report = Report(
         name="runs",
-        columns=[*(Column(name, name, ".6g") for name in starts), *columns_of(scenes.base)],
-        rows=rows,
-        fields={"time": time, "runs": for_json(rows), "interrupted": not is_whole},
-        records=for_csv(rows),
+        columns=[*(Column(name, name, ".6g") for name in lists.values()), *columns_of(scenes[0])],
+        rows=kept,
+        fields={"time": options.time, "runs": for_json(kept), "interrupted": bool(work.ended)},
+        records=for_csv(kept),
     )
+    publish(report, options)
+    return work.conclude() or conclude(options.fail_if, checks)

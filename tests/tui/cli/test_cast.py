@@ -14,13 +14,13 @@ from pendu_tui.engine.methods import (
     USUAL_CAST,
     Cast,
     method_of,
+    named,
 )
 from pendu_tui.engine.methods import VELOCITY_VERLET as VERLET
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli import cast as cast_options
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.options import find
 from pendu_tui.tui.cli.scene import scene_of
 from tests.tui.command_line import IS_WINDOWS, PENDU, ROOT, pendu
 
@@ -75,8 +75,8 @@ def test_the_start_of_a_name_is_enough_and_the_order_is_the_one_given(text, cast
 def test_a_name_as_the_tables_print_it_will_do_in_any_case_or_a_later_word_of_it():
     for method in METHODS:
         for name in (method.label.upper(), method.key.upper()):
-            assert find(name, METHODS) is method
-    assert find("verlet", USUAL_CAST) is VERLET
+            assert named(name) is method
+    assert named("verlet", USUAL_CAST) is VERLET
 
 
 @pytest.mark.parametrize(

@@ -49,12 +49,12 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine, name):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("h = 0.1\nthetta = 1", "line 2: a scene has no field thetta: did you mean theta?"),
+        ("h = 0.1\nthetta = 1", "line 2: there is no field of a scene"),
         ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("model = 'cubic'", "line 1: there is no model 'cubic'; choose from pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
-        ("h = 0.1\nmethods = []", "line 2: methods: use for example"),
+        ("h = 0.1\nmethods = []", "line 2: no method is given"),
         ("# nothing", "describes no scene"),
         (
             "[shot]\nseconds = 9\nlog = 1",
@@ -62,13 +62,13 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine, name):
         ),
         (
             "h = 0.1\nshot = 1",
-            "line 2: shot: Expected `object`, got `int`; use for example shot = {",
+            "line 2: shot: Expected `object`, got `int`; use for example [shot]",
         ),
-        ("[shot]\nvew = 'phase'", "line 2: a shot has no field vew: did you mean view?"),
-        ("[shot]\nview = 'phse'", "line 2: a shot has no 'phse'; choose from lab, phase"),
+        ("[shot]\nvew = 'phase'", "line 2: there is no field of a shot 'vew': did you mean view?"),
+        ("[shot]\nview = 'phse'", "line 2: there is no view 'phse': did you mean phase?"),
         ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
-        ("from = 'drfit'", "line 1: from: there is no 'drfit': did you mean drift?"),
+        ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nreturns = true", "line 2: it needs a moment; use for example moment ="),
         (
             "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
