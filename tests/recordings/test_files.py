@@ -7,13 +7,7 @@ import pytest
 from mcap.writer import Writer
 
 from pendu_tui.recordings import files
-from pendu_tui.recordings.files import (
-    GOLDEN,
-    DiskError,
-    RecordingError,
-    listing,
-    new_path,
-)
+from pendu_tui.recordings.files import GOLDEN, DiskError, RecordingError, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
 from tests.recordings.examples import start, tiny
@@ -21,25 +15,25 @@ from tests.tui.command_line import IS_WINDOWS
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
+def library(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     return tmp_path / "library"
 
 
-def fill(folder, **ages):
-    """Recordings of these names, so many seconds old."""
-    folder.mkdir(exist_ok=True)
-    for name, age in ages.items():
-        path = tiny(folder / f"{name}.mcap")
+@pytest.fixture
+def old_and_new(library):
+    """Recordings of the library, 100 s and 1 s old."""
+    library.mkdir()
+    for name, age in (("old", 100), ("new", 1)):
+        path = tiny(library / f"{name}.mcap")
         os.utime(path, (1_700_000_000 - age,) * 2)
-    return [folder / f"{name}.mcap" for name in ages]
+    return library / "old.mcap", library / "new.mcap"
 
 
-def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monkeypatch):
-    assert files.folder() == folder
-    for nothing in ("", " "):
-        monkeypatch.setenv("PENDU_RECORDINGS", nothing)
-        assert files.folder().parts[-2:] == ("pendu-tui", "recordings")
+def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, monkeypatch):
+    assert files.folder() == library
+    monkeypatch.setenv("PENDU_RECORDINGS", " ")
+    assert files.folder().parts[-2:] == ("pendu-tui", "recordings")
     no_folders = ["s3://bucket/runs"]
     if not IS_WINDOWS:  # where any name stands for a folder
         no_folders.append("~nosuchuser/runs")
@@ -49,28 +43,41 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monk
             files.folder()
 
 
-def test_a_new_recording_has_a_free_name_with_the_time(folder, monkeypatch):
+def test_a_new_recording_has_a_free_name_with_the_time(library, monkeypatch):
     monkeypatch.setattr(time, "strftime", lambda _: "2026-11-20T12-00-00")
-    folder.mkdir()
+    library.mkdir()
     for name, taken in (("", ".mcap.part"), ("-2", ".mcap"), ("-3", ".mcap")):
-        free = folder / f"2026-11-20T12-00-00{name}.mcap"
+        free = library / f"2026-11-20T12-00-00{name}.mcap"
         assert new_path() == free
         free.with_suffix(taken).touch()
 
 
-def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
+def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(library):
     assert listing() == []
-    old, new = fill(folder, old=100, new=1)
-    (folder / "notes.txt").touch()
-    (folder / "folder.mcap").mkdir()
-    assert [item.path for item in listing()] == [new, old]
-    assert listing()[0].bytes == new.stat().st_size
+    library.mkdir()
+    killed = tiny(library / "killed.mcap").rename(library / "killed.mcap.part")
+    old = tiny(library / "old.mcap")
+    os.utime(old, (1, 1))
+    (library / "notes.txt").touch()
+    (library / "folder.mcap").mkdir()
+    (library / "empty.mcap.part").touch()
+    for name in ("robot.mcap", "robot.mcap.part"):  # a browser's download is called so, too
+        with (library / name).open("wb") as stream:
+            Writer(stream).start("ros2")
+    with Recorder(library / "running.mcap") as recorder:
+        recorder.event(start(), 0.0)
+        recorder.flush()
+        assert [(item.path, item.bytes) for item in listing()] == [
+            (killed, killed.stat().st_size),
+            (old, old.stat().st_size),
+        ]
+        assert [item.path for item in listing(being_made=True)] == [recorder.part]
 
 
 def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
-    folder, tmp_path, monkeypatch
+    old_and_new, tmp_path, monkeypatch
 ):
-    old, new = fill(folder, old=100, new=1)
+    old, new = old_and_new
     elsewhere = tiny(tmp_path / "elsewhere.mcap")
     assert resolve(str(elsewhere)) == elsewhere
     assert resolve("latest") == new
@@ -85,8 +92,7 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
     [
         ("latest", "no recordings in .*library yet"),
         ("drfit", "did you mean drift?"),
-        ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, damped, drift"),
-        ("../../etc/passwd.mcap", "choose a file"),
+        ("../../etc/passwd.mcap", "choose a file, or one of latest, changes-of-h, damped, drift"),
         ("\x1b[2J", r"there is no recording '\\x1b"),
     ],
 )
@@ -96,20 +102,17 @@ def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
     assert str(caught.value).isprintable()
 
 
-def test_a_recording_in_progress_is_not_listed_among_the_unfinished(folder):
-    folder.mkdir()
-    killed = tiny(folder / "killed.mcap").rename(folder / "killed.mcap.part")
-    with Recorder(folder / "running.mcap") as recorder:
-        recorder.event(start(), 0.0)
-        recorder.flush()
-        assert [item.path for item in listing()] == [killed]
-        assert [item.path for item in listing(being_made=True)] == [recorder.part]
-
-
-def test_files_of_other_programs_are_not_listed(folder):
-    folder.mkdir()
-    for name in ("robot.mcap", "robot.mcap.part"):  # a browser's download is called so, too
-        with (folder / name).open("wb") as stream:
-            Writer(stream).start("ros2")
-    (folder / "empty.mcap.part").touch()
-    assert listing() == []
+def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
+    taken = tiny(tmp_path / "a.mcap")
+    for path, force, why in (
+        (taken, False, "--force"),
+        (taken, None, "name$"),
+        (tmp_path, True, "name$"),
+        (tmp_path / "no" / "a.mcap", True, "no folder"),
+        (files.Path("-"), True, "no name for a file"),
+    ):
+        with pytest.raises(DiskError, match=why):
+            files.check_target(path, force)
+    files.check_target(taken, force=True)
+    files.check_target(tmp_path / "free.mcap", force=None)
+    files.check_target(files.Path(os.devnull))
