@@ -11,12 +11,11 @@ Energy and |s|, the probability, are conserved for any nu.  Tully, Faraday Discu
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 
 from pendu_tui.engine.models.model import (
     Energy,
-    ExactMotion,
     ExtraColumn,
     Model,
     Number,
@@ -24,12 +23,10 @@ from pendu_tui.engine.models.model import (
     Phase,
     Rates,
     Sine,
-    State,
+    Step,
+    compose,
 )
-from pendu_tui.engine.models.reference import ACCURACY, Reference, compose
 from pendu_tui.engine.quantities import Chart, Quantity
-
-STEP = 0.4  # of the reference, times the fastest frequency
 
 
 @dataclass(frozen=True)
@@ -58,7 +55,7 @@ class MeanField(Model):
             min=1e-3,
             max=1e4,
             default=20.0,
-            max_over_w0=1_000,  # beyond, its reference takes too many steps
+            max_over_w0=1_000,  # beyond, its exact motion takes too many steps
         ),
     )
     turns = True
@@ -159,13 +156,8 @@ class MeanField(Model):
 
         return mean_field_energy
 
-    def exact(self, theta: float, omega: float) -> ExactMotion:
-        """Return the motion by a splitting of order 8, as there is no closed form."""
-
-        def at(t: float) -> State:
-            return State(*_reference(self, theta, omega).at(t)[:2])
-
-        return ExactMotion(at, "libration", accuracy=ACCURACY)
+    def exact_step(self) -> tuple[Step, float]:
+        return compose(partial(strang, self)), 0.4 / self.fastest
 
 
 def _length(phase: Phase) -> float:
@@ -177,9 +169,3 @@ def strang(model: MeanField, phase: Phase, h: float) -> Phase:
     theta, omega, *bloch = phase
     theta, omega, *bloch = model.kick((theta + h / 2 * omega, omega, *bloch), h)
     return theta + h / 2 * omega, omega, *bloch
-
-
-@lru_cache(maxsize=16)
-def _reference(model: MeanField, theta: float, omega: float) -> Reference:
-    step = compose(partial(strang, model))
-    return Reference(step, model.start(theta, omega), STEP / model.fastest)

@@ -1,12 +1,13 @@
-"""Model: the physics that methods integrate."""
+"""Model: the physics that methods integrate, and the exact motion that they are compared with."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any, ClassVar, Literal, NamedTuple
 
 from pendu_tui.engine.inputs import angle, number, seconds, start_angle
-from pendu_tui.engine.quantities import CHARTED, ENERGY_ERROR, Quantity
+from pendu_tui.engine.quantities import CHARTED, ENERGY_ERROR, Chart, Head, Quantity
 
 Phase = tuple[Any, ...]
 """(theta, omega) as methods take and yield it: a plain tuple, because it is fast.
@@ -23,6 +24,9 @@ Energy = Callable[[Phase], Any]
 
 Rates = Callable[[Phase], Phase]
 """A phase -> the time derivative of each of its numbers."""
+
+Step = Callable[[Phase, float], Phase]
+"""(phase, h) -> the phase after h [s]."""
 
 Sine = Callable[[Any], Any]
 
@@ -81,6 +85,14 @@ class EnergyReference(NamedTuple):
         return math.log(min(max(energy, self.least), 1e300))
 
 
+ENERGY_RATIO = ENERGY_ERROR._replace(
+    label="ln(E/E_true)",
+    head=Head("ln E/Et", 8, "ln E/Et", 8),
+    sentence="the logarithm of the energy over that of the exact motion, which loses energy, too",
+    chart=Chart("ln(E/E_true)", "|ln(E/E_true)|"),
+)
+"""The energy error of a model that does not conserve its energy."""
+
 Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 
 
@@ -91,6 +103,90 @@ class ExactMotion(NamedTuple):
     regime: Regime
     period: float | None = None  # s, of a swing or turn; None: not periodic
     accuracy: float = 0.0  # rad, largest error of theta in the first minute; 0: closed form
+
+
+_HALF = (
+    0.13020248308889008088,
+    0.56116298177510838456,
+    -0.38947496264484728641,
+    0.15884190655515560090,
+    -0.39590389413323757734,
+    0.18453964097831570709,
+    0.25837438768632204729,
+    0.29501172360931029887,
+)
+WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
+"""Of a composition of order 8: Kahan & Li, Math. Comput. 66 (1997) 1089."""
+
+ACCURACY = 1e-10  # rad, of theta, with the steps that the models give it
+EVERY = 64  # steps from one kept phase to the next
+
+
+def compose(step: Step) -> Step:
+    """Return a step of order 8, composed of a symmetric step of order 2."""
+
+    def composed(phase: Phase, h: float) -> Phase:
+        for weight in WEIGHTS:
+            phase = step(phase, weight * h)
+        return phase
+
+    return composed
+
+
+def compose_verlet(force: Force, friction: float = 0.0) -> Step:
+    """Return the composition of velocity Verlet, or with friction [s⁻¹] of conformal Verlet.
+
+    Adjacent parts share a force.
+    """
+
+    def composed(phase: Phase, h: float) -> Phase:
+        position, velocity = phase
+        a = force(position)
+        for weight in WEIGHTS:
+            part = weight * h
+            damping = math.exp(-friction * part / 2)
+            velocity = velocity * damping + part / 2 * a
+            position = position + part * velocity
+            a = force(position)
+            velocity = (velocity + part / 2 * a) * damping
+        return position, velocity
+
+    return composed
+
+
+class Reference:
+    """The motion from a start, computed on demand; its bits do not depend on earlier calls."""
+
+    def __init__(self, step: Step, start: Phase, h: float) -> None:
+        self._step = step
+        self._h = h  # s
+        self._kept = {0: start}  # by number of steps, which may be negative
+        self._last = 0, start  # the last whole step of the previous call
+
+    def at(self, t: float) -> Phase:
+        """Return the phase at a time [s], after whole steps and a shorter one."""
+        steps = int(t / self._h)
+        way = int(math.copysign(1, steps))
+        begin = steps // (way * EVERY) * way * EVERY
+        while begin not in self._kept:
+            begin -= way * EVERY
+        phase = self._kept[begin]
+        last, last_phase = self._last
+        if begin * way <= last * way <= steps * way:
+            begin = last
+            phase = last_phase
+        try:
+            for n in range(begin + way, steps + way, way):
+                phase = self._step(phase, way * self._h)
+                if n % EVERY == 0:
+                    self._kept[n] = phase
+            self._last = steps, phase
+            rest = t - steps * self._h
+            if rest:
+                return self._step(phase, rest)
+            return phase
+        except (ValueError, ArithmeticError):
+            return phase  # long before the start friction makes it faster than doubles hold
 
 
 class Number(NamedTuple):
@@ -164,7 +260,7 @@ class Model(ABC):
     variables: ClassVar[tuple[Quantity, ...]] = ()  # besides those of QUANTITIES
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
     conserves_energy: ClassVar[bool] = True  # else energy errors are ln(E/E_true)
-    error: ClassVar[Quantity] = ENERGY_ERROR  # its energy error
+    error: ClassVar[Quantity] = ENERGY_ERROR  # its energy error, or ENERGY_RATIO
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
     caption: ClassVar[str] = ""  # of a phase portrait that does not follow curves of equal energy
@@ -212,15 +308,15 @@ class Model(ABC):
 
     def force(self, sin: Sine = math.sin) -> Force:
         """Return the force for numbers with this `sin`: NumPy's, cmath's, mpmath's."""
-        raise NotImplementedError(f"the model {self.key} is not described by a force")
+        raise NotImplementedError
 
     def slope(self, theta: float) -> float:
         """Return d force / d theta [s⁻²]."""
-        raise NotImplementedError(f"the model {self.key} is not described by a force")
+        raise NotImplementedError
 
     def rates(self, sin: Sine = math.sin) -> Rates:
         """Return the equations as a first-order system, for the same numbers."""
-        raise NotImplementedError(f"the model {self.key} is described by a force")
+        raise NotImplementedError
 
     def parts(self, sin: Sine = math.sin) -> Any:
         """Return the parts of the equations for this model's methods."""
@@ -230,14 +326,37 @@ class Model(ABC):
     def energy(self, sin: Sine = math.sin) -> Energy:
         """Return the energy, for the same numbers."""
 
-    @abstractmethod
-    def exact(self, theta: float, omega: float) -> ExactMotion:
-        """Return the exact motion from theta [rad] and omega [rad/s]."""
-
     def reference(self, theta: float, omega: float) -> EnergyReference:
         """Return what energy errors from theta [rad] and omega [rad/s] are relative to."""
-        start: float = self.energy()(self.start(theta, omega))
-        return EnergyReference(start, scale=start if start > 0 else 2 * self.w0_squared)
+        energy = self.energy()
+        start: float = energy(self.start(theta, omega))
+        scale = start if start > 0 else 2 * self.w0_squared
+        if self.conserves_energy:
+            return EnergyReference(start, scale)
+        least = max(1e-24 * min(self.w0_squared, scale), 1e-300)  # of 1e-12 rad
+        return EnergyReference(
+            start, scale, lambda t: float(energy(self.exact_phase(theta, omega, t))), least
+        )
+
+    def exact(self, theta: float, omega: float) -> ExactMotion:
+        """Return the exact motion from theta [rad] and omega [rad/s], here by steps of order 8."""
+
+        def at(t: float) -> State:
+            return State(*self.observe(self.exact_phase(theta, omega, t))[:2])
+
+        return ExactMotion(at, self.regime(theta, omega), accuracy=ACCURACY)
+
+    def regime(self, theta: float, omega: float) -> Regime:
+        """Return the kind of motion from theta [rad] and omega [rad/s]."""
+        return "libration"
+
+    def exact_phase(self, theta: float, omega: float, t: float) -> Phase:
+        """Return the phase at a time [s] by steps of order 8."""
+        return _reference(self, theta, omega).at(t)
+
+    def exact_step(self) -> tuple[Step, float]:
+        """Return the step of order 8, and the size [s] with which it is right to ACCURACY."""
+        return compose_verlet(self.force()), 0.05 / self.fastest
 
     def invariant(self) -> Callable[[Phase], float] | None:
         """Return a positive invariant besides the energy, or None."""
@@ -254,3 +373,9 @@ class Model(ABC):
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
         """Return a function of the energy alone, 1 - E/E_separatrix if there is a separatrix."""
         return 0 * (theta + omega)
+
+
+@lru_cache(maxsize=16)
+def _reference(model: Model, theta: float, omega: float) -> Reference:
+    step, h = model.exact_step()
+    return Reference(step, model.start(theta, omega), h)

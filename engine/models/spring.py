@@ -8,13 +8,11 @@ import cmath
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from operator import itemgetter
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.models.model import (
     Energy,
-    ExactMotion,
     ExtraColumn,
     Force,
     Model,
@@ -22,12 +20,10 @@ from pendu_tui.engine.models.model import (
     Observation,
     Phase,
     Sine,
-    State,
+    Step,
+    compose_verlet,
 )
-from pendu_tui.engine.models.reference import ACCURACY, Reference, compose_verlet
 from pendu_tui.engine.quantities import Chart, Quantity
-
-STEP = 0.1  # of the reference, times the spring's frequency
 
 
 class SpringParts(NamedTuple):
@@ -103,6 +99,9 @@ class Spring(Model):
     def observe(self, phase: Phase) -> Observation:
         """Return angle, angular velocity, position, velocity, and the spring's energy."""
         z, w = phase
+        turned = 1j * z  # its phase is theta; cmath.phase raises where that underflows
+        theta = math.atan2(turned.imag, turned.real)
+        omega = (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0)
         extra = {
             "x": z.real,
             "y": z.imag,
@@ -110,7 +109,7 @@ class Spring(Model):
             "vy": w.imag,
             "spring_energy": self.spring_energy(phase),
         }
-        return Observation(*self._swing(phase), extra)
+        return Observation(theta, omega, extra)
 
     def theta_error(self, theta: float, exact: float) -> float:
         """Return theta - exact theta [rad] within ±pi, because whole turns are not known."""
@@ -120,14 +119,8 @@ class Spring(Model):
         return _length(extra)
 
     def exact_length(self, theta: float, omega: float, t: float) -> float:
-        z, _ = self.place(theta, omega, t)
+        z, _ = self.exact_phase(theta, omega, t)
         return float(abs(z))
-
-    def _swing(self, phase: Phase) -> State:
-        z, w = phase
-        turned = 1j * z  # its phase is theta; cmath.phase raises where that underflows
-        theta = math.atan2(turned.imag, turned.real)
-        return State(theta, (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
 
     def force(self, sin: Sine = math.sin) -> Force:
         fast, slow, _ = self.parts(sin)
@@ -189,21 +182,11 @@ class Spring(Model):
         energy: float = radial * radial / 2 + self.stiffness / 2 * stretch * stretch
         return energy
 
-    def exact(self, theta: float, omega: float) -> ExactMotion:
-        """Return the reference's motion; nan if the spring is too fast for it."""
+    def exact_step(self) -> tuple[Step, float]:
+        return compose_verlet(self.force()), 0.1 / self.fastest
 
-        def at(t: float) -> State:
-            return self._swing(self.place(theta, omega, t))
-
-        return ExactMotion(at, "libration", accuracy=ACCURACY)
-
-    def place(self, theta: float, omega: float, t: float) -> Phase:
-        """Return the reference's phase at a time [s]; nan if the spring is too fast to follow."""
+    def exact_phase(self, theta: float, omega: float, t: float) -> Phase:
+        """Return the phase at a time [s]; nan if the spring is too fast to follow."""
         if self.fastest > 320 * self.w0:
             return complex(math.nan, math.nan), complex(math.nan, math.nan)
-        return _reference(self, theta, omega).at(t)
-
-
-@lru_cache(maxsize=16)
-def _reference(model: Spring, theta: float, omega: float) -> Reference:
-    return Reference(compose_verlet(model.force()), model.start(theta, omega), STEP / model.fastest)
+        return super().exact_phase(theta, omega, t)
