@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import shutil
 import subprocess
 import sys
@@ -57,16 +56,28 @@ class Decaying(Model):
         c, s = math.cos(self.w0 * t), math.sin(self.w0 * t)
         return State(theta * c + omega / self.w0 * s, omega * c - theta * self.w0 * s)
 """
+COMMANDS = """
+import shlex, sys
+sys.path.insert(0, ".")  # not PYTHONPATH, which the embeddable Python for Windows ignores
+from pendu_tui.tui.cli.dispatch import main
+
+for line in (
+    "run --scene scene.toml --decay 1 --time 2 --json",
+    "run --scene scene.toml --time 2 --record a.mcap",
+    "verify a.mcap",
+    "export a.mcap -o a.csv",
+    "snapshot --scene scene.toml --size 200x60 --time 2 -o a.svg",
+):
+    assert not main(shlex.split(line)), line
+"""
 
 
-@pytest.fixture(scope="module")
-def pendu(tmp_path_factory):
-    """The command line of a copy of the program with one more model."""
-    copy = tmp_path_factory.mktemp("copy")
+def test_another_model_runs_with_its_variables_is_recorded_verified_and_drawn(tmp_path):
+    """In a copy of the program, whose list of models has one more."""
+    copy = tmp_path / "pendu_tui"
     for package in ("engine", "recordings", "tui"):
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / package, copy / "pendu_tui" / package, ignore=ignored)
-    models = copy / "pendu_tui" / "engine" / "models"
+        shutil.copytree(ROOT / package, copy / package)
+    models = copy / "engine" / "models"
     (models / "decaying.py").write_text(MODEL, "utf-8")
     listed = (models / "__init__.py").read_text("utf-8")
     changed = listed.replace("MeanField)", "MeanField, Decaying)").replace(
@@ -76,33 +87,14 @@ def pendu(tmp_path_factory):
     assert changed.count("Decaying") == 2
     (models / "__init__.py").write_text(changed, "utf-8")
     scene = 'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n'
-    (copy / "scene.toml").write_text(scene, "utf-8")
-    environment = os.environ | {"PENDU_RECORDINGS": str(copy / "made")}
-    code = (  # not PYTHONPATH, which the embeddable Python for Windows ignores
-        f"import sys; sys.path.insert(0, {str(copy)!r})\n"
-        "from pendu_tui.tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
+    (tmp_path / "scene.toml").write_text(scene, "utf-8")
+    (tmp_path / "all.py").write_text(COMMANDS, "utf-8")
+    done = subprocess.run(
+        [sys.executable, "all.py"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-
-    def run(*arguments):
-        command = [sys.executable, "-c", code, *arguments]
-        done = subprocess.run(
-            command, cwd=copy, env=environment, capture_output=True, text=True, check=False
-        )
-        assert not done.returncode, done.stderr
-        return done.stdout
-
-    return run
-
-
-def test_another_model_runs_with_its_variables_and_its_parameter(pendu):
-    answer = pendu("run", "--scene", "scene.toml", "--decay", "1", "--time", "2", "--json")
-    rows = json.loads(answer)["methods"]
+    assert not done.returncode, done.stderr
+    assert "identical" in done.stdout
+    answer, _ = json.JSONDecoder().raw_decode(done.stdout)
+    rows = answer["methods"]
     assert [row["method"] for row in rows] == ["explicit_euler", "rk4"]
     assert rows[1]["square"] == pytest.approx(math.exp(-4), rel=1e-3)
-
-
-def test_another_model_is_recorded_verified_and_drawn(pendu):
-    pendu("run", "--scene", "scene.toml", "--time", "2", "--record", "a.mcap")
-    assert "identical" in pendu("verify", "a.mcap")
-    pendu("export", "a.mcap", "-o", "a.csv")
-    pendu("snapshot", "--scene", "scene.toml", "--size", "200x60", "--time", "2", "-o", "a.svg")

@@ -1,0 +1,214 @@
+"""What holds for every model, and what each promises besides."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendu_tui.engine.inputs import InputError
+from pendu_tui.engine.models import MODELS, Pendulum
+from pendu_tui.engine.models.damped import DampedPendulum
+from pendu_tui.engine.models.mean_field import MeanField, strang
+from pendu_tui.engine.models.model import ACCURACY, Reference
+from pendu_tui.engine.models.spring import Spring
+from pendu_tui.engine.scenes import Scene
+from tests.models import EQUATIONS, EXAMPLES
+
+each_model = pytest.mark.parametrize("model", EQUATIONS, ids=EXAMPLES)
+angles, speeds = st.floats(-3.1, 3.1), st.floats(-5, 5)
+DAMPED, SPRING = DampedPendulum(9.81, 0.2), Spring(9.81, 2500.0)
+MEAN_FIELD = MeanField(9.81, 2.0, 20.0)
+
+
+def test_every_model_has_a_scene_and_no_two_a_number_of_the_same_name():
+    assert EXAMPLES.keys() == MODELS.keys()
+    names = [number.name for model in MODELS.values() for number in model.parameters]
+    assert len(names) == len(set(names))
+
+
+@each_model
+@given(theta=angles, omega=speeds)
+def test_a_start_is_seen_at_its_angle_and_angular_velocity(model, theta, omega):
+    seen = model.observe(model.start(theta, omega))
+    assert seen[:2] == pytest.approx((theta, omega), abs=1e-14)
+    assert list(seen.extra) == [each.name for each in model.variables]
+
+
+def changes(model, phase):
+    """The derivative of each number of a phase, by the equations."""
+    if "force" in model.offers:
+        return phase[1], model.force()(phase[0])
+    return model.rates()(phase)
+
+
+@each_model
+def test_the_exact_motion_follows_the_equations_and_is_as_accurate_as_it_says(model):
+    step, h = model.exact_step()
+    start = model.start(2.0, 0.3)
+    energy, invariant = model.energy(), model.invariant() or (lambda phase: 1.0)
+    exact, finer = model.exact(2.0, 0.3), Reference(step, start, h / 2)
+    assert exact.accuracy in (0, ACCURACY)
+    for t in (-0.7, 0.05, 1.0, 30.0):
+        phase = finer.at(t)
+        # of order 8, the reference's own error is 256 times that of the finer one
+        assert model.observe(phase).theta == pytest.approx(exact.at(t).theta, abs=ACCURACY / 2)
+        slope = np.subtract(finer.at(t + 1e-5), finer.at(t - 1e-5)) / 2e-5
+        assert slope == pytest.approx(np.array(changes(model, phase)), rel=1e-5, abs=1e-5)
+        assert invariant(phase) == pytest.approx(invariant(start), rel=1e-12)
+        if model.conserves_energy:
+            assert energy(phase) == pytest.approx(energy(start), rel=1e-11)
+
+
+def test_it_does_not_matter_which_times_are_asked_for_first():
+    def reference():
+        step, h = DAMPED.exact_step()
+        return Reference(step, (2.0, 0.0), h)
+
+    together = reference()
+    for t in (37.5, 0.0, -20.0, 3.7, 60.0, -0.016, 59.99):
+        assert together.at(t) == reference().at(t)
+
+
+@pytest.mark.parametrize("friction", [1.0, 20.0])
+def test_the_exact_motion_is_right_at_any_friction(friction):
+    model = DampedPendulum(9.81, friction)
+    step, h = model.exact_step()
+    finer = Reference(step, (2.0, 0.0), h / 2)
+    exact = model.exact(2.0, 0.0)
+    assert max(abs(exact.at(t).theta - finer.at(t)[0]) for t in range(20)) < ACCURACY / 2
+
+
+def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
+    reference = DAMPED.reference(2.0, 0.0)
+    true = reference.true(30.0)
+    assert true == pytest.approx(DAMPED.energy()(DAMPED.exact(2.0, 0.0).at(30.0)))
+    assert reference.error(true * math.e, 30.0) == pytest.approx(1)
+    assert reference.error(0.0, 30.0) == pytest.approx(math.log(reference.least / true))
+    # of an energy that is hardly a number, and far back in time, there are still numbers
+    assert DampedPendulum(9.81, 0.1).reference(1e-157, 0.0).error(0.0, 30.0) == 0
+    assert math.isfinite(DampedPendulum(9.81, 20.0).reference(2.0, 0.0).error(10.0, -1000.0))
+
+
+def test_with_friction_energy_decides_the_regime_and_area_shrinks():
+    just = 2 * math.sqrt(9.81)
+    for start, regime in (
+        ((0.0, 0.999 * just), "libration"),
+        ((0.0, 1.001 * just), "rotation"),
+        ((0.0, 0.0), "equilibrium"),
+    ):
+        exact = DAMPED.exact(*start)
+        assert (exact.regime, exact.period) == (regime, None)
+    assert DAMPED.area_share(4.0) == pytest.approx(math.exp(-0.8))
+    assert Pendulum(9.81).area_share(4.0) == 1.0
+
+
+def test_a_number_is_for_the_model_that_has_it_and_within_limits():
+    damped = EXAMPLES["damped"].altered(friction=0.1)
+    assert damped.equations == DampedPendulum(9.81, 0.1)
+    assert damped.fields()["friction"] == 0.1
+    assert Scene(parameters={"friction": 0.0}).parameters == {}
+    with pytest.raises(InputError, match=r"^the model pendulum has no friction; "):
+        Scene(parameters={"friction": 0.1})
+    with pytest.raises(InputError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 "):
+        Scene(model="spring", cast=())
+
+
+@pytest.mark.parametrize(("gravity", "most"), [(9.81, 100.0), (0.04, 20.0)])
+def test_the_limit_of_friction_is_100_per_s_or_100_w0(gravity, most):
+    damped = EXAMPLES["damped"].altered(gravity=gravity)
+    assert damped.altered(friction=0.999 * most).parameters["friction"] == 0.999 * most
+    with pytest.raises(InputError, match=rf"friction = .* out of range; use 0 to {most:g} s"):
+        damped.altered(friction=1.001 * most)
+
+
+def test_the_spring_starts_stretched_by_4_percent_beyond_equilibrium():
+    z, w = SPRING.start(1.0, 0.0)
+    assert z == pytest.approx(0.8769138657516443 - 0.5630599180095599j, abs=1e-15)
+    assert w == 0
+    assert SPRING.spring_energy((z, w)) == pytest.approx(2500 / 2 * 0.04**2)
+    assert SPRING.reference(1.0, 0.0).start == pytest.approx(6.5040, abs=1e-4)
+    assert EXAMPLES["spring"].altered(stiffness=2500.0, h=0.02).z == pytest.approx(1.0)
+
+
+@given(z=st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3))
+def test_the_springs_force_is_minus_the_slope_of_its_energy(z):
+    def energy(x, y):
+        return mp.mpf("9.81") * (y + 1) + 1250 * (mp.hypot(x, y) - 1) ** 2
+
+    with mp.workdps(40):
+        x, y = mp.mpf(z.real), mp.mpf(z.imag)
+        slope = complex(mp.diff(energy, (x, y), (1, 0)), mp.diff(energy, (x, y), (0, 1)))
+        assert SPRING.energy()((z, 0j)) == pytest.approx(float(energy(x, y)), rel=1e-12)
+    assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
+
+
+def test_the_true_motion_keeps_the_springs_energy_within_2_5_percent():
+    phases = [SPRING.exact_phase(1.0, 0.0, n / 50) for n in range(1500)]
+    energies = np.array([SPRING.spring_energy(phase) for phase in phases])
+    assert 1.02 < max(energies / energies[0]) < 1.025
+    assert min(energies / energies[0]) > 0.975
+    lengths = [SPRING.length(SPRING.observe(phase).extra) for phase in phases]
+    assert lengths[7] == pytest.approx(SPRING.exact_length(1.0, 0.0, 7 / 50))
+    assert 0.96 < min(lengths) < 0.97 < 1.04 < max(lengths) < 1.05
+
+
+@pytest.mark.parametrize(("ratio", "followed"), [(319.0, True), (321.0, False), (1e7, False)])
+def test_the_true_motion_of_too_fast_a_spring_is_not_known(ratio, followed):
+    exact = Spring(9.81, ratio**2 * 9.81).exact(1.0, 0.0)
+    assert math.isfinite(exact.at(0.01).theta) == followed
+
+
+def test_on_a_spring_an_error_of_theta_is_less_than_half_a_turn():
+    assert SPRING.theta_error(3.1, -3.1) == pytest.approx(6.2 - math.tau)
+    assert SPRING.theta_error(0.3, 0.1) == pytest.approx(0.2)
+
+
+phases = st.tuples(angles, speeds, *[st.floats(-1, 1)] * 3)
+
+
+def field(theta):
+    return np.array([math.sin(theta), 0.0, math.cos(theta)])
+
+
+@given(phase=phases)
+def test_the_mean_field_has_the_equations_and_the_energy_of_its_docstring(phase):
+    theta, omega, *bloch = phase
+    pull = -9.81 * math.sin(theta) - 2.0 * field(theta + math.pi / 2) @ bloch
+    expected = [omega, pull, *(20.0 * np.cross(field(theta), bloch))]
+    assert MEAN_FIELD.rates()(phase) == pytest.approx(expected, abs=1e-13)
+    energy = omega**2 / 2 + 9.81 * (1 - math.cos(theta)) + 2.0 * field(theta) @ bloch
+    assert MEAN_FIELD.energy()(phase) == pytest.approx(energy, abs=1e-13)
+    seen = MEAN_FIELD.observe(phase).extra
+    assert list(seen.values()) == pytest.approx([*bloch, np.linalg.norm(bloch) - 1])
+
+
+@given(phase=phases, h=st.floats(0.01, 0.3))
+def test_the_exact_splitting_keeps_the_poisson_structure(phase, h):
+    columns = []
+    for nudge in 1e-6 * np.eye(5):
+        ends = (np.array(strang(MEAN_FIELD, tuple(phase + s * nudge), h)) for s in (1, -1))
+        columns.append(np.subtract(*ends) / 2e-6)
+    jacobian = np.transpose(columns)
+    there = structure(strang(MEAN_FIELD, phase, h))
+    assert jacobian @ structure(phase) @ jacobian.T == pytest.approx(there, abs=1e-6)
+
+
+def structure(phase):
+    """Return the tensor P of y' = P grad H: canonical, and a turn about s for the levels."""
+    sx, sy, sz = phase[2:]
+    tensor = np.zeros((5, 5))
+    tensor[:2, :2] = [[0, 1], [-1, 0]]
+    tensor[2:, 2:] = 20.0 / 2.0 * np.array([[0, sz, -sy], [-sz, 0, sx], [sy, -sx, 0]])
+    return tensor
+
+
+@pytest.mark.parametrize("coupling", [2.0, -2.0])
+@given(theta=angles, s=st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda s: math.hypot(*s) > 0.1))
+def test_no_pure_state_has_less_energy_than_the_phase_at_rest(coupling, theta, s):
+    model = MeanField(9.81, coupling, 20.0)
+    energy, rest = model.energy(), model.rest_phase(theta)
+    assert math.hypot(*rest[2:]) == pytest.approx(1.0)
+    assert energy(rest) <= energy((theta, 0.0, *(np.array(s) / np.linalg.norm(s)))) + 1e-12
