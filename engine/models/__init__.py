@@ -2,8 +2,8 @@
 
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.mean_field import MeanField
-from pendu_tui.engine.models.model import Model as Model
 from pendu_tui.engine.models.model import COMMON as COMMON
+from pendu_tui.engine.models.model import Model as Model
 from pendu_tui.engine.models.model import Number
 from pendu_tui.engine.models.pendulum import LinearOscillator as LinearOscillator
 from pendu_tui.engine.models.pendulum import Pendulum as Pendulum
