@@ -113,13 +113,12 @@ def _dispatch(arguments: list[str]) -> int:
     module, _, function = COMMANDS[name].place.partition(":")
     run = getattr(import_module(f"{ROOM}.{module or name}"), function or "run")
     refuse_to_replace_inputs(options)
-    if not getattr(options, "method", None):
-        return int(run(options))
-    from pendu_tui.tui.cli.watchdog import watched
+    if getattr(options, "method", None):
+        from pendu_tui.tui.cli.watchdog import watch_calls_in_c
 
-    keep_results_apart()
-    with watched():
-        return int(run(options))
+        keep_results_apart()
+        watch_calls_in_c()
+    return int(run(options))
 
 
 def split(arguments: list[str]) -> tuple[str, list[str]]:

@@ -7,21 +7,21 @@ import os
 import signal
 import sys
 import time
+from _thread import interrupt_main
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
-from threading import Thread, main_thread
-from typing import TYPE_CHECKING, Any
+from threading import Thread, Timer, main_thread
+from traceback import walk_stack
+from typing import Any
 
 from pendu_tui.engine.methods.own import MAX_TIME, USER_CODE, OwnMethodError, TooLongError, place
 from pendu_tui.recordings import system
 
-if TYPE_CHECKING:  # the first paint needs no other process
-    from multiprocessing.connection import Connection
-
 LOOK_INTERVAL = 0.2  # s
 MAX_LOOKS = round(MAX_TIME / LOOK_INTERVAL)  # counted, since a stopped program's clock goes on
 MAX_STUCK = 5.0  # s, the event loop after a signal, or the whole process
+ALARM = signal.SIGABRT  # an abort() in C still ends the process
 
 
 class Watchdog(Thread):
@@ -29,7 +29,7 @@ class Watchdog(Thread):
 
     def __init__(self) -> None:
         super().__init__(daemon=True)
-        self.pulse: Connection | None = None  # to the other process
+        self.pulse: Callable[[None], object] = bool  # to the other process
         self.close: Callable[[], object] = bool  # called before the program is ended
         self.tell: Callable[[str], object] = _tell  # called with the reason
         self._look: Callable[[], object] = bool
@@ -43,21 +43,21 @@ class Watchdog(Thread):
             looks = looks + 1 if USER_CODE.depth and USER_CODE.count == step else 0
             step = USER_CODE.count
             if looks == MAX_LOOKS:
-                _raise_in_main(TooLongError)
+                interrupt_main(ALARM)
             elif looks == MAX_LOOKS + 3:  # it sleeps, or catches everything
                 self.end(2, f"{_place_in_main()} {TooLongError()}.")
             self._look()
-            if self.pulse:
-                with suppress(OSError):  # the other process has ended
-                    self.pulse.send(None)
+            with suppress(OSError):  # the other process has ended
+                self.pulse(None)
 
     def guard(self, loop: Any, leave: Callable[[], object], close: Callable[[], object]) -> None:
         """Have a lab leave when a signal asks for it, or when its terminal or its server is gone.
 
         `leave` is called in the event loop; `close` ends the recording from any thread.
         """
-        has_terminal = not system.is_gone()
-        server = os.getppid()
+
+        def surroundings() -> tuple[bool, int]:
+            return system.is_gone(), os.getppid()
 
         def ask(*_: object) -> None:
             self._asked_at = self._asked_at or time.monotonic()
@@ -65,11 +65,12 @@ class Watchdog(Thread):
                 loop.call_soon_threadsafe(leave)
 
         def look() -> None:
-            if system.is_gone() if has_terminal else os.getppid() != server:
+            if surroundings() != before:
                 ask()
             if self._asked_at and time.monotonic() > self._asked_at + MAX_STUCK:
                 self.end(130)
 
+        before = surroundings()
         for number in system.ENDING:
             if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
                 signal.signal(number, ask)
@@ -77,17 +78,13 @@ class Watchdog(Thread):
         self._look = look
 
     def end(self, code: int, sentence: str = "") -> None:
-        """End the program, whose main thread may hold a lock that closing waits for."""
-        finish = Thread(target=self._finish, args=(sentence,), daemon=True)
-        finish.start()
-        finish.join(3.0)
-        os._exit(code)
-
-    def _finish(self, sentence: str) -> None:
+        """End the program, after 3 s even if a disk or the terminal blocks."""
+        Timer(3.0, os._exit, (code,)).start()
         self.close()
         system.restore_terminal(self._terminal)
         if sentence:
             self.tell(sentence)
+        os._exit(code)
 
 
 def _tell(sentence: str) -> None:
@@ -97,25 +94,23 @@ def _tell(sentence: str) -> None:
 @cache
 def watchdog() -> Watchdog:
     """Return the process's only watchdog, which has begun."""
+    signal.signal(ALARM, _interrupt)
     thread = Watchdog()
     thread.start()
     return thread
 
 
-def _raise_in_main(error: type[BaseException] | None) -> None:
-    """Raise an error at the main thread's next line of Python, or drop one not yet raised."""
-    import ctypes  # the first paint needs none
-
-    thread = ctypes.c_ulong(main_thread().ident or 0)
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error and ctypes.py_object(error))
+def _interrupt(*_: object) -> None:
+    if USER_CODE.depth:  # or the step has just ended
+        raise TooLongError
 
 
 def _place_in_main() -> str:
     """Return the line of the user's file that the main thread executes."""
-    frame = sys._current_frames().get(main_thread().ident or 0)
-    while frame and frame.f_globals.get("__name__") != "own_method":
-        frame = frame.f_back
-    return place(frame.f_code.co_filename, frame.f_lineno) if frame else "your method"
+    for frame, line in walk_stack(sys._current_frames().get(main_thread().ident or 0)):
+        if frame.f_globals.get("__name__") == "own_method":
+            return place(frame.f_code.co_filename, line)
+    return "your method"
 
 
 @contextmanager
@@ -129,19 +124,17 @@ def limited() -> Iterator[None]:
         raise OwnMethodError(f"A method of your own {error}.") from None
     finally:
         USER_CODE.depth = 0
-        _raise_in_main(None)
 
 
-@contextmanager
-def watched() -> Iterator[None]:
+def watch_calls_in_c() -> None:
     """Have another process end this one if a call in C keeps the interpreter."""
-    from pendu_tui.tui.cli.workers import started
+    from pendu_tui.tui.cli.workers import started  # multiprocessing takes 15 ms
 
-    _, watchdog().pulse = started(_end_if_silent, os.getpid())
-    yield
+    _, connection = started(_end_if_silent, os.getpid())
+    watchdog().pulse = connection.send
 
 
-def _end_if_silent(pulse: "Connection", process: int) -> None:
+def _end_if_silent(pulse: Any, process: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     terminal = system.terminal_state()
     silence = 0  # s
