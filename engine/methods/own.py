@@ -8,6 +8,7 @@ import math
 import reprlib
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, wraps
 from inspect import CO_GENERATOR, unwrap
@@ -168,7 +169,9 @@ def guarded(function: Phases, file: str) -> Phases:
 
     `file` is the name that it is compiled with.  Raises OwnMethodError.
     """
-    inner = unwrap(function)
+    inner: Any = None
+    with suppress(ValueError):  # functions that wrap each other in a circle
+        inner = unwrap(function)
     name = getattr(inner, "__name__", "it")
     code = getattr(inner, "__code__", None)
     if code is None or not code.co_flags & CO_GENERATOR:

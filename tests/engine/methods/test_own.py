@@ -117,6 +117,7 @@ WRONG = {
     ),
     "a class": ("class mine: pass", "mine is no generator function"),
     "a partial": ("import functools\nmine = functools.partial(print)", "it is no generator function"),
+    "a circle": (euler() + "mine.__wrapped__ = mine", "it is no generator function"),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
     "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
