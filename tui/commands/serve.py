@@ -14,6 +14,7 @@ import signal
 import sys
 import tempfile
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -29,7 +30,7 @@ try:
     from textual_serve.server import Server
     from yarl import URL
 except ImportError:
-    raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.") from None
+    Server = object  # `run` refuses
 
 THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
 CONNECTIONS_PER_LAB = 10  # browsers open six
@@ -38,6 +39,8 @@ POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'no
 
 
 def run(options: argparse.Namespace) -> int:
+    if Server is object:
+        raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.")
     scene = scene_of(options)
     check_fits(scene.cast)
     folder: Path | None = options.record
@@ -79,7 +82,7 @@ class LabServer(Server):  # type: ignore[misc]
         for number in ENDING:
             signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop.set))
         app = await self._make_app()
-        app.middlewares.append(self.check)
+        app.middlewares.append(web.middleware(partial(self.check)))
         app.on_response_prepare.append(add_policy)
         runner = web.AppRunner(app, keepalive_timeout=3.0, shutdown_timeout=1.0)  # s
         await runner.setup()
@@ -107,11 +110,10 @@ class LabServer(Server):  # type: ignore[misc]
         address = URL.build(scheme="http", host=host, port=port)
         print(f"{address} serves up to {self._max_labs} labs; Ctrl+C ends it.", flush=True)
 
-    async def on_startup(self, app: web.Application) -> None:
+    async def on_startup(self, app: Any) -> None:
         """Print nothing."""
 
-    @web.middleware  # type: ignore[untyped-decorator]
-    async def check(self, request: web.Request, handler: Any) -> Any:
+    async def check(self, request: Any, handler: Any) -> Any:
         """Refuse other names of this host, foreign pages, and labs above the limit."""
         pages = f"http://{request.host}", f"https://{request.host}"
         if not is_ours(request.host, self.host):
@@ -126,7 +128,7 @@ class LabServer(Server):  # type: ignore[misc]
             response.text = FONT_SERVER.sub("", response.text or "")
         return response
 
-    async def _process_messages(self, websocket: web.WebSocketResponse, app_service: Any) -> None:
+    async def _process_messages(self, websocket: Any, app_service: Any) -> None:
         """End the lab when its tab closes, even while it is writing."""
         lab = app_service._process
         try:
@@ -136,7 +138,7 @@ class LabServer(Server):  # type: ignore[misc]
                 lab.terminate()
             await lab.wait()
 
-    async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
+    async def handle_websocket(self, request: Any) -> Any:
         self._labs += 1
         try:
             return await super().handle_websocket(request)
@@ -153,5 +155,5 @@ def is_ours(authority: str, host: str) -> bool:
         return False
 
 
-async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
+async def add_policy(request: Any, response: Any) -> None:
     response.headers["Content-Security-Policy"] = POLICY
