@@ -1,5 +1,6 @@
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,10 @@ if TESTED != CHECKOUT:
         f"these tests would test the pendu-tui in {TESTED}, not this checkout;"
         " run `pip install -e '.[test]'` here."
     )
+
+# Many tests start a process, which would compile the program again.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # No deadline, which a busy machine would miss.  CI tries the same examples each time, so that only a
 # change of the code can make it fail.
