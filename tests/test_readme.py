@@ -21,11 +21,6 @@ from pendu_tui.tui.screens.lab import LabScreen
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / ".github" / "docs").glob("*.md"))]
 README = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
-LINKS = [
-    (page.name, page.parent / target)
-    for page in PAGES
-    for target in re.findall(r"\]\((?!http)(.*?)(?:#.*?)?\)", page.read_text(encoding="utf-8"))
-]
 
 
 def blocks(language: str) -> list[str]:
@@ -37,9 +32,14 @@ def block_with(language: str, word: str) -> str:
     return block
 
 
-@pytest.mark.parametrize(("page", "target"), LINKS)
-def test_what_is_linked_is_there(page, target):
-    assert target.is_file()
+def section(title: str) -> str:
+    return README.partition(f"## {title}\n")[2].partition("\n## ")[0]
+
+
+def test_what_is_linked_is_there():
+    for page in PAGES:
+        for target in re.findall(r"\]\((?!http)(.*?)(?:#.*?)?\)", page.read_text(encoding="utf-8")):
+            assert (page.parent / target).is_file(), f"{page}: {target}"
 
 
 @pytest.mark.parametrize("tool", ["pip", "uv"])
@@ -52,17 +52,37 @@ def test_the_table_has_a_command_for_each_system_that_the_workflow_runs(what, to
     assert there == in_powershell.replace("python3", "py")
 
 
-@pytest.mark.parametrize("command", re.findall(r"`(pendu-tui(?: [^`]*)?)`", README))
+@pytest.mark.parametrize("command", re.findall(r"`pendu-tui( [^`]*)?`", README))
 def test_every_command_that_is_mentioned_exists_with_its_options(command):
-    words = [word for word in shlex.split(command)[1:] if word != "FOLDER"]
-    if "COMMAND" in words:
-        return
-    name, words = split(words)
-    parser = parser_of(name)
-    assert parser.parse_args(["."] * (name == "verify") + words)
+    words = [word for word in shlex.split(command) if word != "FOLDER"]
+    if "COMMAND" not in words:
+        name, words = split(words)
+        assert parser_of(name).parse_args(["."] * (name == "verify") + words)
 
 
-def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.CompletedProcess:
+def test_the_options_of_the_lab_that_are_named_are_there():
+    options = re.findall(r"`(--[^`]+)`", section("Your terminal"))
+    assert len(options) >= 6
+    for words in options:
+        option, _, choices = words.partition(" ")
+        for choice in choices.split("|"):
+            parser_of("live").parse_args([option, choice] if choice else [option])
+
+
+def test_tables_tell_what_the_program_tells():
+    commands = "".join(f"| `{name}` | {each.about} |\n" for name, each in COMMANDS.items())
+    assert f"| command | does |\n|---|---|\n{commands}" in README
+    for each in VERDICTS.values():
+        assert f"| `{each.word}` | {each.meaning} |" in README
+    keys = re.findall(r"^\| `(.+?)` \| (.+) \|$", section("Keys"), re.MULTILINE)
+    assert len(keys) == 8
+    assert {f"{key:<9}{does}" for key, does in keys} <= set(key_lines(bindings_of(LabScreen)))
+    recipes = block_with("python", "read_csv")
+    columns = set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes))
+    assert columns <= set(columns_of([]))
+
+
+def ran(folder: Path, *command: str | Path, **environment: str) -> subprocess.CompletedProcess:
     """Run a command in a folder, with the tested program first on the path."""
     programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     env = {**os.environ, "PATH": programs, **environment}
@@ -74,44 +94,13 @@ def shell(tmp_path):
     """Run a line as a reader would, in a folder of the test."""
 
     def run(line: str) -> str:
-        library = str(tmp_path / "library")
-        done = ran("bash", "-c", line, folder=tmp_path, PENDU_RECORDINGS=library)
+        done = ran(tmp_path, "bash", "-c", line, PENDU_RECORDINGS=str(tmp_path / "library"))
         usual = ("pendu-tui: recorded", "pendu-tui: wrote")
         told = [text for text in done.stderr.splitlines() if not text.startswith(usual)]
         assert (done.returncode, told) == (0, []), line
         return done.stdout
 
     return run
-
-
-@pytest.mark.slow
-def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
-    write_my_md(tmp_path)
-    for line in "".join(blocks("sh")).splitlines():
-        shell(line)
-    for name in ("crossover.mcap", "crossover.csv", "saved.mcap"):
-        assert (tmp_path / name).exists()
-
-
-def write_my_md(folder):
-    """Write the program that the README guards, and its energies with two steps."""
-    (folder / "my_md.py").write_text(MY_MD, encoding="utf-8")
-    exec(MY_MD, names := {})
-    for name, h in (("fine", 0.05), ("coarse", 0.1)):
-        rows = zip(*names["run"](h), strict=True)
-        text = "\n".join(f"{time!r},{energy!r}" for time, energy in rows)
-        (folder / f"{name}.csv").write_text(f"time,energy\n{text}\n", encoding="utf-8")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", re.findall(r"^\$ (.*)$", README, re.MULTILINE))
-def test_what_is_shown_of_a_command_is_what_it_prints(shell, command):
-    shown = README.partition(f"$ {command}\n")[2].partition("```")[0].partition("\n$ ")[0]
-    assert without_seconds(shell(command)) == without_seconds(shown)
-
-
-def without_seconds(text: str) -> list[str]:
-    return [re.sub(r"in [\d.]+ s$", "", line.rstrip()) for line in text.splitlines()]
 
 
 MY_MD = """
@@ -136,9 +125,30 @@ def run(h, time=500):
         energies.append(2 + p * p / 2 - math.cos(q))
     return times, energies
 """
-IN_PYTEST = (
-    "-q -W error -p no:cacheprovider -p no:asyncio -p no:xdist --rootdir . --junit-xml j.xml"
-)
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
+    (tmp_path / "my_md.py").write_text(MY_MD, encoding="utf-8")
+    exec(MY_MD, names := {})
+    for name, h in (("fine", 0.05), ("coarse", 0.1)):
+        rows = zip(*names["run"](h), strict=True)
+        text = "\n".join(f"{time!r},{energy!r}" for time, energy in rows)
+        (tmp_path / f"{name}.csv").write_text(f"time,energy\n{text}\n", encoding="utf-8")
+    for line in "".join(blocks("sh")).splitlines():
+        shell(line)
+    for name in ("crossover.mcap", "crossover.csv", "saved.mcap"):
+        assert (tmp_path / name).exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", re.findall(r"^\$ (.*)$", README, re.MULTILINE))
+def test_what_is_shown_of_a_command_is_what_it_prints(shell, command):
+    def lines(text: str) -> list[str]:
+        return [re.sub(r"in [\d.]+ s$", "", line.rstrip()) for line in text.splitlines()]
+
+    shown = README.partition(f"$ {command}\n")[2].partition("```")[0].partition("\n$ ")[0]
+    assert lines(shell(command)) == lines(shown)
 
 
 @pytest.fixture
@@ -148,8 +158,8 @@ def project(tmp_path):
     def tested(test: str, my_md: str = MY_MD) -> str:
         (tmp_path / "test_mine.py").write_text(test, encoding="utf-8")
         (tmp_path / "my_md.py").write_text(my_md, encoding="utf-8")
-        command = [sys.executable, "-m", "pytest", *IN_PYTEST.split()]
-        done = ran(*command, folder=tmp_path)
+        alone = "-q -W error -p no:cacheprovider -p no:asyncio -p no:xdist --rootdir ."
+        done = ran(tmp_path, sys.executable, "-m", "pytest", *alone.split(), "--junit-xml", "j.xml")
         return done.stdout + done.stderr
 
     return tested
@@ -167,26 +177,20 @@ def test_the_three_gates_pass_on_right_code_and_fail_on_a_forgotten_half_kick(pr
         assert reason in told
 
 
-RECORDINGS = """
-from pathlib import Path
-from pendu_tui.recordings.pytest import verify_recordings
-
-test_recordings = verify_recordings(Path(__file__).parent)
-"""
-
-
 @pytest.mark.slow
 def test_recordings_below_a_folder_are_tests(project, tmp_path):
-    assert f"there is no recording (*.mcap) in {tmp_path}" in project(RECORDINGS)
+    (line,) = re.findall(r"`(test_recordings = [^`]*)`", README)
+    imports = "from pendu_tui.recordings.pytest import verify_recordings"
+    test = f"from pathlib import Path\n{imports}\n{line}"
+    assert f"there is no recording (*.mcap) in {tmp_path}" in project(test)
     data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
     (tmp_path / "damaged.mcap").write_bytes(data)
     (tmp_path / "odd.mcap").touch()
-    told = project(RECORDINGS)
+    told = project(test)
     assert "2 failed, 1 passed" in told
-    assert "damaged.mcap: " in told
-    assert "odd.mcap: " in told
+    assert all(f"{name}.mcap: " in told for name in ("damaged", "odd"))
 
 
 @pytest.mark.slow
@@ -198,35 +202,6 @@ def test_the_library_does_what_the_readme_shows(capsys):
     assert f"\n{general} methods take any force" in README
 
 
-def test_the_recipes_name_columns_that_the_csv_has():
-    recipes = block_with("python", "read_csv")
-    assert set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes)) <= set(
-        columns_of([])
-    )
-
-
-def test_its_keys_are_keys_of_the_lab():
-    section = README.partition("## Keys")[2].partition("\n## ")[0]
-    rows = re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE)
-    assert len(rows) == 8
-    assert {f"{key:<9}{does}" for key, does in rows} <= set(key_lines(bindings_of(LabScreen)))
-
-
-def test_the_options_of_the_lab_that_are_named_are_there():
-    _, _, section = README.partition("## Your terminal")
-    options = re.findall(r"`(--[^`]+)`", section.partition("\n## ")[0])
-    assert len(options) >= 6
-    for words in options:
-        option, _, choices = words.partition(" ")
-        for choice in choices.split("|"):
-            parser_of("live").parse_args([option, choice] if choice else [option])
-
-
-def test_every_command_is_in_the_list():
-    rows = "".join(f"| `{name}` | {each.about} |\n" for name, each in COMMANDS.items())
-    assert f"| command | does |\n|---|---|\n{rows}" in README
-
-
 @pytest.mark.slow
 def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, tmp_path):
     (tmp_path / "mine.py").write_text(block_with("python", "def ruth_3"), encoding="utf-8")
@@ -236,8 +211,6 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
     assert words[1:] == ["-", words[2], "3", "yes", "no", "2.507"]
     assert float(words[2]) == pytest.approx(3, abs=0.01)
     assert re.search(r"Ruth 3 +bounded", on_stage)
-    beside = shell(f"{commands[1]} --methods rk4")
-    assert re.findall(r"^(.+?)  +(?:bounded|loses)", beside, re.MULTILINE) == ["RK4", "Ruth 3"]
 
 
 @pytest.mark.slow
@@ -250,24 +223,15 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     family.write_text(f"{source}{method}\n{of_family}RUTH_3, {members}", encoding="utf-8")
 
     def run(*arguments: str) -> str:
-        done = ran(sys.executable, "-P", *arguments, folder=tmp_path, PYTHONPATH=str(tmp_path))
+        done = ran(tmp_path, sys.executable, "-P", *arguments, PYTHONPATH=str(tmp_path))
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    def pendu_there(command: str) -> str:
-        program = "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())"
-        return run("-c", program, *command.split())
-
-    assert "ruth_3" in pendu_there("methods")
+    pendu = ("-c", "import sys; from pendu_tui.tui.cli import main; sys.exit(main())")
     record = "run --time 60 --methods ruth,rk4 --record two.mcap"
-    assert "Ruth 3  bounded" in pendu_there(record)
-    assert "11 recordings, 11 identical" in pendu_there("verify two.mcap golden")
+    assert "Ruth 3  bounded" in run(*pendu, *record.split())
+    assert "11 recordings, 11 identical" in run(*pendu, "verify", "two.mcap", "golden")
     claims = shutil.copy(ROOT / "tests" / "engine" / "methods" / "test_claims.py", tmp_path)
     alone = ("-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider")
     told = run("-m", "pytest", *alone, claims, "-k", "ruth_3")
     assert re.search(r"= [5-9] passed, \d+ deselected", told)
-
-
-def test_verdicts_have_the_definitions_of_the_help():
-    for each in VERDICTS.values():
-        assert f"| `{each.word}` | {each.meaning} |" in README
