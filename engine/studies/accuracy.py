@@ -236,13 +236,13 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
     return sorted({max(1, round(time / (h_max * ratio**rung))) for rung in range(count)})
 
 
-def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
-    """Return ten small swings' time [s], and a ladder of steps for the usual cast or `all`."""
-    time = float(f"{10 * math.tau / scene.w0:.2g}")
+def usual(scene: Scene, all: bool = False, time: float | None = None) -> tuple[float, list[int]]:
+    """Return a time [s], by default ten small swings, and a ladder for the usual cast or `all`."""
+    time = time or float(f"{10 * math.tau / scene.w0:.2g}")
     largest, smallest, rungs = Z_LADDER
     if all:
         largest, smallest, rungs = ALL_LADDER
-    return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
+    return time, ladder(time, min(largest / scene.w0, time), smallest / scene.w0, rungs)
 
 
 def with_all_methods(scene: Scene) -> Scene:
