@@ -1,10 +1,11 @@
 """The commands: what each does, the names of its options, and examples.
 
-The names are those of OPTIONS, or in capitals of GROUPS, in tui/commands/options.py.  This module
-imports nothing, because `pendu-tui --help` prints it.  A word in braces in an example is a text
-that the options bring.
+The names are those of OPTIONS, or in capitals of GROUPS, in tui/commands/options.py; what differs
+for one command stands there under `COMMAND NAME`.  This module imports nothing of ours, because
+`pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 
@@ -16,6 +17,7 @@ class Command(NamedTuple):
     examples: str
     more: str = ""  # above its options
     place: str = ""  # MODULE:FUNCTION in tui/commands, if it is another
+    defaults: Mapping[str, str | None] = {}  # other than those of its options
 
     @property
     def text(self) -> str:
@@ -23,10 +25,11 @@ class Command(NamedTuple):
         return f"{self.about[0].upper()}{self.about[1:]}.\n\n{self.more}".strip()
 
 
+STILL = {"theme": "dark", "pixels": "braille", "no_mouse": None, "fps": None}
 COMMANDS = {
     "live": Command(
         "the lab: methods side by side, their errors, a recording",
-        ("SCENE", "live --speed", "--equal-cost", "RECORDING", "TERMINAL"),
+        ("SCENE", "--speed", "--equal-cost", "RECORDING", "TERMINAL"),
         """\
   pendu-tui
   pendu-tui live --scene crossover
@@ -38,7 +41,7 @@ COMMANDS = {
     ),
     "tour": Command(
         "a tour of the lab: nine short steps, with questions and their answers",
-        ("NO RECORDING", "TERMINAL"),
+        ("--no-record", "TERMINAL"),
         """\
   pendu-tui tour
   pendu-tui tour --plain --no-record
@@ -46,12 +49,13 @@ COMMANDS = {
 Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
         place="lab:tour",
+        defaults={"record": None},
     ),
     "replay": Command(
         "play a recording on the same screen",
         (
-            *("recording file", "--start-at", "CAST of a recording", "replay --speed"),
-            *("--loop", "--paused", "replay --no-record", "TERMINAL"),
+            *("file", "--start-at", "--methods", "--method", "--speed"),
+            *("--loop", "--paused", "--no-record", "TERMINAL"),
         ),
         """\
   pendu-tui replay latest
@@ -63,16 +67,17 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     ),
     "snapshot": Command(
         "save the lab as an SVG image, with the same bytes each time",
-        ("SCENE", "snapshot --time", "--size", "PICTURE", "snapshot -o", "--force"),
+        ("SCENE", "--time", "--size", "PICTURE", "-o", "--force"),
         """\
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
 """,
         place="lab:snapshot",
+        defaults=STILL,
     ),
     "serve": Command(
         "the lab in a browser, for a class without terminals; each tab gets its own",
-        ("--port", "--host", "--at-most", "serve --record", "SCENE", "PICTURE"),
+        ("--port", "--host", "--at-most", "--record", "SCENE", "PICTURE"),
         """\
   pendu-tui serve --port 8080 --scene crossover
   pendu-tui serve --at-most 30 --record recorded/
@@ -80,12 +85,13 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
 From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0.1:8000 there.
 Ctrl+C ends it.
 """,
+        defaults=STILL,
     ),
     "accuracy": Command(
         "speed against accuracy: which method, which h, at what cost",
         (
-            *("SCENE", "--all", "accuracy --time", "--h-values", "--error", "--cost"),
-            *("--target", "--no-compiled", "WORKERS", "REPORT and figures"),
+            *("SCENE", "--all", "--time", "--h-values", "--error", "--cost"),
+            *("--target", "--no-compiled", "WORKERS", "FORM", "--force"),
         ),
         """\
   pendu-tui accuracy --target 1e-6 --time 100
@@ -100,8 +106,8 @@ Exit code 1: no method reaches the target.
     "stability": Command(
         "where each method becomes unstable, in theory and as measured",
         (
-            *("SCENE", "--theta-values", "--z-values", "stability --steps"),
-            *("REPORT and figures", "WORKERS"),
+            *("SCENE", "--theta-values", "--z-values", "--steps"),
+            *("FORM", "--force", "WORKERS"),
         ),
         """\
   pendu-tui stability --theta 120deg --h 0.3
@@ -117,8 +123,8 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
     "run": Command(
         "run a scene without the screen and judge each method; for CI",
         (
-            *("SCENES", "run --time", "run --record", "--sample-every", "run --fail-if"),
-            *("--no-compiled", "REPORT and figures", "WORKERS"),
+            *("SCENE", "--time", "--record", "--sample-every", "--fail-if"),
+            *("--no-compiled", "FORM", "--force", "WORKERS"),
         ),
         """\
   pendu-tui run --time 100
@@ -139,9 +145,9 @@ verdicts:
     "judge": Command(
         "judge the energies of another program, from a file or stdin; for CI",
         (
-            *("judge files", "judge --time", "--energy", "--table", "--step", "--units"),
-            *("--from", "--to", "--scale", "--atoms", "--temperature", "judge --steps"),
-            *("judge --fail-if", "REPORT"),
+            *("files", "--time", "--energy", "--table", "--step", "--units"),
+            *("--from", "--to", "--scale", "--atoms", "--temperature", "--steps"),
+            *("--fail-if", "--json"),
         ),
         """\
   pendu-tui judge energy.xvg
@@ -161,7 +167,7 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
     ),
     "verify": Command(
         "re-simulate recordings and compare every bit",
-        ("recording files", "CAST of a recording", "--max-steps", "REPORT"),
+        ("files", "--methods", "--method", "--max-steps", "--json"),
         """\
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
@@ -175,7 +181,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "export": Command(
         "write a recording as CSV, a row for each sample and method",
-        ("recording file", "export -o", "--force"),
+        ("file", "-o", "--force"),
         """\
   pendu-tui export latest -o latest.csv
   pendu-tui export killed.mcap.part -o killed.csv
@@ -183,7 +189,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "recordings": Command(
         "list the recordings, show or recover one",
-        ("verb", "recordings file", "REPORT", "RECOVER"),
+        ("verb", "file", "--json", "RECOVER"),
         """\
   pendu-tui recordings
   pendu-tui recordings show latest
@@ -192,7 +198,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "scenes": Command(
         "list the scenes, with what to watch",
-        ("scene name", "REPORT"),
+        ("name", "--json"),
         """\
   pendu-tui scenes
   pendu-tui scenes crossover
@@ -202,7 +208,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "methods": Command(
         "list the methods with claimed and measured properties",
-        ("method names", "CAST of all", "methods --fail-if", "REPORT"),
+        ("names", "--methods", "--method", "--fail-if", "--json"),
         """\
   pendu-tui methods
   pendu-tui methods rk4 verlet
@@ -214,7 +220,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "doctor": Command(
         "check the terminal, its colours, the recordings folder and versions; suggest fixes",
-        ("REPORT",),
+        ("--json",),
         """\
   pendu-tui doctor
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'

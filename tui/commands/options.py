@@ -1,13 +1,12 @@
 """The options of all commands, by the names that COMMANDS gives them.
 
-The last word of a name is the option's own.  The rows are read off the lists of scenes, methods,
-numbers, verdicts and fields; GROUPS are options that belong together in the help.
+What differs for one command stands under `COMMAND NAME`.  The rows are read off the lists of
+scenes, methods, numbers, verdicts and fields.
 """
 
 import argparse
 import math
 from collections.abc import Callable, Iterable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +34,14 @@ from pendu_tui.tui.cli.options import (
     step_sizes,
     values,
 )
-from pendu_tui.tui.terminal.options import add_picture_options, add_terminal_options, cells
+from pendu_tui.tui.drawing.picture import PALETTES
+from pendu_tui.tui.terminal.options import (
+    CALM_FPS,
+    CHARACTER_SETS,
+    FPS,
+    cells,
+    frames_per_second,
+)
 
 Settings = dict[str, Any]  # of an option, as argparse takes them
 
@@ -56,9 +62,10 @@ def flag(help: str) -> Settings:
     return {"action": "store_true", "help": help}
 
 
-def recording(help: str, metavar: str = "FILE|latest|NAME", **more: Any) -> Settings:
-    """Return an argument for `resolve`."""
-    return file(metavar, help, str, **more)
+def cast(default: str) -> Settings:
+    """Return --methods, without which there are those of `default`."""
+    meaning = f"these methods, in this order (default: {default}); the start of a name is enough"
+    return option("KEY,KEY", meaning, choices=Suggestions(KEYS))
 
 
 def gate(names: Iterable[str], meaning: str) -> Settings:
@@ -80,27 +87,26 @@ def with_suffix(*suffixes: str) -> Callable[[str], Path]:
     return read
 
 
-def output(*suffixes: str) -> Settings:
-    what = f"write FILE, in the form of its suffix: {', '.join(suffixes)}"
-    return file(f"FILE{'|'.join(suffixes)}", what, with_suffix(*suffixes))
-
-
 KEYS = [method.key for method in METHODS]
 VERBS = ("list", "show", "recover")
+RECORDING = "FILE|latest|NAME"
+SUFFIXES = (".csv", ".json", *FIGURES)
 
 OPTIONS: dict[str, Settings] = {
     # files and names
-    "recording file": recording("a file, latest, or a name such as drift"),
-    "recording files": recording(
-        "a file, a folder, latest, golden, or a name such as drift", "FILE", nargs="+"
+    "file": file(RECORDING, "a file, latest, or a name such as drift", str),
+    "recordings file": file(
+        RECORDING, "for show and recover: a file, latest, or a name", str, nargs="?"
     ),
-    "recordings file": recording("for show and recover: a file, latest, or a name", nargs="?"),
+    "files": file(
+        "FILE", "a file, a folder, latest, golden, or a name such as drift", str, nargs="+"
+    ),
     "judge files": file("FILE", "the log or table of a program; - for stdin", str, nargs="+"),
     "verb": option(
         "|".join(VERBS), "what to do (%(default)s)", nargs="?", choices=VERBS, default="list"
     ),
-    "scene name": option("SCENE", "the scene to show", nargs="?", choices=Suggestions(SCENES)),
-    "method names": option("KEY", "as --methods", nargs="*", choices=Suggestions(KEYS)),
+    "name": option("SCENE", "the scene to show", nargs="?", choices=Suggestions(SCENES)),
+    "names": option("KEY", "as --methods", nargs="*", choices=Suggestions(KEYS)),
     "scene": option("SCENE", "the scene, as --scene", nargs="?", choices=Suggestions(SCENES)),
     "--scene": option(
         "NAME|FILE.toml",
@@ -108,11 +114,9 @@ OPTIONS: dict[str, Settings] = {
         choices=Suggestions(SCENES),
         dest="scene_option",
     ),
-    "--methods": option(
-        "KEY,KEY",
-        "these methods, in this order (default: the scene's); the start of a name is enough",
-        choices=Suggestions(KEYS),
-    ),
+    "--methods": cast("the scene's"),
+    **dict.fromkeys(("replay --methods", "verify --methods"), cast("all of the recording's")),
+    "methods --methods": cast("all"),
     "--method": file(
         "FILE.py:FUNCTION[,letter=m]",
         "add your own method: a generator function (force, phase, h), see "
@@ -124,16 +128,35 @@ OPTIONS: dict[str, Settings] = {
     # results
     "--json": flag("one JSON object, SI units"),
     "--csv": flag("a line of CSV for each row"),
-    "figures -o": output(".csv", ".json", *FIGURES),
+    "-o": file(
+        "FILE" + "|".join(SUFFIXES),
+        f"write FILE, in the form of its suffix: {', '.join(SUFFIXES)}",
+        with_suffix(*SUFFIXES),
+    ),
     "--force": flag("overwrite FILE"),
+    "recordings --force": flag("overwrite OUT"),
     "snapshot -o": file("FILE.svg", "the image to write (default: SCENE.svg)", with_suffix(".svg")),
     "export -o": file("OUT.csv", "write to OUT.csv instead of stdout", with_suffix(".csv")),
-    "recover -o": file("OUT", "the file to write"),
-    "lab --record": file("FILE", "record to FILE instead of the data folder"),
+    "recordings -o": file("OUT", "the file to write"),
+    "--record": file("FILE", "record to FILE instead of the data folder"),
     "run --record": file("FILE", "record to FILE (the same bytes each time)"),
     "serve --record": file("FOLDER", "record each lab in FOLDER"),
     "--no-record": flag("do not record"),
     # the screen
+    "--theme": option(None, "colours (%(default)s)", choices=("auto", *PALETTES), default="auto"),
+    "--pixels": option(
+        None,
+        "what to draw with (%(default)s)",
+        choices=("auto", *CHARACTER_SETS),
+        default="auto",
+    ),
+    "--plain": flag("no TUI: print a sentence per second; Ctrl+C to stop"),
+    "--no-mouse": flag("disable the mouse; every mouse action also has a key"),
+    "--fps": option(
+        "N",
+        f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)",
+        frames_per_second,
+    ),
     "live --speed": option("X", "multiple of real time (default: the scene's)", positive),
     "replay --speed": option("X", "playback speed (%(default)g)", positive, default=1.0),
     "--equal-cost": flag(
@@ -243,75 +266,28 @@ OPTIONS: dict[str, Settings] = {
 }
 
 
-def add(parser: argparse._ActionsContainer, *names: str, **changes: Any) -> None:
-    """Add options of the table, with other settings for this command."""
-    for name in names:
-        settings = OPTIONS[name] | changes
-        own = name.split()[-1]
-        flags = ("-o", "--output") if own == "-o" else (own,)
-        is_file = settings.pop("is_file", False)
-        action = parser.add_argument(*flags, **settings)
-        if is_file:
-            action.complete = "file"  # type: ignore[attr-defined]
+NUMBER_OPTIONS = {f"--{name.replace('_', '-')}": each for name, each in NUMBERS.items()}
+for name, each in NUMBER_OPTIONS.items():
+    OPTIONS[name] = option(each.metavar, each.about, each.read)
+    OPTIONS[f"run {name}"] = option(each.metavar, each.about, values(each.read))
 
+SCENE = ("scene", "--scene", *NUMBER_OPTIONS, "--methods", "--method")
+OVERRIDE = "options override the values of the scene"
+PICTURE = ("--theme", "--pixels")
+DETECTED = "auto: detected from the terminal (see pendu-tui doctor)"
 
-def add_scene(parser: argparse.ArgumentParser, lists: bool = False) -> None:
-    """Add the options of a scene, for `scene_of`; with `lists`, for `scenes_of`."""
-    more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
-    group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
-    add(group, "scene", "--scene")
-    for each in NUMBERS.values():
-        read = values(each.read) if lists else each.read
-        settings = option(each.metavar, each.about, read)
-        group.add_argument(f"--{each.name.replace('_', '-')}", **settings)
-    add(group, "--methods", "--method")
-
-
-def add_cast(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the options of a cast, for `cast_of`; `default` is that without --methods."""
-    help = OPTIONS["--methods"]["help"].replace("the scene's", default)
-    add(parser, "--methods", help=help)
-    add(parser, "--method")
-
-
-def add_report(parser: argparse.ArgumentParser, *more: str) -> None:
-    """Add the forms of a report; with `more`, also as CSV and in a file."""
-    forms = parser.add_mutually_exclusive_group()
-    add(forms, "--json", *more)
-    if more:
-        add(parser, "--force")
-
-
-def add_one_of(parser: argparse.ArgumentParser, *names: str) -> None:
-    add(parser.add_mutually_exclusive_group(), *names)
-
-
-def add_unrecorded(parser: argparse.ArgumentParser) -> None:
-    """Add --no-record of a lab that is recorded in the data folder."""
-    parser.set_defaults(record=None)
-    add(parser, "--no-record")
-
-
-def add_recover(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("recover")
-    add(group, "recover -o")
-    add(group, "--force", help="overwrite OUT")
-
-
-GROUPS: dict[str, Callable[[argparse.ArgumentParser], object]] = {
-    "SCENE": add_scene,
-    "SCENES": partial(add_scene, lists=True),
-    "CAST of all": partial(add_cast, default="all"),
-    "CAST of a recording": partial(add_cast, default="all of the recording's"),
-    "REPORT": add_report,
-    "REPORT and figures": lambda parser: add_report(parser, "--csv", "figures -o"),
-    "WORKERS": lambda parser: add_one_of(parser, "--workers", "--dask"),
-    "TERMINAL": add_terminal_options,
-    "PICTURE": partial(add_picture_options, theme="dark", character_set="braille"),
-    "RECORDING": lambda parser: add_one_of(parser, "lab --record", "--no-record"),
-    "NO RECORDING": add_unrecorded,
-    "RECOVER": add_recover,
+GROUPS: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
+    "SCENE": ("scene", OVERRIDE, SCENE),
+    "run SCENE": ("scene", f"{OVERRIDE}; a number may be a list, 0.1,0.2 or {LIST}", SCENE),
+    "PICTURE": ("display", DETECTED, PICTURE),
+    "TERMINAL": ("display", DETECTED, (*PICTURE, "--plain", "--no-mouse", "--fps")),
+    "RECOVER": ("recover", None, ("-o", "--force")),
+    # of these at most one is given
+    "FORM": ("", "", ("--json", "--csv", "-o")),
+    "RECORDING": ("", "", ("--record", "--no-record")),
+    "WORKERS": ("", "", ("--workers", "--dask")),
 }
+"""Options that belong together: their title in the help, a sentence, and their names."""
 
 _MEANINGS = {word: f"  {word}: {each.meaning}" for word, each in VERDICTS.items()}
 TEXTS = {
@@ -325,12 +301,27 @@ TEXTS = {
 def add_options(parser: argparse.ArgumentParser, name: str) -> None:
     """Add the options of a command, and its examples below them."""
     command = COMMANDS[name]
-    for each in command.options:
-        if each in GROUPS:
-            GROUPS[each](parser)
-        else:
-            add(parser, each)
+    _add(parser, name, command.options)
+    parser.set_defaults(**command.defaults)
     examples = command.examples
     for word, text in TEXTS.items():
         examples = examples.replace(word, text)
     parser.epilog = f"examples:\n{examples}"
+
+
+def _add(parser: argparse._ActionsContainer, command: str, names: Iterable[str]) -> None:
+    for name in names:
+        key = f"{command} {name}"
+        if name in GROUPS:
+            title, about, members = GROUPS.get(key) or GROUPS[name]
+            if title:
+                _add(parser.add_argument_group(title, about), command, members)
+            else:
+                _add(parser.add_mutually_exclusive_group(), command, members)
+            continue
+        settings = {**(OPTIONS.get(key) or OPTIONS[name])}
+        is_file = settings.pop("is_file", False)
+        flags = ("-o", "--output") if name == "-o" else (name,)
+        action = parser.add_argument(*flags, **settings)
+        if is_file:
+            action.complete = "file"  # type: ignore[attr-defined]

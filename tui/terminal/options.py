@@ -12,7 +12,6 @@ from typing import Literal, NamedTuple, get_args
 from pendu_tui.recordings.system import environment, key_by_key
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import count
-from pendu_tui.tui.drawing.picture import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
 """The characters of pictures; with ASCII, lines and words are ASCII, too."""
@@ -32,31 +31,6 @@ class TerminalOptions(NamedTuple):
 
 
 USUAL = TerminalOptions()
-
-
-def add_terminal_options(parser: argparse.ArgumentParser) -> None:
-    add = add_picture_options(parser, "auto", "auto").add_argument
-    plain = "no TUI: print a sentence per second; Ctrl+C to stop"
-    add("--plain", action="store_true", help=plain)
-    no_mouse = "disable the mouse; every mouse action also has a key"
-    add("--no-mouse", action="store_true", help=no_mouse)
-    fps = f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
-    add("--fps", metavar="N", type=frames_per_second, help=fps)
-
-
-def add_picture_options(
-    parser: argparse.ArgumentParser, theme: str, character_set: str
-) -> argparse._ArgumentGroup:
-    """Add the options that also apply to a picture of the lab, with these defaults."""
-    parser.set_defaults(no_mouse=False, fps=None)
-    about = "auto: detected from the terminal (see pendu-tui doctor)"
-    group = parser.add_argument_group("display", about)
-    themes = ("auto", *PALETTES)
-    group.add_argument("--theme", choices=themes, default=theme, help="colours (%(default)s)")
-    sets = ("auto", *CHARACTER_SETS)
-    what = "what to draw with (%(default)s)"
-    group.add_argument("--pixels", choices=sets, default=character_set, help=what)
-    return group
 
 
 def cells(text: str) -> tuple[int, int]:

@@ -160,6 +160,9 @@ class Asked(dict):
         super().__init__(table)
         self.names = set()
 
+    def get(self, name):
+        return self[name] if name in self else None
+
     def __getitem__(self, name):
         self.names.add(name)
         return super().__getitem__(name)

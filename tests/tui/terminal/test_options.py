@@ -4,14 +4,13 @@ from types import SimpleNamespace
 import pytest
 from textual.drivers._writer_thread import WriterThread
 
+from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.options import Parser
 from pendu_tui.tui.terminal.driver import is_writing
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     FPS,
     TerminalOptions,
-    add_terminal_options,
     colours,
     fitting_theme,
     terminal_options_of,
@@ -21,9 +20,8 @@ XTERM = {"TERM": "xterm-256color"}
 
 
 def chosen(*arguments: str, encoding: str = "utf-8", **environment: str) -> TerminalOptions:
-    parser = Parser(argument_default=None)
-    add_terminal_options(parser)
-    return terminal_options_of(parser.parse_args(arguments), XTERM | environment, encoding)
+    options = parser_of("live").parse_args(arguments)
+    return terminal_options_of(options, XTERM | environment, encoding)
 
 
 def test_what_is_asked_for_is_taken_whatever_the_terminal_says():
