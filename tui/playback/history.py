@@ -155,8 +155,6 @@ class History:
             energy = math.nan
             if method.modified_energy and not self._model.without_force:
                 energy = method.modified_energy(self._model, (reading.theta, reading.omega), h)
-            if not math.isfinite(energy):  # it overflows sooner than H
-                energy = math.nan
             energies.append(energy)
         return energies
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.run.lockstep import Reading, Sample
@@ -14,29 +14,26 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.playback.history import History
 
 DRIFT = SCENES["drift"]
-CAPACITY = 64  # small, so that few samples reach many levels
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
 
-def run(
-    scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False, every: int = 1
-) -> History:
-    """The history of a run, a sample every so many steps."""
+def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> History:
+    """The history of a run with a sample each step: stretches of so many steps with this h."""
     course = RewindableRun(scene, 1)
     history = History(scene, course.changes)
     history.add(course.sample())
     for steps, h in stretches:
         course.change(Stepping(h, equal_cost, scene.cast))
-        for _ in range(0, steps, every):
-            course.forward(every)
+        for _ in range(steps):
+            course.forward(1)
             history.add(course.sample())
     return history
 
 
-def sample(step, error=0.0, *, low=None, high=None, run=1, theta=0.0):
+def sample(step, error=0.0, *, low=None, high=None, run=1):
     reading = Reading(
-        theta=theta,
-        omega=-theta,
+        theta=step,
+        omega=-step,
         energy=0.0,
         energy_error=error,
         max_energy_error=abs(error),
@@ -46,10 +43,11 @@ def sample(step, error=0.0, *, low=None, high=None, run=1, theta=0.0):
     return Sample(run, step, 0.1 * step, (reading,) * 4)
 
 
-def filled(samples, capacity=CAPACITY):
+def filled(count, capacity=64):  # small, so that few samples reach many levels
+    """A history of so many samples; each one's error is its number."""
     history = History(DEFAULT_SCENE, RewindableRun(DEFAULT_SCENE).changes, capacity)
-    for one in samples:
-        history.add(one)
+    for step in range(count):
+        history.add(sample(step, step))
     return history
 
 
@@ -57,17 +55,9 @@ def errors(history: History) -> list[float]:
     return history.window().high["energy_error"][:, 0].tolist()
 
 
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=300))
-def test_no_extreme_is_ever_lost(values):
-    window = filled(sample(step, error) for step, error in enumerate(values)).window()
-    assert window.low["energy_error"].min() == min(values)
-    assert window.high["energy_error"].max() == max(values)
-
-
 @given(st.integers(1, 1000), st.sampled_from([64, 128]))
 def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
-    """Each sample's error is its number, so a row's low and high are its first and last sample."""
-    window = filled((sample(step, step) for step in range(count)), capacity).window()
+    window = filled(count, capacity).window()
     first, last = window.low["energy_error"][:, 0], window.high["energy_error"][:, 0]
     assert first.tolist() == [0, *(last[:-1] + 1)]
     assert last[-1] == count - 1
@@ -76,7 +66,7 @@ def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
 
 
 def test_recent_samples_are_kept_as_they_were_and_a_window_reaches_back_half_a_swing_more():
-    window = filled((sample(step) for step in range(2000)), capacity=64).window(1.0)
+    window = filled(2000).window(1.0)
     assert window.x[[0, -1]] == pytest.approx([199.9 - 1.0 - window.repeats, 199.9], abs=0.1)
     assert np.allclose(np.diff(window.x), 0.1)
 
@@ -89,11 +79,10 @@ def test_errors_repeat_after_half_a_swing_and_a_turn_in_rotation():
     assert run(DRIFT.altered(theta=0.0)).window().repeats == 0
 
 
-@given(st.integers(1, 1000), st.data())
-def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count, data):
+@given(st.integers(1, 1000), st.sampled_from([64, 1024]), st.data())
+def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count, capacity, data):
     step = data.draw(st.integers(0, count - 1))
-    capacity = data.draw(st.sampled_from([CAPACITY, 1024]))
-    history = filled((sample(step, step) for step in range(count)), capacity)
+    history = filled(count, capacity)
     whole = errors(history)
     history.add(sample(step, step))
     known = errors(history)
@@ -101,7 +90,7 @@ def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count
     assert np.all(np.diff(known) > 0)
     if capacity > count:
         assert known == list(range(step + 1))
-        assert history.thetas(0, 3) == [0.0] * min(3, step + 1)
+        assert history.thetas(0, 3) == known[-3:]
     history.add(sample(count - 1, count - 1))
     assert errors(history) == whole
 
@@ -109,17 +98,19 @@ def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count
 @given(st.integers(1, 1000), st.data())
 def test_a_run_that_goes_on_from_the_past_keeps_that_past(count, data):
     step = data.draw(st.integers(1, count))
-    history = filled(sample(step, step) for step in range(count))
+    history = filled(count)
     history.add(sample(step, 1000, run=2))
     known = errors(history)
-    longest = 2 * (count + 1) / CAPACITY + 1
+    longest = 2 * (count + 1) / 64 + 1
     assert known[-1] == 1000
     assert np.all(np.diff(known) > 0)
     assert step - max([0, *known[-2:-1]]) <= longest  # samples of the row that is cut
 
 
 def test_a_sample_between_rows_leaves_with_its_frame():
-    history = filled([sample(0, 0), sample(10, low=-9, high=10), sample(10)])  # again
+    history = filled(1)
+    history.add(sample(10, low=-9, high=10))
+    history.add(sample(10))  # again
     history.add(sample(13, 13, low=-99), is_row=False)
     assert history.window().low["energy_error"][:, 0].tolist() == [0, -9, 13]
     assert len(history.trails) == 3
@@ -135,12 +126,11 @@ def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run
     assert not run(DRIFT, (2, 0.1)).window().turned
 
 
-@settings(max_examples=30)
-@given(st.sampled_from(sorted(SCENES)), st.integers(1, 5))
-def test_rows_have_the_readings_energies_variables_and_theta_errors(name, stride):
+@pytest.mark.parametrize("name", ["drift", "damped", "mean-field", "spin", "stiff-slow"])
+def test_rows_have_the_readings_energies_variables_and_theta_errors(name):
     scene = SCENES[name]
     model = scene.equations
-    history = run(scene, (20 * stride, scene.h), every=stride)
+    history = run(scene, (40, scene.h))
     window = history.window()
     exact = history.exact.at(history.sample.t)
     for index, reading in enumerate(history.sample.readings):
@@ -156,16 +146,16 @@ def test_rows_have_the_readings_energies_variables_and_theta_errors(name, stride
 
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
-    history = filled(sample(step, theta=step) for step in range(20))
+    history = filled(20)
     theta, omega = history.trails[-3:, 2].T
     assert (theta.tolist(), omega.tolist()) == ([17, 18, 19], [-17, -18, -19])
     exact = [history.exact.at(0.1 * step) for step in (18, 19)]
     assert history.trails[-2:, -1].tolist() == [list(state) for state in exact]
     assert len(history.trails) == 20
-    assert len(filled(map(sample, range(400)), capacity=512).trails) == 300  # ten seconds
+    assert len(filled(400, capacity=512).trails) == 300  # ten seconds
 
 
-def largest(history: History, quantity: str) -> np.ndarray:
+def largest(history: History, quantity: str = "shadow_error") -> np.ndarray:
     window = history.window()
     extremes = np.fmax(abs(window.low[quantity]), abs(window.high[quantity]))
     return np.fmax.reduce(extremes[2:], axis=0)
@@ -181,26 +171,20 @@ def test_a_modified_energy_is_flat_where_the_energy_wobbles_and_explains_it_to_f
         # h⁴, measured 3.99 and 4.00; ±0.1 as for all orders here
         order = math.log2(rest[0.05][index] / rest[0.025][index])
         assert order == pytest.approx(4, abs=0.1)
-    assert math.log2(wobble[0.05][VERLET] / wobble[0.025][VERLET]) == pytest.approx(2, abs=0.1)
     assert np.isnan(rest[0.05][[EXPLICIT, RK4]]).all()
 
 
 def test_another_step_size_has_another_modified_energy_and_begins_anew():
-    changed = largest(run(DRIFT, (100, 0.05), (100, 0.1)), "shadow_error")
-    alone = largest(run(DRIFT, (200, 0.1)), "shadow_error")
+    changed = largest(run(DRIFT, (100, 0.05), (100, 0.1)))
+    alone = largest(run(DRIFT, (200, 0.1)))
     assert changed[VERLET] < 3 * alone[VERLET]  # counted from an end it is up to twice as large
 
 
 def test_at_equal_cost_it_is_the_modified_energy_of_the_steps_really_taken():
-    quarter = largest(run(DRIFT, (400, 0.05)), "shadow_error")
-    cut = largest(run(DRIFT, (100, 0.2), equal_cost=True), "shadow_error")
+    quarter = largest(run(DRIFT, (400, 0.05)))
+    cut = largest(run(DRIFT, (100, 0.2), equal_cost=True))
     for index in (SYMPLECTIC, VERLET):  # the same orbit, looked at less often
         assert cut[index] == pytest.approx(quarter[index], rel=0.1)
-
-
-def test_a_modified_energy_that_overflows_is_unknown_not_infinite():
-    history = run(Scene(theta=0.1, length=9.81, h=2.9), (3000, 2.9))
-    assert not np.isinf(history.window().high["shadow_error"]).any()
 
 
 def test_there_and_back_is_noticed_where_time_is_at_its_start_again():

@@ -93,13 +93,12 @@ def test_where_time_returns_the_pause_comes_at_the_start(live):
     assert (live.sample.t, live.sample.step) == (pytest.approx(0.0, abs=1e-12), 40)
 
 
-@pytest.mark.parametrize("choice", [1, 2, 3, None])
+@pytest.mark.parametrize("choice", [1, 2, None])
 def test_an_answer_is_right_or_wrong_and_the_truth_is_the_same(lesson, live, choice):
     lesson.forward(live)
     lesson.answer(choice)
     result, truth = lesson.text
-    assert result.startswith("Right.") == (choice == 1)
-    assert ("Not" in result) == (choice in (2, 3))
+    assert (result.startswith("Right."), "Not" in result) == (choice == 1, choice == 2)
     assert truth == QUESTION.truth
 
 
@@ -141,7 +140,7 @@ def test_the_lesson_in_the_documentation_is_walked_as_it_stands(tmp_path, live):
     assert rk4 > verlet
 
 
-def told(stop_at: float = math.inf, lesson: Lesson | None = None) -> list[tuple[float, str]]:
+def told(lesson: Lesson, stop_at: float = math.inf) -> list[tuple[float, str]]:
     now = 0.0
     lines = []
 
@@ -149,7 +148,6 @@ def told(stop_at: float = math.inf, lesson: Lesson | None = None) -> list[tuple[
         nonlocal now
         now += seconds
 
-    lesson = lesson or tour()
     live = Live(lesson.page, clock=lambda: 0.0)
     emit = lambda line: lines.append((now, line))  # noqa: E731
     tell(live, emit, lambda: now > stop_at, lambda: now, sleep, lesson)
@@ -157,22 +155,14 @@ def told(stop_at: float = math.inf, lesson: Lesson | None = None) -> list[tuple[
 
 
 def test_without_a_screen_it_asks_waits_and_answers():
-    lines = [(at, line) for at, line in told(lesson=Lesson("Page", [ASKS])) if "Page 1 of" in line]
-    assert [line.partition(". ")[2][:8] for _, line in lines] == [
-        "Explicit",
-        "A second",
-        "1: Neith",
-    ]
+    lines = [(at, line) for at, line in told(Lesson("Page", [ASKS])) if "Page 1 of" in line]
+    starts = [line.partition(". ")[2][:8] for _, line in lines]
+    assert starts == ["Explicit", "A second", "1: Neith"]
     asked, answered = (at for at, _ in lines[1:])
     assert asked == pytest.approx(ASKS.shot.moment / ASKS.speed, abs=0.1)
     assert answered - asked == pytest.approx(READING, abs=0.1)
 
 
-def test_the_tour_tells_every_truth():
-    text = " ".join(line for _, line in told())
-    assert all(page.shot.truth in text for page in tour().pages)
-
-
 @pytest.mark.parametrize("stop_at", [1.0, 15.0])
 def test_it_stops_when_it_is_asked_to(stop_at):
-    assert told(stop_at)[-1][0] <= stop_at + 0.1
+    assert told(tour(), stop_at)[-1][0] <= stop_at + 0.1

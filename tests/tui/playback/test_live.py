@@ -7,8 +7,6 @@ from collections import Counter
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
@@ -16,11 +14,9 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback.live import FRAME_BUDGET
-from pendu_tui.tui.playback.source import Playhead, doubled
+from pendu_tui.tui.playback.source import doubled
 from tests.own_methods import load
 from tests.tui.harness import FPS, Lab
-
-FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
 
 
 class Keeper:
@@ -39,11 +35,9 @@ class Keeper:
     def sample(self, sample: Sample, clock: float) -> None:
         assert clock >= self.seconds
         self.seconds = clock
-        if self.samples and self.samples[-1].run == sample.run:
-            assert sample.step >= self.samples[-1].step
-            if sample.step == self.samples[-1].step:
-                return
-        self.samples.append(sample)
+        last = self.samples[-1:]
+        if not last or last[0].run != sample.run or last[0].step < sample.step:
+            self.samples.append(sample)
 
 
 class Bench(Lab):
@@ -69,28 +63,8 @@ def simulated(scene, step, changes=()) -> list[tuple[float, float]]:
     return states(lockstep.sample())
 
 
-@given(FRAMES, st.floats(0.01, 100), st.booleans())
-def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_looked(
-    frames, speed, paused
-):
-    now = 10.0
-    playhead = Playhead(speed=speed, paused=paused)
-    playhead.follow(now)
-    assert playhead.position == 0.0
-    for elapsed in frames:
-        now += elapsed
-        playhead.follow(now)
-    # 50 additions and the clock's own rounding, each half a unit in the last place of at most 260 s
-    expected = 0.0 if paused else (now - 10.0) * speed
-    assert playhead.position == pytest.approx(expected, abs=260 * speed * 100 * 2**-53)
-    before = playhead.position
-    playhead.follow(now - 9.0)  # a clock set back
-    assert playhead.position == before
-
-
-def test_speeds_stay_within_their_limits_and_double_exactly_within_them():
-    for times in range(-40, 41):
-        expected = 2.0 ** min(max(times, -10), 20)
+def test_speeds_double_exactly_within_their_limits():
+    for times, expected in ((0, 1.0), (3, 8.0), (-2, 0.25), (21, 2.0**20), (-11, 2.0**-10)):
         assert doubled(1.0, times) == -doubled(-1.0, times) == expected
 
 
@@ -106,9 +80,13 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
     # the recording clock stands while paused and does not care for speed
     assert bench.keeper.seconds == pytest.approx(4.0, abs=1 / 30)  # from sample to sample
+    here = bench.live.playhead.position
+    bench.live.tick(0.0)  # a clock set back
+    bench.live.tick(0.5)
+    assert bench.live.playhead.position == here + 0.5 * 4
 
 
-@pytest.mark.parametrize("speed", [1, 8, 64])
+@pytest.mark.parametrize("speed", [1, 16])
 def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     bench = Bench(DEFAULT_SCENE.altered(h=0.011), speed=speed)
     turn = bench.run(3).t
@@ -138,9 +116,8 @@ def test_between_steps_the_end_moves_on_and_the_next_step_comes_closer():
 
 def test_where_a_lab_is_among_its_runs_steps_and_events():
     bench = Bench()
-    bench.run(8)  # explicit Euler goes over the top at 7.15 s
     bench.live.start(DEFAULT_SCENE)
-    bench.run(8)
+    bench.run(8)  # explicit Euler goes over the top at 7.15 s
     bench.live.change(bench.live.stepping.next(up=True))
     bench.run(1)
     bench.live.mark()
@@ -174,9 +151,8 @@ def test_after_steps_it_is_paused_and_goes_on_with_the_same_bits_and_records_not
     bench.live.pause(False)
     sample = bench.run(4)
     assert states(sample) == simulated(DEFAULT_SCENE, sample.step)
-    steps = [(sample.run, sample.step) for sample in bench.keeper.samples]
+    steps = [sample.step for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
-    assert {run for run, _ in steps} == {1}
     assert bench.live.step(-(10**6)).step == 0
 
 
@@ -202,25 +178,19 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
 def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench = Bench()
     bench.run(1)
-    bench.live.change(Stepping(-0.05))
+    bench.live.change(Stepping(-0.05, equal_cost=True))
     bench.live.mark("turned")
     bench.live.mark("turned")  # a moment has one mark
     bench.live.pause(True)
     bench.live.pause(False)
     bench.live.set_speed(2)
     bench.live.start(SCENES["spin"])
-    kinds = [event.kind for event in bench.keeper.events]
-    assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start"]
-    steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
-    assert {(event.run, event.step) for event in bench.keeper.events} <= steps
-
-
-def test_a_new_run_keeps_equal_cost_with_the_scenes_step_as_the_smallest():
-    bench = Bench()
-    bench.live.change(bench.live.stepping.toggled())
-    bench.live.start(SCENES["spin"])
     assert bench.live.stepping.equal_cost
     assert bench.live.stepping.smallest == SCENES["spin"].h
+    kinds = [event.kind for event in bench.keeper.events]
+    assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start", "set_h"]
+    steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
+    assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 
 
 @pytest.mark.parametrize("h", [0.0, math.nan])
@@ -250,11 +220,7 @@ def mine(force, phase, h):
 
 @pytest.mark.parametrize(
     ("failure", "words"),
-    [
-        ("time.sleep(0.1)", "takes more than 3 s"),
-        ("1 / 0", "raises ZeroDivisionError"),
-        ("sys.exit()", "raises SystemExit"),
-    ],
+    [("time.sleep(0.1)", "takes more than 3 s"), ("sys.exit()", "raises SystemExit")],
 )
 def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, words, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.cli.watchdog.LOOK_INTERVAL", 0.08)

@@ -56,7 +56,6 @@ def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(page):
     assert 6 < walked.now < 13
     assert walked.source.playhead.paused
     assert walked.source.sample.t == pytest.approx(moment, abs=1e-9)
-    assert page.shot.answers[0] != page.shot.answers[1]
 
 
 def test_explicit_euler_gains_and_the_others_keep_their_energy_nearly():
@@ -72,35 +71,27 @@ def test_explicit_euler_gains_and_the_others_keep_their_energy_nearly():
     assert all(abs(swings[6][place].energy_error) < 0.01 for place in (SYMPLECTIC, VERLET))
 
 
-def test_the_tilted_ellipse_is_seen_to_be_tilted_and_nothing_covers_it():
+def test_the_tilted_ellipse_is_seen_to_be_tilted():
     shown = Shown().through(WHY, WHY.shot)
     assert (WHY.shot.view, shown.places(WHY.cast)) == ("phase", [EXPLICIT, SYMPLECTIC])
-    assert not shown.ring
     states = [after(WHY, step * WHY.h)[SYMPLECTIC] for step in range(1, 100)]
-    for columns, rows in ((118, 24), (78, 11)):
-        viewport = Viewport.portrait(columns, rows, WHY, WHY.shot.theta)
-        x = [viewport.x(each.theta) for each in states]
-        y = [viewport.y(each.omega) for each in states]
-        assert np.ptp(x) > 0.8 * columns  # 40 % of the dots across
-        assert np.ptp(y) > 1.6 * rows
-        assert abs(np.corrcoef(x, y)[0, 1]) > 0.2  # an upright ellipse has none
+    viewport = Viewport.portrait(78, 11, WHY, WHY.shot.theta)
+    x = [viewport.x(each.theta) for each in states]
+    y = [viewport.y(each.omega) for each in states]
+    assert np.ptp(x) > 0.8 * 78  # 40 % of the dots across
+    assert np.ptp(y) > 1.6 * 11
+    assert abs(np.corrcoef(x, y)[0, 1]) > 0.2  # an upright ellipse has none
 
 
 def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
-    scene = WHY
-    energies = [1 + after(scene, steps * scene.h)[EXPLICIT].energy_error for steps in range(1, 12)]
-    assert scene.z**2 == pytest.approx(0.25)
+    energies = [1 + after(WHY, steps * WHY.h)[EXPLICIT].energy_error for steps in range(1, 12)]
+    assert WHY.z**2 == pytest.approx(0.25)
     ratios = [late / early - 1 for early, late in pairwise(energies)]
     assert ratios == pytest.approx([0.25] * 10, abs=0.03)
     assert energies[-1] > 10
-    euler = after(scene, 50_000)[SYMPLECTIC]
+    euler = after(WHY, 10_000)[SYMPLECTIC]
     assert euler.energy_error_low == pytest.approx(-0.20, abs=0.005)
     assert euler.energy_error_high == pytest.approx(0.33, abs=0.005)
-    q, p, h = 0.0, 0.3, scene.h  # the ellipse of the linear spring: q² + p² - hqp stays
-    for _ in range(100):
-        p = p - h * q
-        q = q + h * p
-        assert q * q + p * p - h * q * p == pytest.approx(0.09, rel=1e-12)
 
 
 def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s():
@@ -114,12 +105,9 @@ def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s
     over = [each.t for each in walked.source.milestones if each.kind == "over the top"]
     assert over == [pytest.approx(12.45)]
     assert Walked(GAINS).source.milestones[0].t == pytest.approx(7.15)
-
-
-def test_half_the_step_is_seen_beside_the_run_with_the_whole_one():
-    live = Walked(SMALLER).source
-    assert live.ghost.scene.h == DRIFT.h
-    assert live.ghost.rods(17.6).keys() == {method.key for method in DRIFT.cast}
+    ghost = walked.source.ghost  # the run with the whole step
+    assert ghost.scene.h == DRIFT.h
+    assert ghost.rods(17.6).keys() == {method.key for method in DRIFT.cast}
 
 
 def test_it_ends_with_a_fresh_run_to_play_with_that_is_not_called_astray():
@@ -128,9 +116,7 @@ def test_it_ends_with_a_fresh_run_to_play_with_that_is_not_called_astray():
     lesson.begin(live, 0)
     assert (live.scene.numbers, live.ghost) == (DRIFT.numbers, None)
     live.start(DRIFT.altered(theta=2.0))
-    assert lesson.text == (LAST.watch,)
     assert not lesson.is_astray(live)
-    assert "throw" in LAST.watch
 
 
 def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
@@ -141,16 +127,14 @@ def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
     passed = [each.t for each in Walked(CROSSING).source.milestones if each.other]
     assert passed == [pytest.approx(33, abs=1)]
     assert ratio(CROSSING.h, 5) < 1 / 5
-    assert all(ratio(CROSSING.h, seconds) > 1.4 for seconds in (50, 100, 200))
+    assert all(ratio(CROSSING.h, seconds) > 1.4 for seconds in (50, 200))
     assert ratio(0.05, 31 * 60) < 1 < ratio(0.05, 34 * 60)
 
 
 def test_time_reversed_brings_verlet_home_and_no_other():
     walked = Walked(REVERSED)
-    assert walked.source.sample.t == pytest.approx(0, abs=1e-9)
-    start = REVERSED
     misses = [
-        math.hypot(each.theta - start.theta, (each.omega - start.omega) / start.w0)  # rad
+        math.hypot(each.theta - REVERSED.theta, (each.omega - REVERSED.omega) / REVERSED.w0)  # rad
         for each in walked.readings
     ]
     assert misses[VERLET] < 1e-14
@@ -160,40 +144,39 @@ def test_time_reversed_brings_verlet_home_and_no_other():
 
 
 def test_two_methods_keep_area():
-    scene, t = AREA, Walked(AREA).source.sample.t
-    assert t == pytest.approx(2 * scene.exact().period, abs=scene.h)
-    ring = Neighbourhood(scene, 0.1)
-    ring.advance(round(t / scene.h), Stepping(scene.h))
+    t = AREA.shot.moment
+    assert t == pytest.approx(2 * AREA.exact().period, abs=AREA.h)
+    ring = Neighbourhood(AREA, 0.1)
+    ring.advance(round(t / AREA.h), Stepping(AREA.h))
     ratios = ring.area_ratios
     assert ratios[SYMPLECTIC] == pytest.approx(1, abs=1e-12)
     assert ratios[VERLET] == pytest.approx(1, abs=1e-12)
     assert ratios[EXPLICIT] == pytest.approx(2.4, abs=0.05)
-    stretch = jacobian(EXPLICIT_EULER, scene.equations, 0.5, 0.3, scene.h).determinant
-    assert stretch == pytest.approx(1 + scene.z**2 * math.cos(0.5), rel=1e-12)
+    stretch = jacobian(EXPLICIT_EULER, AREA.equations, 0.5, 0.3, AREA.h).determinant
+    assert stretch == pytest.approx(1 + AREA.z**2 * math.cos(0.5), rel=1e-12)
     assert 1 - 1e-4 < ratios[RK] < 1
 
 
 def test_above_its_limit_verlet_is_held_by_the_pendulum_and_not_by_the_spring():
-    walked, scene = Walked(BREAKS), BREAKS
-    assert scene.theta == 0.1
+    walked = Walked(BREAKS)
+    assert BREAKS.theta == 0.1
     assert walked.source.sample.step == 10
     assert abs(walked.readings[VERLET].theta) == pytest.approx(0.47, abs=0.01)
-    assert scene.z > VELOCITY_VERLET.linear_limit == 2
-    lockstep, largest = Lockstep(scene), 0.0
-    for _ in range(5000):
+    assert BREAKS.z > VELOCITY_VERLET.linear_limit == 2
+    lockstep, largest = Lockstep(BREAKS), 0.0
+    for _ in range(1000):
         lockstep.advance(1)
         largest = max(largest, abs(lockstep.sample().readings[VERLET].theta))
     assert largest == pytest.approx(0.48, abs=0.005)
-    slower = math.tau / replace(scene, theta=0.48).exact().period
-    assert scene.h * slower < 2
-    assert abs(after(replace(scene, model="linear"), 200)[VERLET].theta) > 1e9
+    slower = math.tau / replace(BREAKS, theta=0.48).exact().period
+    assert BREAKS.h * slower < 2
+    assert abs(after(replace(BREAKS, model="linear"), 200)[VERLET].theta) > 1e9
 
 
 def test_which_method_is_cheaper_depends_on_the_accuracy():
     walked = Walked(COSTS)
     verlet, rk4 = (walked.source.stepping.own[place] for place in (VERLET, RK))
     assert rk4 == 4 * verlet
-    assert walked.source.sample.t == pytest.approx(2, abs=0.25)
     time, _ = usual(COSTS)
     cost = {}
     for method in (VELOCITY_VERLET, RK4):
