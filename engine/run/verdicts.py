@@ -26,7 +26,6 @@ class Verdict(NamedTuple):
     sign: str  # before the word, for those who cannot tell colours
     ink: Literal["good", "text", "warn", "quiet"]
     meaning: str
-    sentence: str  # a format of method names {0}, {names} and the judgement's numbers
 
 
 VERDICTS: dict[str, Verdict] = {
@@ -37,7 +36,6 @@ VERDICTS: dict[str, Verdict] = {
             sign="=",
             ink="good",
             meaning="the energy stays in a band; a drift is smaller than the band, and bounded",
-            sentence="{names} bounded; no trend over {seconds:about}.",
         ),
         Verdict(
             GROWS,
@@ -45,7 +43,6 @@ VERDICTS: dict[str, Verdict] = {
             ink="text",
             meaning="the energy rises for good; if it has settled since, "
             "the slope is measured there",
-            sentence="{0} gains {rate:share} of {unit} per s.",
         ),
         Verdict(
             LOSES,
@@ -53,14 +50,12 @@ VERDICTS: dict[str, Verdict] = {
             ink="text",
             meaning="the energy falls for good; if it has settled since, "
             "the slope is measured there",
-            sentence="{0} loses {rate:share} of {unit} per s.",
         ),
         Verdict(
             CHAOTIC,
             sign="!",
             ink="text",
             meaning="nearby starts of a symplectic method separate exponentially",
-            sentence="{0} is chaotic: nearby starts separate {seconds:tenfold}.",
         ),
         Verdict(
             FAILED,
@@ -68,14 +63,12 @@ VERDICTS: dict[str, Verdict] = {
             ink="warn",
             meaning="the numbers have broken down: nan, infinite, too large, "
             "or a step without a solution",
-            sentence="{0} failed at {t:seconds}: its energy error is no longer finite.",
         ),
         Verdict(
             UNDECIDED,
             sign="",
             ink="quiet",
             meaning="the data support none of these; the reason says what is missing",
-            sentence="{0} is undecided: {reason}.",
         ),
     )
 }

@@ -39,7 +39,7 @@ from pendu_tui.tui.commands.report import (
     publish,
     scene_line,
 )
-from pendu_tui.tui.words.insight import irregular, milestone_insight, sentence
+from pendu_tui.tui.words.insight import irregular, milestone_insight
 from pendu_tui.tui.words.numbers import counted, file_size, z_text
 
 MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
@@ -242,13 +242,13 @@ def _notes(scene: Scene, lockstep: Lockstep) -> Iterator[str]:
     """Yield what happened, why a method is undecided, and how fast orbits separate."""
     for milestone in lockstep.milestones:
         if milestone.kind in ("over the top", "errors cross"):
-            yield sentence(milestone_insight(milestone, scene.equations.conserves_energy))
+            yield milestone_insight(milestone, scene.equations.conserves_energy).text
     for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
         if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
             yield f"{method.label} is undecided: {judgement.reason}."
         insight = irregular(method, judgement, 0.0)
         if judgement.lyapunov and insight:
-            yield sentence(insight)
+            yield insight.text
 
 
 def for_json(rows: Sequence[Row]) -> list[Row]:

@@ -22,7 +22,7 @@ from pendu_tui.tui.playback.lesson import ASTRAY
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.insight import insight_text, painted
+from pendu_tui.tui.words.insight import insight, painted
 from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
 
 BADGE = -10
@@ -161,7 +161,7 @@ class InsightLine(Pane):
         width, height = self.room
         status = source.recording_status
         watch = source.scene.watch
-        text = insight_text(source, self.shown.hidden)
+        text = insight(source, self.shown.hidden).text
         ink = TEXT
         if source.failure:
             text = f"{source.failure} The run stands still; space tries again."

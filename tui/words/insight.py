@@ -1,25 +1,19 @@
-"""The insight of the moment: `insight` chooses one with its numbers, SENTENCES has the words.
-
-Insights state what was measured; a forecast extrapolates a measured slope.
-"""
+"""The insight of the moment, a sentence about what was measured; a forecast extrapolates a slope."""
 
 import math
 import re
-import string
-from collections.abc import Callable, Collection, Mapping, Sequence
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from collections.abc import Collection
+from typing import NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import SteppingChange
 from pendu_tui.engine.run.verdicts import (
     BOUNDED,
     CHAOTIC,
     FAILED,
+    GROWS,
     LEAVES,
     LOSES,
-    VERDICTS,
     Judgement,
     Milestone,
 )
@@ -27,23 +21,6 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.picture import Row, ink_of
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.numbers import about, seconds, two_digits
-
-SENTENCES = {
-    **{each.word: each.sentence for each in VERDICTS.values()},
-    "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
-    "returned": "Back at t = 0; off in angle and speed [rad]: {misses}.",
-    "watch": "{text}",
-    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
-    "over the top": "{0} went over the top at {t:seconds}{energy}.",
-    "errors cross": "{0}'s error passed {1}'s at {t:seconds}: smaller at first, it kept growing.",
-    "rests": "{0} has settled at an energy error of about {error:+.3g}.",
-    "lost": "{0} has lost {share:percent} of its energy.",
-    "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
-    "will pass": (
-        "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}."
-    ),
-    "so far": "Largest energy error so far: {errors}.",
-}
 
 WATCH = 8.0  # s of the clock for the scene's own sentence, at the beginning of a run
 FRESH = 6.0  # s of the clock during which a milestone is news
@@ -56,43 +33,12 @@ IRREGULAR = (CHAOTIC, "rests")
 """Kinds that are also worth stating of a method that went over the top."""
 
 
-def _share(value: float) -> str:
-    if 1e-6 <= value < 10:
-        return f"{two_digits(100 * value)} %"
-    return two_digits(value)
-
-
-FORMATS: dict[str, Callable[[Any], str]] = {
-    "about": about,
-    "seconds": seconds,
-    "share": _share,
-    "percent": lambda value: "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %",
-    "tenfold": lambda value: f"tenfold every {about(value)}" if value else "exponentially",
-}
-"""Formats of SENTENCES, in addition to Python's."""
-
-
 class Insight(NamedTuple):
-    """A fact about the run: its kind (a key of SENTENCES), methods and numbers."""
+    """A fact about the run: its kind, the sentence, and the methods that it is about."""
 
     kind: str
+    text: str = ""
     methods: tuple[Method, ...] = ()
-    values: Mapping[str, Any] = MappingProxyType({})
-
-
-class _Words(string.Formatter):
-    def format_field(self, value: Any, format_spec: str) -> str:
-        if format_spec in FORMATS:
-            return FORMATS[format_spec](value)
-        return format(value, format_spec)
-
-
-def sentence(found: Insight) -> str:
-    """Write an insight in words."""
-    names = [short_name(method) for method in found.methods]
-    *first, last = names or [""]
-    joined = f"{', '.join(first)} and {last} stay" if first else f"{last} stays"
-    return _Words().format(SENTENCES[found.kind], *names, names=joined, **found.values)
 
 
 def short_name(method: Method) -> str:
@@ -113,11 +59,6 @@ def painted(text: str, cast: Cast, ink: int) -> Row:
     return [(piece, inks.get(piece.lower(), ink)) for piece in pieces if piece]
 
 
-def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
-    """Write the insight of the moment in words."""
-    return sentence(insight(source, hidden))
-
-
 def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     """Choose equilibrium, the return to t = 0, news, the scene's own, or a lasting insight.
 
@@ -129,26 +70,32 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     pace = abs(source.playhead.speed)
     shot = source.scene.shot
     if source.exact.regime == "equilibrium":
-        return Insight("at rest")
+        return Insight("at rest", "Nothing moves: the pendulum started at rest in equilibrium.")
     is_moment = shot.moment is not None and step == round(shot.moment / h)
     if is_moment and shot.sentence and source.stepping.h == source.scene.h:
-        return Insight("watch", values={"text": shot.sentence})
+        return Insight("watch", shot.sentence)
     if source.history.returned is not None and t < WATCH:
         return _returned(source.scene, source.history.returned, hidden)
-    since = step - FRESH * pace / h
-    if source.kind == "LIVE" and _is_new_step(source.changes, since):
-        return Insight("new step", values={"h": source.stepping.h})
-    if found := _news(source, since, hidden):
+    if found := _news(source, step - FRESH * pace / h, hidden):
         return found
     if t < WATCH * pace and (watch := _watch(source, hidden)):
         return watch
-    known = lasting(source, hidden)
+    known = lasting(source, hidden) or [Insight("nothing")]
     return known[int(step * h / (TURN * pace)) % len(known)]
 
 
-def _is_new_step(changes: Sequence[SteppingChange], since: float) -> bool:
-    sizes = [abs(change.stepping.h) for change in changes[-2:]]
-    return changes[-1].step > max(since, 0) and sizes[0] != sizes[-1]
+def _returned(scene: Scene, sample: Sample, hidden: Collection[str]) -> Insight:
+    """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
+    misses = []
+    for method, reading in zip(scene.cast, sample.readings, strict=True):
+        speed = (reading.omega - scene.omega) / scene.w0
+        miss = f"{math.hypot(reading.theta - scene.theta, speed):.1g}"
+        if reading.diverged_at is not None:
+            miss = FAILED
+        if method.key not in hidden:
+            misses.append(f"{method.letter} {miss}")
+    text = f"Back at t = 0; off in angle and speed [rad]: {', '.join(misses)}."
+    return Insight("returned", text, scene.cast)
 
 
 def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:
@@ -173,34 +120,29 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
     named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
     if not scene.watch or source.stepping.h != scene.h or named:
         return None
-    return Insight("watch", values={"text": scene.watch})
+    return Insight("watch", scene.watch)
 
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
-    """Return all insights on the methods shown, the most important first; at least one."""
-    ended = {at: each for at, each in endings(source).items() if each.method.key not in hidden}
+    """Return all insights on the methods shown, the most important first."""
+    ended = {
+        each.method: each
+        for each in sorted(source.milestones, key=lambda each: each.kind == FAILED)
+        if each.kind in ("over the top", FAILED) and each.method.key not in hidden
+    }
     first = sorted(ended.values(), key=lambda each: (each.kind != FAILED, each.step))
     found = [milestone_insight(each, _is_conserved(source)) for each in first]
     if staying := bounded(source, hidden):
         found.append(staying)
     for index, method in enumerate(source.scene.cast):
         own = drift(source, index)
-        if own and method.key not in hidden and (index not in ended or own.kind in IRREGULAR):
+        if own and method.key not in hidden and (method not in ended or own.kind in IRREGULAR):
             found.append(own)
-    if not found:
-        return [_so_far(source, hidden)]
     watch = _watch(source, hidden)
-    is_outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
+    is_outdated = any(short_name(method) in source.scene.watch for method in ended)
     if watch and not is_outdated:
         found.append(watch)
     return found
-
-
-def endings(source: Source) -> dict[int, Milestone]:
-    """Return the milestones of failed methods and those over the top, by index."""
-    ended = [each for each in source.milestones if each.kind in ("over the top", FAILED)]
-    ended.sort(key=lambda each: each.kind == FAILED)
-    return {source.scene.cast.index(each.method): each for each in ended}
 
 
 def _is_conserved(source: Source) -> bool:
@@ -218,16 +160,19 @@ def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
 
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
-    values: dict[str, Any] = {"t": milestone.t}
+    name = short_name(milestone.method)
+    at = seconds(milestone.t)
+    text = f"{name} failed at {at}: its energy error is no longer finite."
     if milestone.other:
-        return Insight("errors cross", (milestone.method, milestone.other), values)
-    if milestone.kind == "over the top":
+        other = short_name(milestone.other)
+        text = f"{name}'s error passed {other}'s at {at}: smaller at first, it kept growing."
+    elif milestone.kind == "over the top":
         energy = ""
         if ratio := energy_ratio(milestone, conserved):
             unit = "its initial energy" if conserved else "the true energy"
             energy = f" with {two_digits(ratio)} times {unit}"
-        values |= {"ratio": ratio, "energy": energy}
-    return Insight(milestone.kind, (milestone.method,), values)
+        text = f"{name} went over the top at {at}{energy}."
+    return Insight(milestone.kind, text, (milestone.method,))
 
 
 def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
@@ -236,45 +181,62 @@ def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     found = {m: j.periods for m, j in judged if j.verdict == BOUNDED and m.key not in hidden}
     if not found:
         return None
+    *others, last = map(short_name, found)
+    names = f"{last} stays"
+    if others:
+        names = f"{', '.join(others)} and {last} stay"
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
-    return Insight(BOUNDED, tuple(found), {"seconds": min(found.values()) * period})
+    since = about(min(found.values()) * period)
+    return Insight(BOUNDED, f"{names} bounded; no trend over {since}.", tuple(found))
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
     """Return the insight on a method that is chaotic or rests elsewhere; None for others."""
-    kind = "rests" if judgement.rests else judgement.verdict
-    if kind not in IRREGULAR:
+    name = short_name(method)
+    if judgement.rests:
+        text = f"{name} has settled at an energy error of about {error:+.3g}."
+        return Insight("rests", text, (method,))
+    if judgement.verdict != CHAOTIC:
         return None
-    values = {"error": error, "seconds": None}
+    pace = "exponentially"
     if judgement.lyapunov:
-        values["seconds"] = math.log(10) / judgement.lyapunov
-    return Insight(kind, (method,), values)
+        pace = f"tenfold every {about(math.log(10) / judgement.lyapunov)}"
+    return Insight(CHAOTIC, f"{name} is chaotic: nearby starts separate {pace}.", (method,))
 
 
 def drift(source: Source, index: int) -> Insight | None:
     """Return the insight on a method that is not bounded, as far as that is certain."""
     method = source.scene.cast[index]
     judgement = source.judgements[index]
+    verdict = judgement.verdict
     error = source.sample.readings[index].energy_error
+    name = short_name(method)
     if found := irregular(method, judgement, error):
         return found
     conserved = _is_conserved(source)
-    loses = judgement.verdict == LOSES
-    if conserved and loses and -error > 0.5:  # the share lost is more telling than the rate
-        return Insight("lost", (method,), {"share": -error})
+    if verdict == LOSES and conserved and error < -0.5:  # more telling than the rate
+        return Insight("lost", f"{name} has lost {_share(-error)} of its energy.", (method,))
     rate = judgement.slope or 0.0
-    if loses:
-        rate = -rate
-    if judgement.verdict not in LEAVES or rate <= 0:
+    if verdict not in LEAVES or rate == 0.0 or (rate > 0) != (verdict == GROWS):
         return None
-    if judgement.growth and not loses:
-        return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
+    if judgement.growth and verdict == GROWS:
+        tenfold = about(math.log(10) / judgement.growth)
+        text = f"{name}'s energy grows tenfold every {tenfold}."
+        return Insight("multiplies", text, (method,))
     unit = "E0" if conserved else "the true energy"
-    values = {"rate": rate, "unit": unit}
+    verb = "gains" if verdict == GROWS else "loses"
+    text = f"{name} {verb} {_share(abs(rate))} of {unit} per s"
     if ahead := forecast(source, index):
-        seconds, other = ahead
-        return Insight("will pass", (method, other), values | {"seconds": seconds})
-    return Insight(judgement.verdict, (method,), values)
+        wait, other = ahead
+        passing = f"its error will pass {short_name(other)}'s in {about(wait)}"
+        return Insight("will pass", f"{text}; {passing}.", (method, other))
+    return Insight(verdict, f"{text}.", (method,))
+
+
+def _share(value: float) -> str:
+    if 1e-6 <= value < 10:
+        return f"{two_digits(100 * value)} %"
+    return two_digits(value)
 
 
 def forecast(source: Source, index: int) -> tuple[float, Method] | None:
@@ -289,47 +251,19 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     rate = -(judgement.slope or 0.0)
     if judgement.verdict != LOSES or judgement.uncertainty is None:
         return None
-    if rate <= 10 * judgement.uncertainty:
+    has_changed = any(0 < change.step <= source.sample.step for change in source.changes)
+    is_slow = (source.exact.period or 0.0) > MAX_PERIOD * math.tau / source.scene.w0
+    if rate <= 10 * judgement.uncertainty or has_changed or is_slow:
         return None
-    if any(0 < change.step <= source.sample.step for change in source.changes):
-        return None
-    bands = _bands(source)
-    band, other = next((each for each in bands if each[0] > abs(error)), (math.inf, None))
-    slow = (source.exact.period or 0.0) > MAX_PERIOD * math.tau / source.scene.w0
-    if other is None or band > MAX_BAND or slow:
-        return None
-    seconds = (band + error) / rate
-    if seconds < 1000 * 86400:
-        return seconds, other
+    bands = {
+        reading.max_energy_error: method
+        for method, reading, judged in zip(
+            source.scene.cast, source.sample.readings, source.judgements, strict=True
+        )
+        if judged.verdict == BOUNDED and reading.max_energy_error > abs(error)
+    }
+    band = min(bands, default=math.inf)
+    wait = (band + error) / rate
+    if band <= MAX_BAND and wait < 1000 * 86400:
+        return wait, bands[band]
     return None
-
-
-def _bands(source: Source) -> list[tuple[float, Method]]:
-    """Return the largest energy error of each bounded method, smallest first."""
-    each = zip(source.scene.cast, source.sample.readings, source.judgements, strict=True)
-    bands = [(now.max_energy_error, one) for one, now, judged in each if judged.verdict == BOUNDED]
-    return sorted(bands, key=lambda band: band[0])
-
-
-def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
-    each = zip(source.scene.cast, source.sample.readings, strict=True)
-    largest = {one: now.max_energy_error for one, now in each if one.key not in hidden}
-    if not largest:
-        return Insight("watch", values={"text": ""})
-    ends = dict.fromkeys(sorted(largest, key=largest.__getitem__)[:: max(len(largest) - 1, 1)])
-    errors = " to ".join(f"{_share(largest[each])} ({short_name(each)})" for each in ends)
-    return Insight("so far", tuple(ends), {"errors": errors})
-
-
-def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Insight:
-    """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
-    misses = []
-    for method, reading in zip(scene.cast, sample.readings, strict=True):
-        if method.key not in hidden:
-            speed = (reading.omega - scene.omega) / scene.w0
-            miss = math.hypot(reading.theta - scene.theta, speed)
-            text = f"{miss:.1g}"
-            if reading.diverged_at is not None:
-                text = "failed"
-            misses.append(f"{method.letter} {text}")
-    return Insight("returned", scene.cast, {"misses": ", ".join(misses)})

@@ -13,7 +13,7 @@ from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Source
-from pendu_tui.tui.words.insight import energy_ratio, lasting, sentence, short_name
+from pendu_tui.tui.words.insight import energy_ratio, lasting, short_name
 from pendu_tui.tui.words.numbers import about, seconds, start, two_digits
 
 READING = 6.0  # s, to read a sentence, or to find an answer
@@ -67,13 +67,12 @@ def method_sentence(source: Source, index: int) -> str:
     reading = source.sample.readings[index]
     judgement = source.judgements[index]
     others = {each.key for each in source.scene.cast} - {method.key}
-    found = [each for each in lasting(source, others) if each.kind not in ("watch", "so far")]
+    found = [each.text for each in lasting(source, others) if each.kind != "watch"]
     if not found:
         return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {judgement}."
-    sentences = [sentence(each) for each in found]
     if judgement.verdict == BOUNDED:
-        sentences.append(f"Its largest energy error is {reading.max_energy_error:.2g}.")
-    return " ".join(sentences)
+        found.append(f"Its largest energy error is {reading.max_energy_error:.2g}.")
+    return " ".join(found)
 
 
 def _recording(source: Source) -> str:

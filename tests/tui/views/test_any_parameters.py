@@ -17,7 +17,7 @@ from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities
 from pendu_tui.tui.screens.lines import status_row
 from pendu_tui.tui.views.error_table import table
-from pendu_tui.tui.words.insight import insight_text, lasting, sentence
+from pendu_tui.tui.words.insight import insight, lasting
 from pendu_tui.tui.words.plain_text import description
 from tests.truths import LIMITS
 from tests.tui.command_line import pendu
@@ -57,7 +57,7 @@ def on_screen(live) -> str:
         shown = Shown(quantity=quantity, log=log)
         chart = time_chart(live.history.window(), live.scene.cast, shown, 60, 14)
         pictures.append(chart.picture)
-    sentences = [*description(live), insight_text(live), *map(sentence, lasting(live))]
+    sentences = [*description(live), insight(live).text, *(each.text for each in lasting(live))]
     return "\n".join([*(picture.text for picture in pictures), *sentences])
 
 
