@@ -15,12 +15,11 @@ from textual.containers import Container, Horizontal, VerticalScroll
 from textual.dom import DOMNode
 from textual.screen import ModalScreen, ScreenResultType
 from textual.widgets import Input, Label, OptionList, Static
-from textual.widgets.option_list import Option
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, Method
 from pendu_tui.engine.models import NUMBERS
-from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES, Scene
+from pendu_tui.engine.scenes import MAX_METHODS, Scene
 from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.lines import SizedScreen, key_text
@@ -33,13 +32,17 @@ KEY_WIDTH = 9  # characters
 COLUMN_WIDTH = 36  # characters, a key and what it does
 
 
-class Once(SizedScreen[ScreenResultType]):
-    """A screen that closes once, however fast clicks and keys come."""
+class Form(ModalScreen[ScreenResultType], SizedScreen[ScreenResultType]):
+    """A screen over the lab that closes once, however fast clicks and keys come."""
 
     def on_mount(self) -> None:
         """Stop cursors from blinking with reduced motion, which Textual does not."""
         for field in self.query(Input):
             field.cursor_blink = self.app.animation_level != "none"
+
+    def on_click(self, event: events.Click) -> None:
+        if event.widget is self:
+            self.dismiss(None)
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
         """Close with a result, once; a second call would close the screen below."""
@@ -48,16 +51,10 @@ class Once(SizedScreen[ScreenResultType]):
         return super().dismiss(result)
 
 
-class Form(ModalScreen[ScreenResultType], Once[ScreenResultType]):
-    def on_click(self, event: events.Click) -> None:
-        if event.widget is self:
-            self.dismiss(None)
-
-
 # Texts, and the help
 
 
-class TextScreen(ModalScreen[None], Once[None]):
+class TextScreen(Form[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")
     ]
@@ -158,37 +155,41 @@ def entries(scenes: Iterable[Scene], bindings: Iterable[ActiveBinding]) -> Itera
             yield Entry(press, purpose(binding), key_text(binding))
 
 
+MOVES = {
+    "up": "cursor_up",
+    "down": "cursor_down",
+    "pageup": "page_up",
+    "pagedown": "page_down",
+}
+"""Keys of the finder, and what its list does."""
+
+
 class Finder(Form[str]):
     """Returns the action of an entry that has words beginning with each word typed."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,ctrl+p", "dismiss(None)", priority=True),
-        *(
-            Binding(key, f"move('{name}')", priority=True)
-            for key, name in (
-                ("up", "cursor_up"),
-                ("down", "cursor_down"),
-                ("pageup", "page_up"),
-                ("pagedown", "page_down"),
-            )
-        ),
+        *(Binding(key, f"move('{name}')", priority=True) for key, name in MOVES.items()),
     ]
 
-    def __init__(self, entries: Iterable[Entry]) -> None:
+    def __init__(self, entries: Iterable[Entry], typed: str = "") -> None:
         super().__init__()
         self.entries = list(entries)
-        self.found = self.entries
+        self.found: list[Entry] = []
+        self._typed = typed
 
     def compose(self) -> ComposeResult:
         with Container(id="finder") as form:
             form.border_title = "Find a scene, a theme, a key …"
             form.border_subtitle = "Enter does it, Esc cancels"
-            yield Input()
+            yield Input(self._typed, select_on_focus=False)
             yield Choices()
 
+    @on(events.Mount)
     @on(Input.Changed)
-    def fill(self, event: Input.Changed) -> None:
-        patterns = [rf"(?i)(?<!\w){re.escape(word)}" for word in event.value.split()]
+    def fill(self) -> None:
+        typed = self.query_one(Input).value
+        patterns = [rf"(?i)(?<!\w){re.escape(word)}" for word in typed.split()]
 
         def places(entry: Entry) -> list[int]:
             text = f"{entry.text} {entry.about}"
@@ -202,14 +203,14 @@ class Finder(Form[str]):
         listed.highlighted = 0
 
     def _line(self, entry: Entry, patterns: Iterable[str]) -> Table:
-        line = Table.grid("text", "key", expand=True)
-        line.columns[1].justify = "right"
-        for words, key in ((entry.text, entry.key), (entry.about, "")):
-            text = Text(words)
-            for each in patterns:
+        line = Table.grid("text", "about", "key", expand=True, padding=(0, 1))
+        line.columns[0].width = max(len(each.text) for each in self.found)
+        line.columns[1].ratio = 1
+        texts = [Text(words) for words in (entry.text, entry.about, entry.key)]
+        for each in patterns:
+            for text in texts[:2]:
                 text.highlight_regex(each, "bold underline")
-            if words:
-                line.add_row(text, key)
+        line.add_row(*texts)
         return line
 
     async def action_move(self, name: str) -> None:
@@ -220,32 +221,6 @@ class Finder(Form[str]):
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(self.found[event.option_index].action)
-
-
-class SceneList(Form[str]):
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)")]
-
-    def __init__(self, current: str) -> None:
-        super().__init__()
-        self._current = current
-
-    def compose(self) -> ComposeResult:
-        listed = Choices(id="scenes", markup=False)
-        listed.border_title = "Scenes, with what to watch"
-        listed.border_subtitle = "Enter starts, Esc cancels"
-        for group, scenes in GROUPS.items():
-            listed.add_option(Option(Text(group.upper(), "bold"), disabled=True))
-            for scene in scenes:
-                line = Table.grid("name", "watch", padding=(0, 2))
-                line.columns[0].width = max(map(len, SCENES))
-                line.add_row(scene.name, scene.watch)
-                listed.add_option(Option(line, scene.name))
-        current = self._current if self._current in SCENES else next(iter(SCENES))
-        listed.highlighted = listed.get_option_index(current)
-        yield listed
-
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(event.option_id)
 
 
 class CastForm(Form[Scene]):

@@ -2,11 +2,11 @@
 
 import asyncio
 import gc
-import math
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, cast
 
 from textual.app import ComposeResult
@@ -55,7 +55,6 @@ from pendu_tui.tui.words.numbers import seconds
 from pendu_tui.tui.words.plain_text import description, event_lines, numbered
 
 STALL = 1.0  # s; longer gaps between frames (Ctrl+Z, sleep, a dead line) are not simulated
-LEFT_LESSON = "T resumes the lesson; u brings back the run before it."
 
 
 class State(NamedTuple):
@@ -78,14 +77,13 @@ class LabScreen(SizedScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = KEYS
 
     shown: var[Shown] = var(Shown())
+    is_replay: var[bool] = var(False, bindings=True, toggle_class="-replay")
+    is_guided: var[bool] = var(False, toggle_class="-lesson")
     fps = FPS
     record: Callable[[Live], object] = staticmethod(lambda live: None)
     """Begins a lab's recording, after the first paint; may raise OSError or UserError."""
-    lesson: Lesson
-    """The pages that key p leads through: those of the guide, or all scenes."""
     guide: Lesson | None = None
     """The lesson that key T begins; None: the tour, which is read then."""
-    is_guided = False
 
     def __init__(
         self,
@@ -102,10 +100,13 @@ class LabScreen(SizedScreen[None]):
         self.clock = clock
         self.view = source.scene.shot.view
         self._view_in_front = create(self.view, source, shown)
-        self.lesson = Lesson("Scene", SCENES.values())
-        self.lesson.look_up(source.scene.name)
-        self._before_lesson: tuple[State, str, Lesson] | None = None
-        self._lines: list[Pane] = []
+        self._lines: tuple[Pane, ...] = (StatusLine(), SeekBar(), LessonPanel(), InsightLine())
+        for line in self._lines:
+            line.source = source
+            line.sample = source.sample
+        self.scenes = Lesson("Scene", SCENES.values())
+        self.scenes.look_up(source.scene.name)
+        self._before_lesson: tuple[State, str]
         self._frames = 0
         self._is_late = False  # whether the next frame must show everything
         self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
@@ -114,31 +115,22 @@ class LabScreen(SizedScreen[None]):
     # What is on the screen
 
     def compose(self) -> ComposeResult:
-        yield self._line(StatusLine())
+        status, *below = self._lines
+        yield status
         with Box(id="views"):
             yield self._view_in_front
         yield TooSmall()
-        yield self._line(SeekBar())
-        yield LessonPanel()
-        yield self._line(InsightLine())
+        yield from below
         yield KeyLine()
-
-    def _line(self, line: Pane) -> Pane:
-        """Register a line; it is refreshed five times a second."""
-        self._lines.append(line)
-        line.source = self.source
-        line.sample = self.source.sample
-        return line
 
     def _enter(self, source: Source) -> None:
         """Show another source."""
         self.source = source
-        self.set_class(isinstance(source, Replay), "-replay")
+        self.is_replay = isinstance(source, Replay)
         for view in self.query(View):
             view.enter(source)
         for line in self._lines:
             line.source = source
-        self.refresh_bindings()
 
     def watch_shown(self) -> None:
         if self.is_mounted:  # commands set it earlier
@@ -152,15 +144,15 @@ class LabScreen(SizedScreen[None]):
             case "lesson_forward" | "lesson_back":
                 return self.is_guided
             case "live":
-                return isinstance(self.source, Replay)
+                return self.is_replay
             case "mark":
-                return isinstance(self.source, Live)
+                return not self.is_replay
         return super().check_action(action, parameters)
 
     # Frames, from the clock to the panes
 
     def on_mount(self) -> None:
-        self.set_class(isinstance(self.source, Replay), "-replay")
+        self._enter(self.source)
         self.frame_timer = self.set_interval(1 / self.fps, self.frame, pause=True)
         self.call_after_refresh(self.begin)
 
@@ -188,10 +180,7 @@ class LabScreen(SizedScreen[None]):
         if playhead.seen is not None and (stands_still or now - playhead.seen > STALL):
             playhead.seen = now
         before = self.source.sample
-        stood_still = self.source.failure is not None
         sample = self.source.tick(now)
-        if self.source.failure and not stood_still:
-            self.warn(f"{self.source.failure} The run stands still; space tries again.")
         if isinstance(self.source, Live):
             self._pause_where_due(self.source, before)
         if is_writing(self.app):
@@ -205,10 +194,10 @@ class LabScreen(SizedScreen[None]):
     def _pause_where_due(self, live: Live, before: Sample) -> None:
         """Pause at the moment of a page, and where reversed time is back at 0."""
         if self.lesson.follow(live, before):
-            self._show_lesson()
+            self.show_now()
         returned = live.history.returned
         is_new = returned is not None and before.step < returned.step == live.sample.step
-        if returned and is_new and not live.playhead.paused and not live.is_marked:
+        if is_new and not live.playhead.paused and not live.is_marked:
             live.pause(True)
             live.mark("Back at the start")
             self.show_now()
@@ -220,22 +209,13 @@ class LabScreen(SizedScreen[None]):
             self._follow(self.source.sample)
 
     def _follow(self, sample: Sample, read: bool = True) -> None:
-        if self.shown.held is not None:
-            sample = self._held_sample(sample, self.shown.held)
+        if (theta := self.shown.held) is not None:
+            held = [each._replace(theta=theta, omega=0.0) for each in sample.readings]
+            sample = sample._replace(readings=tuple(held))
         self._view_in_front.follow(sample, self.shown, read)
         if read:
             for line in self._lines:
                 line.follow(sample, self.shown)
-            if self.is_guided:
-                self.query_one(LessonPanel).draw()
-
-    def _held_sample(self, sample: Sample, theta: float) -> Sample:
-        """Return the angle at which the user holds the pendulums; meanwhile there is no run."""
-        held = [
-            each._replace(theta=theta, omega=0.0, energy_error=math.nan, max_energy_error=math.nan)
-            for each in sample.readings
-        ]
-        return sample._replace(readings=tuple(held))
 
     def warn(self, text: str) -> None:
         self.notify(text, severity="warning", timeout=15)
@@ -269,7 +249,7 @@ class LabScreen(SizedScreen[None]):
             self.notify(f"That event belongs to run {run}; replay the recording to see it.")
 
     def action_speed(self, doublings: int) -> None:
-        self.keep(self.state)
+        self._undo.append(self.state)
         self.source.set_speed(doubled(self.source.playhead.speed, doublings))
         self.show_now()
 
@@ -299,7 +279,7 @@ class LabScreen(SizedScreen[None]):
             except (InputError, OwnMethodError, RecordingError, UserError, OSError) as error:
                 self.warn(str(explained(error)))
                 return False
-            self.keep(before)
+            self._undo.append(before)
             if live is not self.source:
                 self._go_live(live, before.source.sample.t)
         self.show_now()
@@ -312,12 +292,10 @@ class LabScreen(SizedScreen[None]):
             return source
         assert isinstance(source, Replay)
         source.pause(True)
-        if not source.fill():
-            self.notify("Loading earlier samples ...", timeout=2)
+        if not source.fill() or source.sample.step > 100_000:  # takes more than 0.25 s
+            self.notify(f"Simulating {source.sample.step} steps ...", timeout=2)
         while not source.fill():
             await asyncio.sleep(0)
-        if source.sample.step > 100_000:  # takes more than 0.25 s
-            self.notify(f"Simulating {source.sample.step} steps ...", timeout=2)
         if has_own(source.scene):
             return source.live()  # not in a thread, where it could not be interrupted
         return await asyncio.to_thread(source.live)
@@ -330,11 +308,12 @@ class LabScreen(SizedScreen[None]):
             where = f"recorded as {live.recorder.path}"
         self.notify(f"Live from {seconds(t)} on, {where}; u leads back to the replay.", timeout=8)
 
-    async def start(self, scene: Scene, speed: float | None = None) -> None:
-        speed = speed or self.source.playhead.speed
-        if await self.change(lambda live: live.start(scene)):
-            self.source.set_speed(abs(speed))
-            self.shown = self.shown._replace(theta=scene.shot.theta, line=scene.shot.line)
+    async def start(self, scene: Scene) -> bool:
+        """Begin a run; return whether that was possible."""
+        if not await self.change(lambda live: live.start(scene)):
+            return False
+        self.shown = self.shown._replace(theta=scene.shot.theta, line=scene.shot.line)
+        return True
 
     async def set_h(self, stepping: Stepping) -> None:
         if await self.change(lambda live: live.change(stepping)):
@@ -360,84 +339,34 @@ class LabScreen(SizedScreen[None]):
 
     async def action_reverse(self) -> None:
         """Reverse time in a lab; play a replay backwards."""
-        if isinstance(self.source, Live):
-            await self.set_h(self.source.stepping.reversed())
-        else:
+        if self.is_replay:
             self.source.set_speed(-self.source.playhead.speed)
             self.show_now()
+        else:
+            await self.set_h(self.source.stepping.reversed())
 
     async def action_equal_cost(self) -> None:
         await self.set_h(self.source.stepping.toggled())
+
+    # Scenes and lessons
+
+    @property
+    def lesson(self) -> Lesson:
+        """The pages that key p leads through: those of the guide, or all scenes."""
+        if self.guide is not None and self.is_guided:
+            return self.guide
+        return self.scenes
 
     async def action_next_scene(self) -> None:
         await self._turn_to((self.lesson.index + 1) % len(self.lesson.pages))
 
     async def action_start_scene(self, name: str) -> None:
-        pages = self.lesson.pages
-        names = [page.name for page in pages]
+        names = [page.name for page in self.lesson.pages]
         if name in names:
             await self._turn_to(names.index(name))
-            return
-        scene = SCENES[name]
-        await self.start(scene, scene.speed)
-        self._show_shot(scene)
-
-    # Forms, imported when they are needed
-
-    def _ask(self, form: ModalScreen[Any], use: Callable[[Any], object]) -> None:
-        """Open a form over the lab, and use its answer unless it is cancelled.
-
-        The answer comes by callback: a worker waiting for it would hang when the app ends.
-        """
-
-        def answered(answer: Any) -> None:
-            if answer is not None:
-                self.call_next(use, answer)
-
-        self.app.push_screen(form, answered)
-
-    def action_find(self) -> None:
-        from pendu_tui.tui.screens.dialogs import Finder, entries
-
-        pages = {page.name: page for page in self.lesson.pages}
-        found = entries({**SCENES, **pages}.values(), self.active_bindings.values())
-        self._ask(Finder(found), self.run_action)
-
-    def action_scenes(self) -> None:
-        from pendu_tui.tui.screens.dialogs import SceneList
-
-        self._ask(SceneList(self.source.scene.name), self.action_start_scene)
-
-    def action_start_values(self) -> None:
-        from pendu_tui.tui.screens.dialogs import StartForm
-
-        self._ask(StartForm(self._scene_now()), self.start)
-
-    def action_methods(self) -> None:
-        from pendu_tui.tui.screens.dialogs import CastForm
-
-        self._ask(CastForm(self._scene_now()), self.start)
-
-    def _scene_now(self) -> Scene:
-        return self.source.scene.altered(h=self.source.stepping.smallest)
-
-    # Lessons
-
-    async def action_lesson(self) -> None:
-        """Begin or resume the lesson, or leave it."""
-        if self.is_guided:
-            self._leave_lesson(LEFT_LESSON)
-            return
-        before = (self.state, self.view, self.lesson)
-        self.guide = self.guide or tour()
-        self.lesson = self.guide
-        if await self._turn_to(self.lesson.index):
-            self._before_lesson = before
-            self.is_guided = True
-            self.add_class("-lesson")
-            self._show_lesson()
-        else:
-            self.lesson = before[2]
+        elif await self.start(scene := SCENES[name]):
+            self.source.set_speed(scene.speed)
+            self._show_shot(scene)
 
     async def _turn_to(self, index: int) -> bool:
         """Begin a page; return whether that was possible."""
@@ -445,6 +374,20 @@ class LabScreen(SizedScreen[None]):
             self._show_shot(self.lesson.page)
             return True
         return False
+
+    def _show_shot(self, scene: Scene) -> None:
+        self.shown = self.shown.through(scene, scene.shot)
+        self.call_next(self.action_view, scene.shot.view)
+
+    async def action_lesson(self) -> None:
+        """Begin or resume the lesson, or leave it."""
+        if self.is_guided:
+            self._leave_lesson()
+            return
+        self._before_lesson = (self.state, self.view)
+        self.guide = self.guide or tour()
+        self.is_guided = True
+        self.is_guided = await self._turn_to(self.guide.index)
 
     async def action_lesson_forward(self) -> None:
         """Go to the moment, the answer, or the next page."""
@@ -462,54 +405,76 @@ class LabScreen(SizedScreen[None]):
             self._leave_lesson("That was the last page. T begins again.")
         elif (self.lesson.index, self.source.sample.run) != before:
             self._show_shot(self.lesson.page)
-        self._show_lesson()
+
+    def _leave_lesson(
+        self, notice: str = "T resumes the lesson; u brings back the run before it."
+    ) -> None:
+        before, view = self._before_lesson
+        self.is_guided = False
+        self._undo.append(before)
+        self.shown = before.shown
+        self.source.set_speed(abs(before.speed))
+        self.source.pause(False)
+        self.call_next(self.action_view, view)
+        self.notify(notice, timeout=6)
+
+    def action_back(self) -> None:
+        """Leave the lesson, else the zoom of the chart."""
+        if self.is_guided:
+            self._leave_lesson()
+        elif self.shown.stretch:
+            self.change_shown(self.shown.zoomed(None))
 
     def action_show(self, number: int) -> None:
         """Answer the lesson's question, or show or hide a method.
 
         In a lesson the keys of the answers hide no method.
         """
-        answers = len(self.lesson.shot.answers)
-        if not self.is_guided or number >= answers:
-            cast = self.source.scene.cast
-            self.change_shown(self.shown.toggled(number, cast))
+        if not self.is_guided or number >= len(self.lesson.shot.answers):
+            self.change_shown(self.shown.toggled(number, self.source.scene.cast))
         elif self.lesson.stage == "asked":
             self.lesson.answer(number + 1)
-            self._show_lesson()
+            self.show_now()
 
-    def action_back(self) -> None:
-        """Leave the lesson, else the zoom of the chart."""
-        if self.is_guided:
-            self._leave_lesson(LEFT_LESSON)
-        elif self.shown.stretch:
-            self.change_shown(self.shown.zoomed(None))
+    # Forms, imported when they are needed
 
-    def _leave_lesson(self, notice: str) -> None:
-        assert self._before_lesson is not None
-        before, view, self.lesson = self._before_lesson
-        self.is_guided = False
-        self.remove_class("-lesson")
-        self.keep(before)
-        self.shown = before.shown
-        self.source.set_speed(abs(before.speed))
-        self.source.pause(False)
-        self.call_next(self.action_view, view)
-        self.notify(notice, timeout=6)
-        self._show_lesson()
+    def _ask(self, form: ModalScreen[Any], use: Callable[[Any], object]) -> None:
+        """Open a form over the lab, and use its answer unless it is cancelled.
 
-    def _show_shot(self, scene: Scene) -> None:
-        self.shown = self.shown.through(scene, scene.shot)
-        self.call_next(self.action_view, scene.shot.view)
+        The answer comes by callback: a worker waiting for it would hang when the app ends.
+        """
 
-    def _show_lesson(self) -> None:
-        self.show_now()
-        self.refresh_bindings()
+        def answered(answer: Any) -> None:
+            if answer is not None:
+                self.call_next(use, answer)
+
+        self.app.push_screen(form, answered)
+
+    def action_find(self, typed: str = "") -> None:
+        from pendu_tui.tui.screens.dialogs import Finder, entries
+
+        pages = {page.name: page for page in self.lesson.pages}
+        found = entries({**SCENES, **pages}.values(), self.active_bindings.values())
+        self._ask(Finder(found, typed), self.run_action)
+
+    def action_start_values(self) -> None:
+        from pendu_tui.tui.screens.dialogs import StartForm
+
+        self._ask(StartForm(self._scene_now()), self.start)
+
+    def action_methods(self) -> None:
+        from pendu_tui.tui.screens.dialogs import CastForm
+
+        self._ask(CastForm(self._scene_now()), self.start)
+
+    def _scene_now(self) -> Scene:
+        return self.source.scene.altered(h=self.source.stepping.smallest)
 
     # Settings
 
     def change_shown(self, shown: Shown) -> None:
         if shown != self.shown:
-            self.keep(self.state)
+            self._undo.append(self.state)
             self.shown = shown
 
     def action_switch(self, name: str) -> None:
@@ -549,9 +514,6 @@ class LabScreen(SizedScreen[None]):
         speed = source.playhead.speed
         return State(source, source.stepping, speed, self.shown, source.run_state)
 
-    def keep(self, state: State) -> None:
-        self._undo.append(state)
-
     def action_undo(self) -> None:
         if not self._undo:
             return
@@ -571,8 +533,7 @@ class LabScreen(SizedScreen[None]):
         self.source.set_speed(state.speed)
         self.shown = state.shown
         self.show_now()
-        now = f"{self.source.scene.name}, h {self.source.stepping.h:.4g} s"
-        self.notify(f"{notice}: {now}, {self.source.playhead.speed:.4g}×", timeout=3)
+        self.notify(notice, timeout=3)
 
     # Views, texts and files
 
@@ -589,30 +550,28 @@ class LabScreen(SizedScreen[None]):
         self.refresh_bindings()
         self.show_now()
 
-    def show_text(self, title: str, *paragraphs: str) -> None:
+    def _show_text(self, title: str, lines: Iterable[str]) -> None:
         from pendu_tui.tui.screens.dialogs import TextScreen
 
-        self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
+        self.app.push_screen(TextScreen(title, "\n".join(lines)))
 
     def action_help(self) -> None:
         from pendu_tui.tui.screens.dialogs import help_text
 
-        panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
-        owners: list[type[Widget]] = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
-        if self.view == "lab":
-            owners.insert(0, type(self))
-        else:
-            owners.append(type(self))
-        self.show_text("Help", help_text(owners, self.source, self.app.size.width))
+        panes = [type(each) for each in self._view_in_front.query(Pane) if each.HELP]
+        owners: list[type[Widget]] = [*dict.fromkeys(panes), type(self)]
+        # the keys of the view in front come first
+        owners.sort(key=lambda each: VIEWS[self.view].title != each.BINDING_GROUP_TITLE)
+        self._show_text("Help", [help_text(owners, self.source, self.app.size.width)])
 
     def action_events(self) -> None:
-        self.show_text("Events", *numbered(event_lines(self.source)))
+        self._show_text("Events", numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
         titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
         panes = [Content.from_markup(title).plain for title in titles]
         on_screen = "; ".join(filter(None, [VIEWS[self.view].title, *panes]))
-        self.show_text("In words", *description(self.source), f"On screen: {on_screen}.")
+        self._show_text("In words", [*description(self.source), f"On screen: {on_screen}."])
 
     def action_screenshot(self) -> None:
         self._save("Screenshot", lambda folder: self.app.save_screenshot(path=str(folder)))
@@ -621,14 +580,19 @@ class LabScreen(SizedScreen[None]):
         """Save what is on the screen as a scene file, which a lesson may begin with."""
         from pendu_tui.tui.cli.scene import scene_text
 
-        def save(folder: Any) -> Any:
+        scene = self.source.scene
+        stepping = self.source.stepping
+        shot = self.shown.shot(scene, self.view, stepping.equal_cost)
+        text = scene_text(replace(scene, h=stepping.smallest, shot=shot))
+
+        def save(folder: Path) -> Path:
             path = files.free_path(folder / "scene.toml")
-            path.write_text(scene_text(self._seen()), encoding="utf-8")
+            path.write_text(text, encoding="utf-8")
             return path
 
         self._save("Scene", save)
 
-    def _save(self, what: str, save: Callable[[Any], object]) -> None:
+    def _save(self, what: str, save: Callable[[Path], object]) -> None:
         """Save a file in the folder of recordings, and say where it is or why it is not."""
         try:
             folder = files.folder()
@@ -636,10 +600,3 @@ class LabScreen(SizedScreen[None]):
             self.notify(f"Saved {save(folder)}", timeout=15)
         except OSError as error:
             self.warn(f"{what} not saved: {explained(error)}")
-
-    def _seen(self) -> Scene:
-        """Return the scene with the current step, and a shot of what is shown."""
-        scene = self.source.scene
-        stepping = self.source.stepping
-        shot = self.shown.shot(scene, self.view, stepping.equal_cost)
-        return replace(scene, h=stepping.smallest, shot=shot)

@@ -1,9 +1,10 @@
 """The lines around a view: status, seek bar, lesson, insight, keys, "Terminal too small"."""
 
+import math
 import re
 import textwrap
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -14,19 +15,20 @@ from textual.app import App
 from textual.binding import ActiveBinding, Binding
 from textual.screen import Screen, ScreenResultType
 
-from pendu_tui.engine.methods import Cast
+from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, WARN, Picture, Row
+from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, WARN, Ink, Picture, Row
 from pendu_tui.tui.playback.lesson import ASTRAY
+from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.insight import insight, painted
 from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
 
-BADGE = -10
-"""The ink of LIVE, REPLAY and a lesson's titles."""
+BADGE = Style(bold=True)
+"""LIVE, REPLAY and a lesson's titles."""
 
 
 class SizedScreen(Screen[ScreenResultType]):
@@ -40,51 +42,50 @@ class SizedScreen(Screen[ScreenResultType]):
             event.prevent_default()
 
 
-class Badged(CellWidget):
-    """A widget in which the ink BADGE stands out."""
-
-    def style_of(self, ink: int, base: Style) -> Style:
-        if ink == BADGE:
-            return super().style_of(QUIET, base) + Style(reverse=True, bold=True)
-        return super().style_of(ink, base)
-
-
 class Segment(NamedTuple):
-    """A part of the status line; where there is no room, the lowest priority goes first."""
+    """A part of the status line; where there is no room, the highest priority is kept."""
 
     priority: int
     text: str
-    style: int = TEXT
+    ink: int = TEXT
 
 
-class StatusLine(Pane, Badged):
+class StatusLine(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
-        return Picture([status_row(source, self.room.width)])
+        stands_still = self.app.screen is not self.screen  # below a dialog
+        return Picture([status_row(source, self.shown, self.room.width, stands_still)])
 
 
-def status_row(source: Source, width: int) -> Row:
+def status_row(source: Source, shown: Shown, width: int, stands_still: bool = False) -> Row:
     badge = f" {source.kind} "
     scene = source.scene
     parts = [
-        *_time(source),
-        *_stepping(source),
+        *_time(source, shown, stands_still),
+        *_stepping(source, shown),
         Segment(6 if scene.watch else 3, f"scene {scene.name}", QUIET),
         Segment(5, start(scene.theta, scene.omega)),
         *_recording(source),
     ]
-    while parts and sum(cell_len(part.text) + 2 for part in parts) > width - len(badge):
-        parts.remove(min(parts))
-    row: list[tuple[str, int]] = [(badge, BADGE)]
-    for part in parts:
-        row += [("  ", TEXT), (part.text, part.style)]
+    room = width - len(badge)
+    kept = []
+    for part in sorted(parts, reverse=True):
+        needed = 2 + cell_len(part.text)
+        if needed <= room:
+            kept.append(part)
+            room -= needed
+    row: list[tuple[str, Ink]] = [(badge, BADGE)]
+    for part in filter(kept.__contains__, parts):
+        row += [("  ", TEXT), (part.text, part.ink)]
     return row
 
 
-def _time(source: Source) -> Iterator[Segment]:
+def _time(source: Source, shown: Shown, stands_still: bool) -> Iterator[Segment]:
     playhead = source.playhead
     if source.failure:
         yield Segment(12, "stands still", WARN)
-    elif playhead.paused:
+    elif shown.held is not None:
+        yield Segment(12, "held   ")
+    elif playhead.paused or stands_still:
         yield Segment(12, "paused ")
     elif source.stepping.h < 0:
         yield Segment(12, "backwards")
@@ -97,23 +98,22 @@ def _time(source: Source) -> Iterator[Segment]:
     yield Segment(11, f"t {seconds(source.sample.t)}")
 
 
-def _stepping(source: Source) -> Iterator[Segment]:
+def _stepping(source: Source, shown: Shown) -> Iterator[Segment]:
     stepping = source.stepping
     fastest = source.scene.equations.fastest
     h = f"h {stepping.h:.4g} s"
-    z = f"z {abs(stepping.h) * fastest:.3g}"
     if stepping.equal_cost:
         h += " equal cost"
     yield Segment(11, h)
-    if warning := limit_warning(source.scene.cast, [abs(h) * fastest for h in stepping.own]):
-        yield Segment(10, z, WARN)
-        yield Segment(9, warning, WARN)
-    else:
-        yield Segment(10, z)
+    yield Segment(10, f"z {abs(stepping.h) * fastest:.3g}")
+    cast = source.scene.cast
+    zs = {cast[place]: abs(stepping.own[place]) * fastest for place in shown.places(cast)}
+    if warning := limit_warning(zs):
+        yield Segment(9, warning)
     # with a second or more from step to step, the lab would seem to stand still
     is_slow = abs(stepping.h / source.playhead.speed) >= 1.0
     if is_slow and not source.playhead.paused and source.next_step is not None:
-        yield Segment(9, f"next step in {about(int(max(source.next_step, 0.0)))}")
+        yield Segment(9, f"next step in {max(math.ceil(source.next_step), 1)} s")
 
 
 def _recording(source: Source) -> Iterator[Segment]:
@@ -138,20 +138,19 @@ def speed_text(speed: float) -> str:
     return f"{factor(speed)}×"
 
 
-def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
+def limit_warning(zs: Mapping[Method, float]) -> str:
     """Return "unstable: e, s v (z > 2), r (z > 2.83)", or "" below all limits.
 
-    `zs` belong to the cast.  Explicit Euler, which is never stable, is named only beside others.
+    Explicit Euler, which is never stable, is named only beside others.
     """
     letters: dict[float, list[str]] = {}
-    for method, z in zip(cast, zs, strict=True):
-        if method.linear_limit and method.linear_limit < z:
+    for method, z in zs.items():
+        if method.linear_limit is not None and method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
-    if not letters:
+    beyond = [f"{' '.join(each)} (z > {limit:.3g})" for limit, each in letters.items() if limit]
+    if not beyond:
         return ""
-    always = [method.letter for method in cast if method.linear_limit == 0.0]
-    beyond = [f"{' '.join(each)} (z > {limit:.3g})" for limit, each in letters.items()]
-    return f"unstable: {', '.join([*always, *beyond])}"
+    return f"unstable: {', '.join([*letters.get(0.0, ()), *beyond])}"
 
 
 class InsightLine(Pane):
@@ -169,64 +168,52 @@ class InsightLine(Pane):
         elif status is not None and status.failed:
             text = f"Not recording: {status.failed}"
             ink = WARN
-        lines = []
+        rows = []
         if watch and height > 1:
-            lines = [(line, TEXT) for line in wrapped(watch, width - 2, self.cast, 1)]
+            rows = text_rows(watch, TEXT, self.cast, width, 1)
             height -= 1
-        if text != watch or not lines:
-            lines += [(line, ink) for line in wrapped(text, width - 2, self.cast, height)]
-        return Picture([[(" ", each), *painted(line, self.cast, each)] for line, each in lines])
+        if text != watch or not rows:
+            rows += text_rows(text, ink, self.cast, width, height)
+        return Picture(rows)
 
 
-def wrapped(text: str, width: int, cast: Cast, height: int | None = None) -> list[str]:
-    """Return the text on lines, at most `height`, the last one cut off with an ellipsis.
+def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = None) -> list[Row]:
+    """Return the text on rows, at most `height`, the last one cut off with an ellipsis.
 
-    No line ends within the name of a method, or between an answer and its number.
+    No row ends within the name of a method, or between an answer and its number.
     """
     whole = "|".join([r"\d: ", *(method.label for method in cast)])
     glued = re.sub(whole, lambda found: found[0].replace(" ", "\xa0"), text)
-    lines = textwrap.wrap(glued, max(width, 2), max_lines=height, placeholder=" …")
-    return [line.replace("\xa0", " ") for line in lines]
+    lines = textwrap.wrap(glued, max(width - 2, 2), max_lines=height, placeholder=" …")
+    return [[(" ", ink), *painted(line.replace("\xa0", " "), cast, ink)] for line in lines]
 
 
-FORWARD = {
-    "watching": "enter to the moment",
-    "told": "enter go on",
-    "asked": "{answers} answer  enter the truth",
-    "answered": "enter go on",
-}
-
-
-class LessonPanel(Badged):
+class LessonPanel(Pane):
     """The lesson's text, in place of the insight line; a click goes forward."""
 
-    def draw(self) -> None:
-        """Show title and keys, then the sentences; where room is short, the last ones."""
-        screen: Any = self.screen
-        if not self.drawable or not screen.is_guided:
-            return
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        """Return title and keys, then the sentences; where room is short, the last ones."""
         width, height = self.room
+        screen: Any = self.screen
         lesson = screen.lesson
-        title = f" {lesson.title} "
         text = lesson.text
-        forward = FORWARD[lesson.stage]
-        if lesson.stage == "watching" and lesson.shot.moment is None:
-            forward = "enter go on"
-        if lesson.is_astray(screen.source):
+        forward = "enter go on"
+        if lesson.is_astray(source):
             text = (ASTRAY,)
             forward = "enter again"
-        numbers = range(1, len(lesson.shot.answers) + 1)
-        forward = forward.format(answers=" ".join(map(str, numbers)))
+        elif lesson.stage == "asked":
+            numbers = range(1, len(lesson.shot.answers) + 1)
+            forward = f"{' '.join(map(str, numbers))} answer  enter the truth"
+        elif lesson.stage == "watching" and lesson.shot.moment is not None:
+            forward = "enter to the moment"
+        title = f" {lesson.title} "
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):
             keys = keys.rpartition("  ")[0]
-        cast = screen.source.scene.cast
-        *others, last = [wrapped(each, width - 2, cast) for each in text]
-        lines = [(line, EXACT) for sentence in others for line in sentence]
-        lines += [(line, TEXT) for line in last]
-        head = [(title, BADGE), ("  ", TEXT), (keys, EXACT)]
-        below = [[(" ", ink), *painted(line, cast, ink)] for line, ink in lines[-(height - 1) :]]
-        self.show(Picture([head, *below]))
+        *others, last = text
+        rows = [row for each in others for row in text_rows(each, EXACT, self.cast, width)]
+        rows += text_rows(last, TEXT, self.cast, width)
+        return Picture([[(title, BADGE), ("  ", TEXT), (keys, EXACT)], *rows[-(height - 1) :]])
 
     def on_click(self) -> None:
         self.app.simulate_key("enter")

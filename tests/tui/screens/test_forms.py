@@ -12,10 +12,11 @@ from tests.tui.harness import lab
 async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("i", *"115deg", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
+        await theatre.press("b", "i", *"115deg", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
         await theatre.pilot.pause()
         scene = theatre.source.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
+        assert theatre.source.stepping.h == 0.01  # a new run is no reversed one
         assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
 
 
@@ -44,37 +45,29 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
-async def test_methods_are_taken_in_the_order_that_is_chosen_and_a_new_run_is_no_reversed_one():
-    async with lab() as theatre:
-        await theatre.press("b", "i", "enter")
-        await theatre.pilot.pause()
-        assert (theatre.source.stepping.h, theatre.source.sample.run) == (0.05, 2)
-        await theatre.press(
-            "M", *["space", "down", "down", "space", "end", "up", "space", "home", "space", "enter"]
-        )
-        await theatre.pilot.pause()
-        letters = [method.letter for method in theatre.source.scene.cast]
-        assert (letters[:2], letters[-1], len(letters)) == (["s", "r"], "e", 4)
-
-
-async def test_a_click_takes_a_method_and_more_than_fit_or_none_are_refused():
+async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen():
     async with lab(size=(100, 40)) as theatre:
         await theatre.press("M")
         form = theatre.app.screen
-        for row in range(4, 9):
+        known = [*METHODS]
+
+        async def click(row):
             await theatre.pilot.click("#cast", offset=(10, row + 1))
             await theatre.pilot.pause()
-        assert len(form.cast) == MAX_METHODS
-        for row, method in enumerate(METHODS[:10]):
-            if method in form.cast:
-                await theatre.pilot.click("#cast", offset=(10, row + 1))
-                await theatre.pilot.pause()
+
+        for row in range(4, 9):
+            await click(row)
+        assert len(form.cast) == MAX_METHODS  # no more than fit
+        for row in range(10):
+            if known[row] in form.cast:
+                await click(row)
         assert not form.cast
         await theatre.press("enter")
-        assert theatre.app.screen is form
-        await theatre.press("escape")
+        assert theatre.app.screen is form  # not without a method
+        await click(3)
+        await theatre.press("home", "space", "down", "space", "space", "enter")
         await theatre.pilot.pause()
-        assert theatre.source.scene.cast == USUAL_CAST
+        assert theatre.source.scene.cast == (known[3], known[0])
 
 
 async def test_a_form_that_is_cancelled_changes_nothing_and_with_reduced_motion_none_blinks():
@@ -87,3 +80,4 @@ async def test_a_form_that_is_cancelled_changes_nothing_and_with_reduced_motion_
             await theatre.pilot.pause()
         assert theatre.app.screen is theatre.stage
         assert (theatre.source.scene, theatre.source.sample.run) == (DEFAULT_SCENE, 1)
+        assert theatre.source.scene.cast == USUAL_CAST

@@ -52,7 +52,7 @@ def scenes(model: str) -> st.SearchStrategy[Scene]:
 
 def on_screen(live) -> str:
     """The text of the lab's lines, tables and charts, and its sentences."""
-    pictures = [Picture([status_row(live, 120), *table(live, live.sample, Shown(), 120)])]
+    pictures = [Picture([status_row(live, Shown(), 120), *table(live, live.sample, Shown(), 120)])]
     for quantity, log in product(quantities(live.scene), (True, False)):
         shown = Shown(quantity=quantity, log=log)
         chart = time_chart(live.history.window(), live.scene.cast, shown, 60, 14)
