@@ -1,0 +1,321 @@
+"""Measure what the cards of methods say besides their fields."""
+
+import math
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+from statistics import fmean
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendu_tui.engine.methods import (
+    EXPLICIT_EULER,
+    METHODS,
+    RK4,
+    TAYLOR_20,
+    VELOCITY_VERLET,
+    method_of,
+)
+from pendu_tui.engine.methods.learned import (
+    FAMILY,
+    LEARNED_SYMPLECTIC_MAP,
+    RK4_LEARNED_HAMILTONIAN,
+    learned_field,
+    learned_hamiltonian,
+    stored,
+)
+from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET
+from pendu_tui.engine.methods.splitting import FAMILY as SPLITTINGS
+from pendu_tui.engine.methods.splitting import FOREST_RUTH, composition, splitting
+from pendu_tui.engine.methods.verlet import (
+    HALVING_RICHARDSON,
+    HALVING_VERLET,
+    VERLET_COMPENSATED,
+    Compensated,
+    Float32,
+)
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.models.damped import DampedPendulum
+from pendu_tui.engine.models.spring import Spring
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled, count_evaluations
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.tangent import jacobian
+from pendu_tui.engine.scenes import Scene
+from tests.bench import learn
+
+PENDULUM = Pendulum(9.81)
+FORCE = PENDULUM.force()
+
+
+def by_key(value):
+    return getattr(value, "key", str(value))
+
+
+@pytest.mark.parametrize("phases", [splitting((0.5, 0.5), (1.0,)), composition(1.0)])
+def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit(phases):
+    start = FORCE, (2.0, 0.3), 0.05
+    verlets = islice(VELOCITY_VERLET.phases(*start), 1000)
+    assert list(islice(phases(*start), 1000)) == list(verlets)
+
+
+@cache
+def largest_energy_error(method, h, time=60.0):
+    start = PENDULUM.energy()((1.0, 0.0))
+    loops = PlainLoops(method, PENDULUM)
+    _, _, _, low, high = loops.advance((1.0, 0.0), h, round(time / h), math.inf)
+    return max(high - start, start - low) / start
+
+
+def test_forest_ruth_has_the_weaknesses_on_its_card():
+    limits = [method.linear_limit for method in METHODS if method.linear_limit]
+    assert FOREST_RUTH.linear_limit == min(limits)
+    same_cost = Stepping(0.15, equal_cost=True, cast=(FOREST_RUTH, VELOCITY_VERLET)).own
+    ours, verlets = map(largest_energy_error, (FOREST_RUTH, VELOCITY_VERLET), same_cost)
+    assert 0.6 < ours / verlets < 1
+    places = []
+    FOREST_RUTH.step(lambda theta: places.append(theta) or 0.0, (0.0, 1.0), 1.0)
+    assert places[2] - places[1] == pytest.approx(-1.7, abs=0.01)
+
+
+@pytest.mark.parametrize("method", [VELOCITY_VERLET, *SPLITTINGS], ids=by_key)
+def test_a_splittings_energy_does_not_drift(method):
+    h = method.linear_limit / 4 / math.sqrt(9.81)
+    early, late = (largest_energy_error(method, h, steps * h) for steps in (2_000, 20_000))
+    assert late == pytest.approx(early, rel=0.01)
+
+
+EXACT = [PENDULUM.exact(2.0, 0.0).at(t + 1.0).theta for t in range(100)]
+
+
+def reaches(key, target, cost):
+    """Whether so many evaluations follow a swing from 2 rad for 100 s, compared at 100 times."""
+    method = method_of(key)
+    every = cost // method.force_evaluations // 100
+    run = islice(method.phases(FORCE, (2.0, 0.0), 1 / every), every - 1, None, every)
+    return all(abs(theta - right) <= target for right, (theta, _) in zip(EXACT, run, strict=False))
+
+
+@pytest.mark.parametrize(
+    ("key", "target", "cost"),
+    [
+        ("blanes_moan_4", 1e-3, 3000),
+        ("blanes_moan_4", 1e-6, 7800),
+        ("blanes_moan_4", 1e-9, 36_000),
+        ("blanes_moan_6", 1e-9, 26_400),
+        ("yoshida_6", 1e-3, 7700),
+        ("yoshida_6", 1e-6, 23_800),
+        ("rk4", 1e-3, 15_600),
+        ("rk4", 1e-6, 59_000),
+        ("rk4", 1e-9, 190_000),
+    ],
+)
+def test_accuracy_costs_as_much_as_the_cards_say(key, target, cost):
+    assert reaches(key, target, cost)
+    assert not reaches(key, target, round(0.93 * cost))
+
+
+@pytest.mark.parametrize(
+    ("scene", "steps", "most"),
+    [  # measured 2.6e-7, 2.7e-14; 6.3e-13; 2.6e-8
+        (Scene(theta=2.0), 80, 1e-6),
+        (Scene(theta=2.0), 200, 1e-12),
+        (Scene(theta=0.0, omega=8.0), 400, 1e-12),
+        (Scene(theta=math.radians(179.9)), 200, 1e-6),  # as its last digit allows
+    ],
+)
+def test_taylors_series_follows_a_swing_of_20_s_in_few_steps(scene, steps, most):
+    exact = scene.exact()
+    phases = TAYLOR_20.on(scene.equations)((scene.theta, scene.omega), 20.0 / steps)
+    states = enumerate(islice(phases, steps), 1)
+    largest = max(abs(theta - exact.at(n * 20.0 / steps).theta) for n, (theta, _) in states)
+    assert most / 1e5 < largest < most
+
+
+def test_the_energy_of_taylors_series_walks_at_random_and_does_not_drift():
+    ends = []
+    energy = PENDULUM.energy()
+    for n in range(20):
+        start = (0.2 + 0.14 * n, 0.3 * (n % 3))
+        end = PlainLoops(TAYLOR_20, PENDULUM).propagate(start, 0.1, 1000)
+        ends.append(energy(end) / energy(start) - 1)
+        assert abs(ends[-1]) < 3e-14  # 1000 steps: four times the 7e-15 of one rounding a step
+    # a drift would have one sign; of twenty random walks the mean is 0.22 rms, give or take
+    assert abs(fmean(ends)) < 0.5 * math.sqrt(fmean(end * end for end in ends))
+
+
+@pytest.mark.skipif(not available(), reason="Numba is not installed")
+def test_taylors_series_has_the_same_bits_when_compiled():
+    ends = [
+        loops(TAYLOR_20, PENDULUM).propagate((2.0, 0.5), 0.1, 100)
+        for loops in (compiled, PlainLoops)
+    ]
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=by_key)
+@given(theta=st.floats(-1e9, 1e9), omega=st.floats(-1e9, 1e9), h=st.floats(-100, 100))
+def test_where_nothing_looks_accurate_a_step_still_ends(method, theta, omega, h):
+    count = 0
+
+    def counted(theta):
+        nonlocal count
+        count += 1
+        return FORCE(theta)
+
+    assert all(map(math.isfinite, method.step(counted, (theta, omega), h)))
+    assert count <= 6 * (2**11 - 1)
+
+
+@pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=by_key)
+def test_a_minute_of_step_doubling_takes_the_claimed_evaluations(method):
+    counted = count_evaluations(method, PENDULUM, (2.0, 0.0), 0.2, 300)
+    assert counted / 300 == pytest.approx(method.force_evaluations, abs=0.5)
+    assert count_evaluations(method, PENDULUM, (0.1, 0.0), 0.05, 10) == 60  # undivided
+
+
+def log_energy_error(method, evaluations):
+    """The largest |ln(E/E_true)| of a minute from 2 rad, for so many force evaluations."""
+    model, h = DampedPendulum(9.81, 0.05), 60 * method.force_evaluations / evaluations
+    reference, energy = model.reference(2.0, 0.0), model.energy()
+    phases = enumerate(islice(method.on(model)((2.0, 0.0), h), round(60 / h)), 1)
+    return max(abs(reference.error(energy(phase), n * h)) for n, phase in phases)
+
+
+def test_conformal_verlet_is_cheaper_at_one_percent_and_rk4_at_a_thousandth():
+    verlet, rk4 = (
+        [log_energy_error(method, n) for n in (1440, 5760)] for method in (CONFORMAL_VERLET, RK4)
+    )
+    assert verlet[0] < 1e-2 < rk4[0]
+    assert rk4[1] < 1e-4 < 1e-3 / 4 < verlet[1]
+
+
+@pytest.mark.parametrize(("share", "gains"), [(0.95, False), (1.05, True)])
+def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(share, gains):
+    model, h = DampedPendulum(9.81, 0.2), share * 0.2 / 9.81
+    end = PlainLoops(EXPLICIT_EULER, model).propagate((0.1, 0.0), h, round(200 / h))
+    assert (model.energy()(end) > model.energy()((0.1, 0.0))) == gains
+
+
+@pytest.mark.parametrize(
+    ("method", "off"),
+    [(CONFORMAL_VERLET, 0.0), (RK4, 5e-8), (LAGGED_VERLET, -2.5e-5), (EXPLICIT_EULER, 1.3e-2)],
+    ids=by_key,
+)
+def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method, off):
+    determinant = jacobian(method, DampedPendulum(9.81, 0.2), 1.0, 1.0, 0.05).determinant
+    assert determinant / math.exp(-0.2 * 0.05) - 1 == pytest.approx(off, rel=0.1, abs=1e-14)
+
+
+ordinary = st.floats(-1e15, 1e15).filter(lambda x: x == 0 or abs(x) > 1e-15)
+
+
+@given(a=ordinary, b=ordinary)
+def test_a_number_of_32_bits_is_numpys_float32(a, b):
+    x, y = np.float32(a), np.float32(b)
+    assert Float32(a) == x
+    assert Float32(a) + Float32(b) == x + y
+    assert Float32(a) * Float32(b) == x * y
+    assert isinstance(a * Float32(b), Float32)
+    with pytest.raises(OverflowError):
+        Float32(1e39)
+
+
+@given(increments=st.lists(st.floats(-1, 1), max_size=50))
+def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments):
+    total, exact = Compensated(1e6), Fraction(10**6)
+    for increment in increments:
+        total, exact = total + increment, exact + Fraction(increment)
+    off = Fraction(float(total)) + Fraction(total.compensation) - exact
+    assert abs(off) <= len(increments) * 2.0**-53  # each half a unit in the last place of 1
+    assert abs(total.compensation) <= math.ulp(1e6) / 2
+
+
+def test_a_compensation_goes_on_where_a_run_is_continued():
+    propagate = PlainLoops(VERLET_COMPENSATED, PENDULUM).propagate
+    whole = propagate((1.0, 0.0), 0.01, 2000)
+    assert propagate(propagate((1.0, 0.0), 0.01, 1000), 0.01, 1000) == whole
+
+
+def test_imex_euler_is_stable_at_any_stiffness_and_stops_the_swing_too():
+    stiffest, stiff = Spring(9.81, 1e14), Spring(9.81, 2500.0)
+    z, w = PlainLoops(IMEX_EULER, stiffest).propagate(stiffest.start(1.0, 0.0), 0.02, 1500)
+    assert z == pytest.approx(-1j, abs=0.02)
+    assert abs(w) < 0.2
+    phases = islice(IMEX_EULER.on(stiff)(stiff.start(1.0, 0.0), 0.02), 500)
+    left = [stiff.energy()(phase) / stiff.reference(1.0, 0.0).start for phase in phases]
+    assert (left[49], left[499]) == pytest.approx((0.52, 0.065), abs=0.01)  # after 1 and 10 s
+
+
+def rows(name):
+    return np.array([[float(x) for x in row.split(",")] for row in stored()[name].split()])
+
+
+@pytest.mark.slow
+def test_the_learned_numbers_are_those_that_the_script_learns():
+    """But for the last digits, which depend on the library behind NumPy."""
+    weights, biases, theta, omega, energy = learn.learned(learn.SEED)
+    found = (np.column_stack((weights, biases)), np.column_stack((theta, omega)), energy[:, None])
+    plain, (kick, drift) = learn.learned_maps(learn.SEED)
+    for name, expected in zip(stored(), (*found, plain, kick.T, drift.T), strict=True):
+        assert rows(name) == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
+
+
+def test_both_learned_fields_are_about_as_far_from_the_true_one():
+    states, rates = learn.measurements(np.random.default_rng(7), 500, 0.0)
+    for field in (learned_field(9.81), learned_hamiltonian(9.81)):
+        found = np.array([field((theta, PENDULUM.w0 * omega)) for theta, omega in states])
+        error = math.sqrt(((found / (PENDULUM.w0, 9.81) - rates) ** 2).mean() / (rates**2).mean())
+        assert 0.005 < error < 0.008  # .0064 and .0062, of measurements with 2 % noise
+
+
+def true_energy_errors(method, start):
+    """The largest relative errors of the true energy in 50 s and in 100 s, w0 h being 0.1."""
+    energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
+    _, phase, _, low, high = advance((start, 0.0), 0.032, 1562, math.inf)
+    _, _, _, lowest, highest = advance(phase, 0.032, 1563, math.inf)
+    early = max(high / energy - 1, 1 - low / energy)
+    return early, max(early, highest / energy - 1, 1 - lowest / energy)
+
+
+@pytest.mark.parametrize(
+    ("start", "figures"),
+    [
+        (0.2, (8.4, 0.12, 8.7, 0.030)),
+        (1.0, (0.36, 0.012, 0.35, 0.0059)),
+        (1.5, (0.60, 0.0056, 0.61, 0.0039)),
+        (2.0, (0.15, 0.0033, 0.17, 0.0032)),
+    ],
+)
+def test_learned_energy_errors_are_those_of_the_cards_and_bounded_by_structure(start, figures):
+    errors = {method: true_energy_errors(method, start) for method in FAMILY}
+    assert [late for _, late in errors.values()] == pytest.approx(figures, rel=0.1)
+    for method, (early, late) in errors.items():
+        if method in (RK4_LEARNED_HAMILTONIAN, LEARNED_SYMPLECTIC_MAP):
+            assert late == pytest.approx(early, rel=0.005)
+        else:
+            assert late > 1.1 * early
+
+
+def test_rk4_loses_little_of_the_learned_hamiltonian():
+    def energy(phase):  # over w0²
+        theta, omega = phase
+        a, b, c = rows("FEATURES").T
+        return rows("HAMILTONIAN")[:, 0] @ np.tanh(a * theta + b / PENDULUM.w0 * omega + c)
+
+    start = energy((1.5, 0.0))
+    end = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).propagate((1.5, 0.0), 0.032, 3125)
+    share = (energy(end) - start) / (start - energy((0.0, 0.0)))
+    assert share / 100 == pytest.approx(-2.5e-7, rel=0.05)  # 1/s
+
+
+@pytest.mark.parametrize("method", FAMILY, ids=by_key)
+def test_what_was_learned_holds_for_any_length_and_gravity(method):
+    """In units of w0 the motion is the same: here on the Moon."""
+    moon = Pendulum(1.62)
+    share = PENDULUM.w0 / moon.w0
+    theta, omega = PlainLoops(method, PENDULUM).propagate((1.0, 0.5 * PENDULUM.w0), 0.02, 100)
+    on_moon = PlainLoops(method, moon).propagate((1.0, 0.5 * moon.w0), 0.02 * share, 100)
+    assert on_moon == pytest.approx((theta, omega / share), rel=1e-9)
