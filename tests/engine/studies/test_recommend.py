@@ -36,8 +36,8 @@ def largest_error(scene, point, kind):
 @pytest.mark.parametrize(
     ("name", "time", "target", "kind"),
     [
-        ("large-swing", 10.0, 1e-5, "theta"),
-        ("large-swing", 10.0, 1e-5, "final"),
+        ("large-swing", 3.0, 1e-5, "theta"),
+        ("drift", 3.0, 1e-5, "final"),
         ("spin", 3.0, 1e-2, "energy"),
     ],
 )
@@ -53,48 +53,6 @@ def test_a_target_near_the_rounding_floor_is_reached():
     point = recommended(DRIFT, 20.0, "theta", 2e-13)
     assert point.method is R
     assert point.theta_error <= 2e-13
-
-
-def test_an_error_that_still_falls_with_the_order_is_not_rounding():
-    study = Study(SCENES["gentle"], 20.0, LOOPS)
-    falls, stays = (study.run(R, 2**power) for power in (17, 19))
-    assert study.may_be_rounding(falls)
-    assert (falls.flaws.theta, stays.flaws.theta) == (None, "rounding")
-
-
-def test_if_no_method_reaches_the_target_each_has_its_reason():
-    attempts = list(reach(Study(DRIFT, 2.0, LOOPS), "theta", 1e-17, 400_000))
-    reasons = {attempt.method: attempt.why_not for attempt in attempts}
-    assert reasons[R].startswith("rounding stops it at ")
-    assert reasons[V].startswith("needs about ")
-    (euler,) = reach(Study(replace(DRIFT, cast=(E,)), 10.0), "theta", 1e-3, 1000)
-    assert euler.why_not == "not within 1000 evaluations"
-
-
-@pytest.mark.slow
-def test_each_method_has_its_own_h_and_its_cost_in_that_of_the_cheapest():
-    study = Study(with_all_methods(DRIFT), 20.0, LOOPS)
-    best, *others = least_cost(study, "theta", 1e-6).attempts
-    assert (best.method.key, best.times) == ("blanes_moan_6", 1)
-    for attempt in others:
-        times = attempt.point.force_evaluations / best.point.force_evaluations
-        assert attempt.times in (times, None)
-        assert times <= MAX_TIMES
-
-
-def test_a_method_that_is_given_up_needs_about_what_its_order_predicts():
-    (attempt,) = reach(Study(replace(DRIFT, cast=(V,)), 10.0, LOOPS), "theta", 1e-8, 50_000)
-    about = float(attempt.why_not.removeprefix("needs about ").removesuffix(" evaluations"))
-    needed = recommended(replace(DRIFT, cast=(V,)), 10.0, "theta", 1e-8).force_evaluations
-    assert attempt.point.force_evaluations < 50_000 < needed
-    assert about == pytest.approx(needed, rel=0.1)
-
-
-def test_an_h_that_no_lab_would_take_is_not_tried():
-    for time, most in ((1e-6, 10_000), (1e6, 10)):
-        for attempt in reach(Study(DRIFT, time), "theta", 1e-30, most):
-            usable = attempt.point is None or Z_LIMITS[0] <= attempt.point.z <= Z_LIMITS[1]
-            assert usable
 
 
 @pytest.mark.slow
@@ -116,13 +74,6 @@ def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
             steps = math.ceil(1.02 * steps)
 
 
-@pytest.mark.parametrize("kind", ["theta", "energy", "final"])
-def test_no_recommended_step_is_longer_than_half_a_swing(kind):
-    scene = DRIFT.altered(theta=0.02)
-    for attempt in least_cost(Study(scene, 100.0, LOOPS), kind, 1e-3).attempts:
-        assert not attempt.succeeded or attempt.point.z <= math.pi
-
-
 def test_a_method_far_dearer_than_another_is_given_up():
     attempts = list(reach(Study(replace(DRIFT, cast=(E, R)), 10.0, LOOPS), "theta", 3e-4))
     assert [attempt.method for attempt in attempts] == [R, E]  # the higher order first
@@ -138,3 +89,42 @@ def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
     assert (best.method, best.times, other.method) == (R, 1.0, V)
     ratio = other.point.force_evaluations / best.point.force_evaluations
     assert 1 < other.times == ratio
+
+
+def test_if_no_method_reaches_the_target_each_has_its_reason():
+    study = Study(replace(DRIFT, cast=(V, R)), 2.0, LOOPS)
+    reasons = {each.method: each.why_not for each in reach(study, "theta", 1e-17, 400_000)}
+    assert reasons[R].startswith("rounding stops it at ")
+    assert reasons[V].startswith("needs about ")
+    (euler,) = reach(Study(replace(DRIFT, cast=(E,)), 10.0), "theta", 1e-3, 1000)
+    assert euler.why_not == "not within 1000 evaluations"
+
+
+def test_a_method_that_is_given_up_needs_about_what_its_order_predicts():
+    scene = replace(DRIFT, cast=(V,))
+    (attempt,) = reach(Study(scene, 2.0, LOOPS), "theta", 1e-9, 5_000)
+    about = float(attempt.why_not.removeprefix("needs about ").removesuffix(" evaluations"))
+    needed = recommended(scene, 2.0, "theta", 1e-9).force_evaluations
+    assert attempt.point.force_evaluations < 5_000 < needed
+    assert about == pytest.approx(needed, rel=0.1)
+
+
+def test_an_error_that_still_falls_with_the_order_is_not_rounding():
+    study = Study(SCENES["gentle"], 20.0, LOOPS)
+    falls, stays = (study.run(R, 2**power) for power in (17, 19))
+    assert study.may_be_rounding(falls)
+    assert (falls.flaws.theta, stays.flaws.theta) == (None, "rounding")
+
+
+@pytest.mark.parametrize(("time", "most"), [(1e-6, 10_000), (1e6, 10)])
+def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
+    for attempt in reach(Study(DRIFT, time), "theta", 1e-30, most):
+        assert attempt.point is None or Z_LIMITS[0] <= attempt.point.z <= Z_LIMITS[1]
+
+
+@pytest.mark.parametrize("kind", ["theta", "energy"])
+def test_no_recommended_step_is_longer_than_half_a_swing(kind):
+    scene = replace(DRIFT, theta=0.02, cast=(V, R))
+    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, 1e-2).attempts:
+        assert attempt.succeeded
+        assert attempt.point.z <= math.pi

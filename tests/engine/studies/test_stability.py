@@ -1,0 +1,367 @@
+"""Which swings a method holds: swing by swing, as grids, by theory, and where there is chaos."""
+
+import math
+from dataclasses import replace
+from itertools import islice, pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendu_tui.engine.methods import (
+    EXPLICIT_EULER,
+    FAMILIES,
+    GENERAL,
+    RK4,
+    SYMPLECTIC_EULER,
+    USUAL_CAST,
+    VELOCITY_VERLET,
+    method_of,
+)
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run.loops import available
+from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.studies.ensemble import Watched, compiled, plain
+from pendu_tui.engine.studies.stability import (
+    BAND,
+    ELSEWHERE,
+    FATES,
+    GREENE_Z,
+    GROWS,
+    HELD,
+    HOLDS,
+    PARKED,
+    UNKNOWN,
+    Grid,
+    amplification,
+    amplitude,
+    first_failure,
+    is_chaotic,
+    is_lost,
+    ladder_of,
+    map_of,
+    outcomes,
+    parting,
+    pieces,
+    wobble,
+)
+
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
+each_way = pytest.mark.parametrize(
+    "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
+)
+SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
+each_symplectic = pytest.mark.parametrize("method", SYMPLECTIC, ids=lambda method: method.key)
+UNIT = Pendulum(1.0)  # so that h is z
+THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
+
+
+def watched(band=math.inf):
+    start = UNIT.energy(np.sin)((THETA, OMEGA))
+    band, top, off, worst = (np.full_like(start, value) for value in (band, math.pi, 0.0, 0.0))
+    return Watched(start, band, top, off, worst, np.abs(THETA))
+
+
+def stops(method, seen, steps, fast):
+    watch = (compiled if fast else plain)(method, UNIT)
+    return watch((THETA, OMEGA), np.full(37, 0.2), seen, steps)
+
+
+def path(method, steps):
+    """The phases after each step, (steps, 2, swings)."""
+    phases = method.phases(UNIT.force(np.sin), (THETA, OMEGA), 0.2)
+    return np.array([*islice(phases, steps)])
+
+
+WAYS = [(method, False) for method in GENERAL]
+# compiling takes a second a method: the two that have other phases to compile
+WAYS += [
+    pytest.param(family[0], True, marks=needs_numba)
+    for family in (FAMILIES["splitting"], FAMILIES["implicit"])
+]
+
+
+@pytest.mark.parametrize(("method", "fast"), WAYS, ids=lambda value: getattr(value, "key", value))
+def test_each_swing_is_the_methods_and_its_extremes_are_kept(method, fast):
+    seen, points = watched(), path(method, 10)
+    ((done, phase),) = stops(method, seen, 10, fast)
+    assert done == 10
+    off = UNIT.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
+    width = np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0))
+    found = np.array([*phase, seen.off, seen.worst, seen.width])
+    last = [*points[-1], off[-1], np.abs(off).max(axis=0), width]
+    assert found == pytest.approx(np.array(last), rel=0, abs=1e-13)  # rounding
+
+
+@each_way
+def test_it_stops_at_the_steps_that_pass_the_top_or_leave_the_band(fast):
+    over = np.abs(path(EXPLICIT_EULER, 100)[:, 0]) > math.pi
+    seen, found = watched(), []
+    for done, (theta, _) in stops(EXPLICIT_EULER, seen, 100, fast):
+        found.append(done)
+        seen.top[np.abs(theta) > seen.top] = math.inf
+    assert found == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
+    seen = watched(0.1)
+    done, _ = next(stops(EXPLICIT_EULER, seen, 100, fast))
+    assert 0 < done < found[0]
+    assert (seen.worst > 0.1).any()
+
+
+@needs_numba
+def test_compiled_steps_are_freed():
+    """Numba 0.68 keeps all that a compiled generator yields: 4 pages a step of these."""
+    resource = pytest.importorskip("resource", reason="no count of page faults")
+    start, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
+    numbers = [np.full(1024, value) for value in (0.5, math.inf, math.inf, 0.0, 0.0, 0.0)]
+    watch = compiled(EXPLICIT_EULER, UNIT)
+    next(watch(start, h, Watched(*numbers), 1000))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    next(watch(start, h, Watched(*numbers), 4000))
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 4000
+
+
+@given(
+    st.sampled_from(GENERAL),
+    st.lists(st.tuples(st.floats(0.01, 3.14), st.floats(0.01, 3.5)), min_size=1, max_size=30),
+    st.integers(1, 60),
+)
+def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, steps):
+    # NumPy's sine, not libm's: an ulp would be chaos later
+    force, value = UNIT.force(np.sin), UNIT.energy(np.sin)
+    cells = outcomes(method, *np.array(swings).T, steps)
+    for cell, (theta, z) in zip(cells, swings, strict=True):
+        start = value((theta, 0.0))
+        lowest, highest, _ = wobble(method, z)
+        survived, worst, expected = 0, 0.0, "holds"
+        for phase in islice(method.phases(force, (np.array([theta]), np.zeros(1)), z), steps):
+            now = float(value(phase)[0])
+            worst = max(worst, abs(now - start) / start)
+            if abs(phase[0]) > math.pi:
+                expected = "over the top"
+            elif not method.symplectic and now > (1 + BAND) * highest * start:
+                expected = "grows"
+            elif not method.symplectic and now < (1 - BAND) * lowest * start:
+                expected = "loses"
+            if expected != "holds":
+                break
+            survived += 1
+        if method.symplectic and expected == "holds":
+            assert FATES[cell["fate"]] in ("chaotic", *(FATES[fate] for fate in HELD))
+        else:
+            assert FATES[cell["fate"]] == expected
+        assert (cell["steps"], cell["error"]) == (survived, worst)
+
+
+def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch):
+    """Numba never frees what a generator holds that has not ended."""
+    begun = []
+
+    def counting(method, model):
+        watch = plain(method, model)
+        return lambda phase, h, *others: begun.append(len(h)) or watch(phase, h, *others)
+
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.plain", counting)
+    cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
+    assert len(np.unique(cells["steps"])) > 200
+    assert begun[0] == 500
+    assert all(after < (1 - PARKED) * before for before, after in pairwise(begun))
+
+
+@pytest.mark.parametrize("method", USUAL_CAST[1:], ids=lambda method: method.key)
+def test_small_swings_are_held_below_the_linear_limit_and_no_longer_there(method):
+    # RK4's growth sets in slowly above its limit, and its decay below is no failure in 60 steps.
+    ladder, steps, fate = np.linspace(1.9, 3, 111), 500, ELSEWHERE
+    if not method.symplectic:
+        steps, fate = 60, GROWS
+    cells = outcomes(method, np.full(111, 0.05), ladder, steps)
+    first = ladder[np.flatnonzero(cells["fate"] == fate)[0]]
+    assert method.linear_limit <= first < method.linear_limit + 0.05
+    if method.symplectic:
+        small = np.linspace(0.05, 0.6, 12)
+        assert not is_lost(outcomes(method, np.full(12, 2.8), small, 2000)).any()
+
+
+@pytest.mark.parametrize(
+    ("theta", "z", "steps", "expected"),
+    [
+        (0.5, 1.3, 2000, "holds"),
+        (0.5, 1.43, 2000, "holds, wobbling"),  # beside z = 2 sin(pi/4) 10 % wider, and back
+        (0.5, 1.6, 2000, "holds"),
+        (0.518, 2.092, 2000, "holds elsewhere"),  # beyond its linear limit, as in the scene
+    ],
+)
+def test_velocity_verlet_wobbles_at_a_resonance_and_is_held_elsewhere_beyond_its_limit(
+    theta, z, steps, expected
+):
+    cells = outcomes(VELOCITY_VERLET, np.array([theta]), np.array([z]), steps)
+    assert FATES[cells["fate"][0]] == expected
+
+
+@pytest.mark.parametrize(
+    ("key", "theta", "expected", "reason", "steps"),
+    [
+        ("explicit_euler", 1.0, 0.0071, "grows", 10_000),
+        ("explicit_euler", 2.0, 0.0103, "over the top", 10_000),
+        ("symplectic_euler", 1.0, 1.64, "over the top", 10_000),
+        ("velocity_verlet", 0.7, 2.19, "chaotic", 10_000),
+        ("velocity_verlet", 2.0, 1.38, "over the top", 100),
+        ("velocity_verlet", 2.0, 1.23, "over the top", 10_000),  # more steps find lower limits
+        ("velocity_verlet", 3.0, 0.66, "over the top", 10_000),
+        ("rk4", 1.0, 0.437, "loses", 10_000),
+    ],
+)
+def test_methods_fail_each_in_its_way(key, theta, expected, reason, steps):
+    ladder = expected * np.linspace(0.8, 1.05, 51)
+    cells = outcomes(method_of(key), np.full(51, theta), ladder, steps)
+    failure = first_failure(ladder, cells)
+    assert failure.reason == reason
+    assert failure.z == pytest.approx(expected, rel=0.012)
+    assert failure.steps == cells["steps"][ladder == failure.z]
+
+
+GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2:])
+MAP = map_of(Scene(), None, None, 10_000)
+
+
+@each_way
+@pytest.mark.parametrize("width", [5, None])
+def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width, fast):
+    grid = replace(GRID, fast=fast)
+    whole = grid.unknown()
+    assert (whole["fate"] == UNKNOWN).all()
+    for part in grid.parts(width):
+        whole[part.z, part.method] = part.cells()
+    assert len(grid.parts(width)) == 2 * -(-13 // (width or 13))
+    assert whole.tobytes() == grid.cells().tobytes()
+    assert whole.shape == GRID.shape == (13, 2, 7)  # z, method, amplitude
+    assert 0 < (whole["fate"] == HOLDS).sum() < whole.size
+    assert whole[4, 0, 5] == outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200, fast)[0]
+
+
+@needs_numba
+def test_a_large_map_is_compiled_but_not_a_small_one_or_one_in_pieces():
+    for grid, fast in ((MAP, True), (GRID, False), (replace(GRID, fast=True), True)):
+        assert {part.grid.compiled for part in grid.parts()} == {fast} == {grid.compiled}
+    piece = next(pieces(MAP, [50]))
+    alone = replace(MAP, z=MAP.z[piece.part.z], methods=USUAL_CAST[:1], steps=50, fast=False)
+    assert piece.cells.tobytes() == alone.cells()[:, 0].tobytes()
+
+
+@pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
+def test_the_default_map_reaches_beyond_every_limit(cast):
+    grid = map_of(Scene(cast=cast), None, None, 100)
+    assert grid.shape == (200, len(cast), 100)
+    limits = [method.linear_limit for method in cast if method.linear_limit < np.inf]
+    assert max(limits) < grid.z[-1] < 3.5
+    assert grid.z[-1] == pytest.approx(3.5 if max(limits) > 3 else 3.0, abs=0.01)
+    assert 0 < grid.theta[0] < grid.theta[-1] < np.pi
+
+
+@pytest.mark.parametrize(
+    ("theta", "omega", "expected"),
+    [
+        (-0.7, 0.0, 0.7),
+        (0.0, 2 * Scene().w0 * math.sin(0.6), 1.2),
+        (0.0, 1.999 * Scene().w0, 3.0784),  # 2 asin(0.9995)
+        (0.0, 2.001 * Scene().w0, None),
+        (0.0, 0.0, None),
+    ],
+)
+def test_an_amplitude_is_that_of_the_exact_swing(theta, omega, expected):
+    assert amplitude(Scene(theta=theta, omega=omega)) == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_ladder_has_the_scenes_own_step_and_amplitude():
+    own = ladder_of(Scene(theta=1.02, h=0.123), None, None, 100)
+    assert own.theta.tolist() == [0.1, 0.5, 1.0, 1.02, 2.0, 3.0]
+    assert Scene(h=0.123).z in own.z
+    near = ladder_of(Scene(theta=1.005), None, [0.1, 0.2], 100)
+    assert near.theta.tolist() == [0.1, 0.5, 1.005, 2.0, 3.0]
+    assert near.z.tolist() == sorted([0.1, 0.2, Scene().z])
+
+
+def on_the_unit_circle_below_two(z):
+    return 1.0 if z <= 2 else z**2 / 2 - 1 + z * math.sqrt(z**2 / 4 - 1)
+
+
+@given(z=st.floats(1e-6, 3).filter(lambda z: abs(z - 2) > 1e-3))
+def test_the_amplification_is_the_textbooks(z):
+    # At z = 2 two multipliers meet and rounding shows as its square root; 1e-3 away it is below 1e-13.
+    for method, radius in (
+        (EXPLICIT_EULER, math.sqrt(1 + z**2)),
+        (RK4, math.sqrt(1 - z**6 / 72 + z**8 / 576)),
+        *((method, on_the_unit_circle_below_two(z)) for method in SYMPLECTIC),
+    ):
+        assert amplification(method, z) == pytest.approx(radius, rel=1e-12)
+
+
+@given(z=st.floats(0.05, 1.9), beyond=st.floats(2.001, 1000))
+def test_the_wobble_has_a_closed_form_and_none_without_an_ellipse(z, beyond):
+    assert wobble(VELOCITY_VERLET, z) == pytest.approx((1 - z**2 / 4, 1, 1), rel=1e-12)
+    expected = (1 / (1 + z / 2), 1 / (1 - z / 2), 1 / math.sqrt(1 - z**2 / 4))
+    assert wobble(SYMPLECTIC_EULER, z) == pytest.approx(expected, rel=1e-12)
+    for method in (EXPLICIT_EULER, RK4):
+        assert wobble(method, z)[:2] == pytest.approx((1.0, 1.0), abs=1e-9)
+    for method in SYMPLECTIC:
+        assert wobble(method, beyond) == (0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize("z", [0.3, 1.9])  # no short cycles
+def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z):
+    phases = islice(SYMPLECTIC_EULER.phases(np.negative, (1.0, 0.0), z), 2000)
+    theta, omega = np.array([(1.0, 0.0), *phases]).T
+    energies = theta**2 + omega**2
+    found = (energies.min(), energies.max(), np.abs(theta).max())
+    assert found == pytest.approx(wobble(SYMPLECTIC_EULER, z), rel=0.01)
+
+
+def largest_omega(scene, method, steps, enough=math.inf):
+    """Largest |omega|·h on the way, up to the first that is `enough`."""
+    phases = method.phases(scene.equations.force(), (scene.theta, scene.omega), scene.h)
+    largest = 0.0
+    for _, omega in islice(phases, steps):
+        largest = max(largest, abs(omega) * scene.h)
+        if largest >= enough:
+            break
+    return largest
+
+
+@given(st.floats(-50, 50), st.floats(-50, 50), st.floats(0.01, 10))
+def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(theta, p, z):
+    new_p = p - z**2 * math.sin(theta)
+    new_theta, new_omega = SYMPLECTIC_EULER.step(UNIT.force(), (theta, p / z), z)
+    # Both sides round a handful of sums of numbers up to 150; 1e-12 is some thirty ulp of them.
+    assert new_omega * z == pytest.approx(new_p, abs=1e-12)
+    assert new_theta == pytest.approx(theta + new_p, abs=1e-12)
+
+
+@each_symplectic
+def test_chaos_fenced_stays_below_pi_over_h_and_chaos_loose_does_not(method):
+    fenced, loose = SCENES["chaos-fenced"], SCENES["chaos-loose"]
+    assert (fenced.z**2, loose.z**2) == pytest.approx((0.95, 1.1), rel=1e-12)
+    assert fenced.z < GREENE_Z < loose.z
+    assert is_chaotic(method, fenced.theta, fenced.z)
+    # A million steps reach 0.91 pi and 0.79 pi; the fence is an invariant curve.
+    assert largest_omega(fenced, method, 100_000) < math.pi
+    # It takes 14 000 and 33 000 steps here; other roundings of sin give other orbits.
+    assert largest_omega(loose, method, 1_000_000, enough=2 * math.pi) >= 2 * math.pi
+
+
+@each_symplectic
+def test_far_above_the_threshold_the_lyapunov_exponent_is_ln_half_k(method):
+    """Chirikov, Phys. Rep. 52 (1979) 263."""
+    found = parting(method, 1.0, 0.3, math.sqrt(20), 20_000) / 20_000
+    # Twenty starts were within 0.6 % of it; at K = 10 orbits still stick (1.5 %).
+    assert found == pytest.approx(math.log(10), rel=0.012)
+
+
+@pytest.mark.parametrize(
+    ("theta", "z", "chaotic"),
+    [
+        *((theta, z, False) for theta, z in ((0.5, 1.43), (1.0, 0.3), (3.0, 0.3), (0.1, 1.9))),
+        *((theta, z, True) for theta, z in ((1.0, 1.535), (2.0, 1.38), (3.0, 0.67))),
+    ],
+)
+def test_chaotic_swings_are_called_chaotic_and_regular_ones_not(theta, z, chaotic):
+    assert is_chaotic(VELOCITY_VERLET, theta, z) == chaotic
