@@ -70,13 +70,18 @@ VERDICT: Words = {"verdict": tuple(VERDICTS)}
 
 
 def parse(
-    text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST, words: Words = VERDICT
+    text: str | None,
+    fields: Sequence[str] = (),
+    cast: Cast = USUAL_CAST,
+    words: Words = VERDICT,
 ) -> Gate:
-    """Return the gate in `text` for a cast.  Raises UserError.
+    """Return the gate in `text` for a cast, which everything passes if it is None.  Raises UserError.
 
     With `fields`, comparisons name one of these, or of `words`, and no method; their values are
     under the key "".
     """
+    if text is None:
+        return lambda values: ""
     source = " ".join(text.split())
     grammar = _Grammar(fields, cast, words)
     with given_by("--fail-if"):
@@ -230,7 +235,7 @@ class Check(NamedTuple):
     failure: str  # the values that trip it, "" if it passes
 
 
-def conclude(expression: str, checks: Sequence[Check], what: str = "runs") -> Exit:
+def conclude(expression: str | None, checks: Sequence[Check], what: str = "runs") -> Exit:
     """Warn of the checks that failed, and return the exit code."""
     failed = [check for check in checks if check.failure]
     if not failed:

@@ -38,9 +38,7 @@ def methods(options: argparse.Namespace) -> int:
     if options.names:
         options.methods = ",".join((*options.names, *filter(None, [options.methods])))
     cast = cast_of(options, () if options.method else METHODS)
-    gate = None
-    if options.fail_if:
-        gate = parse(options.fail_if, MEASURED_NUMBERS, words=MEASURED_WORDS)
+    gate = parse(options.fail_if, MEASURED_NUMBERS, words=MEASURED_WORDS)
     rows = [_row(method) for method in cast]
     columns = (
         Column("method", "key"),
@@ -64,8 +62,6 @@ def methods(options: argparse.Namespace) -> int:
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
-    if gate is None:
-        return Exit.FINE
     checks = [Check(row["key"], _failure(gate, row, wrong)) for row in rows]
     return conclude(options.fail_if, checks, "methods")
 

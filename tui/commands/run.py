@@ -6,7 +6,6 @@ import time
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -16,6 +15,7 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
+from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
@@ -58,10 +58,14 @@ def run(options: argparse.Namespace) -> int:
     scenes = scenes_of(options)
     if options.time is None:
         raise UserError("--time is missing; use for example --time 60.")
-    gate = None
-    if options.fail_if is not None:
-        gate = parse(options.fail_if, cast=scenes[0].cast)
-    _check_time(max(scene.h for scene in scenes), options.time)
+    gate = parse(options.fail_if, cast=scenes[0].cast)
+    h = max(scene.h for scene in scenes)
+    if options.time > MAX_TIME:
+        raise UserError(f"--time {options.time:g} is out of range; use at most {MAX_TIME:g} s.")
+    if round(options.time / h) == 0:
+        raise UserError(
+            f"--time {options.time:g} s is shorter than one step of {h:g} s; use a longer time."
+        )
     form = check_output(options)
     if len(scenes) == 1:
         return run_one(scenes[0], options, gate)
@@ -72,21 +76,12 @@ def run(options: argparse.Namespace) -> int:
     return run_list(scenes, options, gate)
 
 
-def _check_time(h: float, seconds: float) -> None:
-    if seconds > MAX_TIME:
-        raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
-    if round(seconds / h) == 0:
-        raise UserError(
-            f"--time {seconds:g} s is shorter than one step of {h:g} s; use a longer time."
-        )
-
-
-def run_one(scene: Scene, options: Namespace, gate: Gate | None) -> Exit:
+def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     if options.record:
         check_fits(scene.cast)
         check_target(options.record, options.force)
     steps = steps_for(scene, options.time)
-    lockstep = lockstep_of(scene, steps, not options.no_compiled)
+    lockstep = lockstep_of(scene, steps, options.no_compiled)
     began = time.perf_counter()
     samples = _simulate(lockstep, options, steps)
     wall_seconds = time.perf_counter() - began
@@ -102,15 +97,15 @@ def run_one(scene: Scene, options: Namespace, gate: Gate | None) -> Exit:
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    return conclude(options.fail_if, [check_of(scene.name, rows, gate)])
+    return conclude(options.fail_if, [_check(scene.name, rows, gate)])
 
 
-def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
-    """Return the lockstep of a run, compiled if that pays."""
-    if not is_compiled:
-        return Lockstep(scene, judged=True)
-    tiered = partial(loops.TieredLoops, expected_steps=expected_steps)
-    return Lockstep(scene, loops=tiered, judged=True)
+def lockstep_of(scene: Scene, expected_steps: int, is_plain: bool) -> Lockstep:
+    """Return the lockstep of a run, compiled if that pays, unless it is to be plain."""
+    chosen: LoopsOf = partial(loops.TieredLoops, expected_steps=expected_steps)
+    if is_plain:
+        chosen = loops.PlainLoops
+    return Lockstep(scene, loops=chosen, judged=True)
 
 
 def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample]:
@@ -200,9 +195,8 @@ def _evaluations(
     return method.evaluations(steps)
 
 
-def check_of(name: str, rows: Sequence[Row], gate: Gate | None) -> Check:
-    failure = gate({row["method"]: row for row in rows}) if gate else ""
-    return Check(name, failure)
+def _check(name: str, rows: Sequence[Row], gate: Gate) -> Check:
+    return Check(name, gate({row["method"]: row for row in rows}))
 
 
 def _report(
@@ -292,34 +286,22 @@ def verdict_of(row: Row) -> str:
     return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))
 
 
-@dataclass(frozen=True, slots=True)
-class Task:
-    """One run of a list."""
-
-    scene: Scene
-    time: float  # s
-    expected_steps: int  # of all runs together, to decide whether compiling pays
-    is_compiled: bool
-
-    @property
-    def start(self) -> Row:
-        """The fields with which its rows begin."""
-        numbers = {_column(name): value for name, value in self.scene.numbers.items()}
-        return {"model": self.scene.model, **numbers, "time": self.time}
-
-    def rows(self) -> list[Row]:
-        lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
-        watchdog()  # in a worker, too
-        for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
-            last = sample
-        return [self.start | row for row in rows_of(self.scene, last, lockstep, is_whole=True)]
+def _rows_of_list(time: float, expected_steps: int, is_plain: bool, scene: Scene) -> list[Row]:
+    """Return the rows of one run of a list, which begin with its numbers; for a worker."""
+    lockstep = lockstep_of(scene, expected_steps, is_plain)
+    watchdog()  # in a worker, too
+    for sample in simulate(scene, time, None, MAX_BATCH, lockstep=lockstep):
+        last = sample
+    numbers = {_column(name): value for name, value in scene.numbers.items()}
+    start = {"model": scene.model, **numbers, "time": time}
+    return [start | row for row in rows_of(scene, last, lockstep, is_whole=True)]
 
 
 def _column(name: str) -> str:
     return f"start_{name}" if name in ("theta", "omega") else name
 
 
-def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate | None) -> Exit:
+def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate) -> Exit:
     """Run every scene and print the rows; an interrupt keeps those that are there."""
     lists = {name: _column(name) for name in NUMBERS if len(getattr(options, name) or "") > 1}
     steps = 0  # compiled loops cannot be shared by runs with other parameters
@@ -327,12 +309,12 @@ def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate | None) -> 
         steps = sum(steps_for(scene, options.time) for scene in scenes)
     kept: list[Row] = []
     checks: list[Check] = []
-    tasks = (Task(scene, options.time, steps, not options.no_compiled) for scene in scenes)
+    run = partial(_rows_of_list, options.time, steps, options.no_compiled)
     with work_of(options, "runs", len(scenes)) as work:
-        for rows in work.run(Task.rows, tasks):
+        for rows in work.run(run, scenes):
             kept += rows
             place = ", ".join(f"{name} {rows[0][column]:g}" for name, column in lists.items())
-            checks.append(check_of(place, rows, gate))
+            checks.append(_check(place, rows, gate))
             work.step()
     report = Report(
         name="runs",
