@@ -1,3 +1,5 @@
+"""--fail-if: what trips a gate, and what is none."""
+
 import math
 import operator
 import time
@@ -23,9 +25,6 @@ KEYS = [method.key for method in USUAL_CAST]
 PLAIN = [field for field in FIELDS if field != "diverged_at"]
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
-keys = st.sampled_from(KEYS)
-signs = st.sampled_from(sorted(SIGNS))
-plain_fields = st.sampled_from(PLAIN)
 
 
 def reading(**values: float | str | None) -> dict[str, dict[str, float | str | None]]:
@@ -33,7 +32,9 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
     return {key: {**dict.fromkeys(PLAIN, 0.0), "diverged_at": None, **values} for key in KEYS}
 
 
-@given(keys, plain_fields, signs, numbers, numbers)
+@given(
+    st.sampled_from(KEYS), st.sampled_from(PLAIN), st.sampled_from(sorted(SIGNS)), numbers, numbers
+)
 def test_a_comparison_is_that_of_python(key, field, sign, value, number):
     found = f"{key}.{field} is {value:.3g}" if SIGNS[sign](value, number) else ""
     assert parse(f"{key}.{field}{sign}{number!r}")(reading(**{field: value})) == found
@@ -63,20 +64,16 @@ def test_any_other_expression_is_refused_and_never_evaluated(text):
         parse(text)
 
 
-@given(plain_fields, signs)
-def test_a_failed_method_trips_every_comparison_that_names_it(field, sign):
-    values = reading()
-    values["rk4"]["diverged_at"] = 3.0
-    assert parse(f"rk4.{field} {sign} 1e9")(values) == "rk4 failed at 3"
-    assert not parse(f"velocity_verlet.{field} > 1e9")(values)
-
-
 @pytest.mark.parametrize("unknown", [None, math.nan, math.inf])
 @pytest.mark.parametrize("sign", SIGNS)
-def test_a_value_that_is_not_known_trips_the_gate(unknown, sign):
-    gate = parse(f"rk4.theta_error {sign} 0.5")
+def test_a_failed_method_and_a_value_that_is_not_known_trip_every_comparison(unknown, sign):
+    gate = parse(f"rk4.theta_error {sign} 1e9")
     assert gate(reading(theta_error=unknown))
     assert gate({})  # a method that was not run
+    values = reading()
+    values["rk4"]["diverged_at"] = 3.0
+    assert gate(values) == "rk4 failed at 3"
+    assert not parse("velocity_verlet.theta_error > 1e9")(values)
 
 
 def test_the_time_of_divergence_can_be_asked_for():
@@ -86,17 +83,15 @@ def test_the_time_of_divergence_can_be_asked_for():
     assert parse("rk4.diverged_at < 2")(diverged) == ""
 
 
-@pytest.mark.parametrize("quote", ["", " ", "'", '"'])
-@pytest.mark.parametrize("word", list(VERDICTS))
-def test_a_verdict_is_compared_with_one_of_its_words(word, quote):
-    written = f"{quote}{word}{quote}" if quote else word.replace(" ", "_")
+@pytest.mark.parametrize("word", VERDICTS)
+def test_a_verdict_is_compared_with_one_of_its_words(word):
     for verdict in VERDICTS:
         values = reading(verdict=verdict)
         trips = verdict in (word, "undecided")  # what cannot be judged passes no gate
-        assert bool(parse(f"rk4.verdict == {written}")(values)) is trips
-        assert bool(parse(f"rk4.energy > 1 or rk4.verdict!={written}")(values)) is (verdict != word)
-    assert parse(f"rk4.verdict == {written}")(reading(verdict=None))
-    assert parse(f"rk4.verdict == {written}")(reading(verdict="bounded", diverged_at=1.0))
+        assert bool(parse(f"rk4.verdict == {word}")(values)) is trips
+        assert bool(parse(f"rk4.energy > 1 or rk4.verdict!='{word}'")(values)) is (verdict != word)
+    assert parse(f"rk4.verdict == {word}")(reading(verdict=None))
+    assert parse(f"rk4.verdict == {word}")(reading(verdict="bounded", diverged_at=1.0))
 
 
 @pytest.mark.parametrize(
@@ -143,13 +138,11 @@ def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
     assert gate(values) == "rk4.max_energy_error is 0.004, rk4.verdict is loses"
 
 
-@pytest.mark.parametrize(
-    "text", [" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"]
-)
-def test_long_gates_are_refused_at_once(text):
+def test_a_gate_of_any_length_is_refused_at_once():
     began = time.process_time()
-    with pytest.raises(UserError):
-        parse(text)
+    for text in (" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"):
+        with pytest.raises(UserError):
+            parse(text)
     assert time.process_time() - began < 1
 
 
@@ -175,13 +168,10 @@ def test_a_limit_on_a_slope_is_compared_with_its_bound(expression, slope, bound,
     assert bool(failure) == bool(outcome)
 
 
-@pytest.mark.parametrize(("slope", "passes"), [(None, False), (0.0, True)])
-def test_what_cannot_be_judged_does_not_pass(slope, passes):
+def test_what_cannot_be_judged_does_not_pass_and_says_what_would_help():
     gate = parse("max_energy_error > 1", ["max_energy_error"])
-    reading = {"max_energy_error": 0.1, "verdict": "undecided", "slope": slope, "reason": "short"}
-    assert (gate({"": reading}) == "") == passes
-
-
-def test_a_slope_that_cannot_be_told_says_how_long_a_record_would():
+    row = {"max_energy_error": 0.1, "verdict": "undecided", "reason": "short"}
+    assert "short" in gate({"": row | {"slope": None}})
+    assert gate({"": row | {"slope": 0.0}}) == ""
     gate = parse("trend > 1e-5", ["trend"])
     assert "4 times as long" in gate({"": {"trend": 0.0, "bound": 8e-5}})

@@ -1,3 +1,5 @@
+"""Numbers and names of a scene from options."""
+
 import re
 
 import pytest
@@ -7,7 +9,6 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.options import values
 from pendu_tui.tui.cli.scene import scene_of
 
@@ -21,15 +22,6 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
     scene = scene_from("--scene", "spin", "--omega", "7", "--h", "0.01")
     assert (scene.name, scene.theta, scene.omega, scene.h) == ("custom", 0.0, 7.0, 0.01)
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]  # its own h
-
-
-@pytest.mark.parametrize("theta", ["170", "-170", "1e9"])
-def test_more_than_a_turn_without_a_unit_is_refused(theta, tmp_path):
-    with pytest.raises(UserError, match=re.escape(f"{theta}deg or {theta}rad?")):
-        scene_from("--theta", theta)
-    (tmp_path / "mine.toml").write_text(f"theta = {theta}", encoding="utf-8")
-    with pytest.raises(UserError, match="deg or"):
-        scene_from("--scene", str(tmp_path / "mine.toml"))
 
 
 @pytest.mark.parametrize("text", ["1:2", "2:1:3", "1:2:1"])
@@ -52,22 +44,22 @@ def test_a_negative_number_after_an_option_is_its_value(text):
 
 
 @pytest.mark.parametrize(
-    "argument", ["--h=0", "--h=-0.05", "--length=0", "--gravity=0", "--theta=inf", "--omega=nan"]
-)
-def test_a_number_out_of_range_is_refused_with_its_name(argument):
-    with pytest.raises(InputError, match=re.split("[-=]+", argument)[1]):
-        scene_from(argument)
-
-
-@pytest.mark.parametrize(
     ("argument", "words"),
     [
+        ("--h=0", "h = 0 s"),
+        ("--h=-0.05", "h = -0.05 s"),
+        ("--length=0", "length = 0"),
+        ("--gravity=0", "gravity = 0"),
+        ("--theta=inf", "theta = inf"),
+        ("--omega=nan", "omega = nan"),
+        ("--theta=-170", "-170deg or -170rad?"),
+        ("--theta=1e9", "1e9deg or 1e9rad?"),
         ("--theta=abc", "is not an angle; use for example 2 "),
         ("--h=small", "is not a time; use for example 0.05"),
         ("--omega=", "is not an angle"),
         ("--scene=near-seperatrix", "did you mean near-separatrix"),
     ],
 )
-def test_text_that_means_nothing_is_refused_with_an_example(argument, words):
-    with pytest.raises(InputError, match=words):
+def test_what_cannot_be_used_is_refused_with_its_name_and_what_to_do(argument, words):
+    with pytest.raises(InputError, match=re.escape(words)):
         scene_from(argument)

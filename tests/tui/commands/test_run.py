@@ -31,18 +31,19 @@ def test_json_has_the_numbers_of_the_engine():
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
     readings = lockstep.sample().readings
-    for row, method, reading in zip(answer["methods"], USUAL_CAST, readings, strict=True):
-        assert (row["method"], row["theta"]) == (method.key, reading.theta)
-        assert row["max_energy_error"] == reading.max_energy_error
+    found = [(row["method"], row["theta"], row["max_energy_error"]) for row in answer["methods"]]
+    assert found == [
+        (method.key, reading.theta, reading.max_energy_error)
+        for method, reading in zip(USUAL_CAST, readings, strict=True)
+    ]
 
 
 def test_a_chaotic_method_has_its_lyapunov_number():
-    chaos = ("--theta", "0.3", "--h", "0.654514", "--time", 200)
-    symplectic = rows_of(*chaos)["symplectic_euler"]
-    assert symplectic["verdict"] == "chaotic"
-    seconds = about(math.log(10) / symplectic["lyapunov_per_second"])
-    words = f"Symplectic Euler is chaotic: nearby starts separate tenfold every {seconds}.\n"
-    assert words in pendu("run", *chaos).out
+    chaos = ("--theta", "0.3", "--h", "0.654514", "--time", 200, "--methods", "symplectic_euler")
+    row = rows_of(*chaos)["symplectic_euler"]
+    assert row["verdict"] == "chaotic"
+    seconds = about(math.log(10) / row["lyapunov_per_second"])
+    assert f"nearby starts separate tenfold every {seconds}.\n" in pendu("run", *chaos).out
 
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
@@ -55,14 +56,13 @@ def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
     assert out.count("over the top") == 1
 
 
-EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=0"]
+EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=4.5", "--theta=0"]
 
 
 @pytest.mark.parametrize("start", [*(f"--scene={name}" for name in SCENES), *EXTREME])
 def test_every_scene_and_extreme_start_runs_and_prints_no_nan(start):
-    run = ("run", start, "--time", 20)
-    assert pendu(*run, "--json").json["steps"] > 0  # its parser refuses nan
-    assert not re.search(r"\b(nan|inf)\b", pendu(*run).out)
+    assert pendu("run", start, "--time", 5, "--json").json["steps"]  # its parser refuses nan
+    assert not re.search(r"\b(nan|inf)\b", pendu("run", start, "--time", 5).out)
 
 
 def test_evaluations_that_vary_are_counted():
@@ -103,17 +103,18 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--time", "1", "--h", "0"), "h"),
-        (("--time", "1", "--length", "-1"), "length"),
-        (("--time", "0.01"), "shorter than one step"),
-        (("--time", "1e10"), "out of range"),
-        (("--time", "1", "--fail-if", "rk5.theta > 1"), "rk5"),
-        ((), "--time is missing"),
-        (("--h", "0"), "h = 0 s"),
+        ("--time 1 --length -1", ["length"]),
+        ("--time 0.01", ["shorter than one step"]),
+        ("--time 2 --h 0.05,5", ["--time 2", "5 s"]),
+        ("--time 1e10", ["out of range"]),
+        ("--time 1 --fail-if rk5.theta>1", ["--fail-if", "rk5"]),
+        ("", ["--time is missing"]),
+        ("--h 0", ["h = 0 s"]),
+        ("--time 1 --theta 1,2", ["--record", "one run"]),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
-    assert pendu("run", "--record", tmp_path / "run.mcap", *arguments).refused(2, words)
+    assert pendu("run", "--record", tmp_path / "x.mcap", *arguments.split()).refused(2, *words)
     assert not list(tmp_path.iterdir())
 
 
@@ -181,17 +182,6 @@ def test_the_gate_is_that_of_every_run():
     outcome = pendu(*LIST, "--time", 20, "--fail-if", "rk4.max_energy_error > 1e-4")
     assert outcome.code == 1
     assert "in 2 of 4 runs, first at theta 0.523599, h 0.1" in outcome.err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--record", "x.mcap"), ("--record", "one run")),
-        (("--h", "0.05,5"), ("--time 2", "5 s")),
-    ],
-)
-def test_what_a_list_cannot_do_is_one_sentence(arguments, words):
-    assert pendu(*LIST, *arguments).refused(2, *words)
 
 
 ENDLESS = """\
