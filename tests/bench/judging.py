@@ -18,7 +18,6 @@ from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
-from tests.bench.truths import WINDOWS, letter, runner
 from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
 
 LIMITS = {
@@ -62,6 +61,8 @@ def truth_table(share: float) -> dict[str, Any]:
 
 def runs(share: float, seed: int = SEED) -> dict[str, Any]:
     """Return what becomes of random runs of methods that are not symplectic, at five lengths."""
+    from tests.bench.truths import WINDOWS, letter, runner  # Numba
+
     random = np.random.default_rng(seed)
     cast = [method for method in GENERAL if not method.symplectic]
     loops = {method.key: runner(method) for method in cast}

@@ -84,7 +84,7 @@ COMMANDS = (
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_name_that_no_file_can_have_is_one_sentence_and_exit_3(command):
-    assert pendu(*command.replace("FILE", 300 * "x").split()).refused(3, "xxx: ")
+    assert pendu(*command.replace("FILE", 300 * "x").split()).refused(3, "xxx")
 
 
 @pytest.mark.parametrize(
