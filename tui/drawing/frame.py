@@ -102,7 +102,8 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
         high = high + least
     power = 10.0 ** math.floor(math.log10((high - low) / rows))
     steps = [part * power for part in (1, 2, 5, 10, 20, 50, 100)]
-    sizes = sorted((step / apart, step) for step in steps for apart in range(2, 6))
+    most = 5 if rows >= 10 else 4  # or one label might stand alone
+    sizes = sorted((step / apart, step) for step in steps for apart in range(2, most + 1))
     row, step = next(
         (row, step) for row, step in sizes if round(high / row) - round(low / row) < rows
     )
