@@ -1,0 +1,59 @@
+"""What passes between Textual and the terminal."""
+
+import io
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
+from textual.color import Color
+from textual.drivers._writer_thread import WriterThread
+
+from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.terminal.driver import CharacterSetFilter, is_writing
+from pendu_tui.tui.terminal.options import CHARACTER_SETS
+
+BOLD = Style(bold=True)
+
+
+def written(text, character_set):
+    filtered = CharacterSetFilter(character_set)
+    assert filtered.enabled == (character_set != "braille")
+    (segment,) = filtered.apply([Segment(text, BOLD)], Color.parse("black"))
+    assert segment.style == BOLD
+    return segment.text
+
+
+@pytest.mark.parametrize(
+    ("character_set", "picture"),
+    [("half", ["  ▄▄▄", " █  █", " ▀▀▀▀"]), ("ascii", ["  ...", " :  :", " ''''"])],
+)
+def test_a_ring_of_braille_in_half_blocks_and_in_ascii(character_set, picture):
+    canvas = Canvas(6, 3)
+    canvas.disc(6, 6, 4, 0, hollow=True)
+    assert [written(line, character_set) for line in canvas.picture().text.split("\n")] == picture
+
+
+def test_half_blocks_change_only_braille_and_in_ascii_frames_and_words_are_read_as_before():
+    assert written("╭─ 57.3° 2× ▀█", "half") == "╭─ 57.3° 2× ▀█"
+    frame = ["╭─ h² ─╮", "│ 2×  …│", "╰──────╯"]
+    assert [written(line, "ascii") for line in frame] == ["+- h2 -+", "| 2x  .|", "+------+"]
+    assert written("Störmer, 2√2, 57°, µs", "ascii") == "Stormer, 2V2, 57o, us"
+
+
+@given(st.text(st.characters(exclude_categories=("Cc", "Cs"))), st.sampled_from(CHARACTER_SETS))
+def test_whatever_is_written_keeps_its_width_and_ascii_is_ascii(text, character_set):
+    assert cell_len(written(text, character_set)) == sum(map(cell_len, text))
+    assert character_set != "ascii" or written(text, character_set).isascii()
+
+
+def test_the_terminal_is_behind_while_textuals_queue_holds_a_frame():
+    writer = WriterThread(io.StringIO())  # it is not started, so nothing leaves the queue
+    app = SimpleNamespace(_driver=SimpleNamespace(_writer_thread=writer))
+    assert not is_writing(app)
+    writer.write("a frame")
+    assert is_writing(app)
+    assert not is_writing(SimpleNamespace(_driver=None))  # which has no such queue
