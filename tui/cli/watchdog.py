@@ -94,7 +94,8 @@ def _tell(sentence: str) -> None:
 @cache
 def watchdog() -> Watchdog:
     """Return the process's only watchdog, which has begun."""
-    signal.signal(ALARM, _interrupt)
+    with suppress(ValueError):  # another thread, of a Dask worker, which will be ended
+        signal.signal(ALARM, _interrupt)
     thread = Watchdog()
     thread.start()
     return thread
