@@ -16,7 +16,7 @@ import logging
 import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
@@ -117,7 +117,9 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
             client = stack.enter_context(_client(options.dask))
             executor = client.get_executor(pure=False)
         elif options.workers > 1:
-            executor = _processes(min(options.workers, 4 * (os.cpu_count() or 1)))
+            count = min(options.workers, 4 * (os.cpu_count() or 1))
+            ignore = (signal.SIGINT, signal.SIG_IGN)
+            executor = ProcessPoolExecutor(count, _spawning(), signal.signal, ignore)
         else:
             yield map
             return
@@ -125,8 +127,11 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
         def run(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[Any]:
             try:
                 yield from executor.map(function, list(tasks))
+            except (UserError, OwnMethodError):
+                raise
             except Exception as error:
-                raise _explained(error) from error
+                why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
+                raise UserError(f"the workers are lost ({why}).", Exit.INPUT_UNREADABLE) from error
 
         try:
             yield run
@@ -136,19 +141,6 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
             executor.shutdown(wait=not options.dask)
             raise
         executor.shutdown()
-
-
-def _explained(error: Exception) -> UserError:
-    """Return the error of a task, or of its lost worker, for the user."""
-    if isinstance(error, UserError | OwnMethodError):
-        return UserError(str(error))
-    why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
-    return UserError(f"the workers are lost ({why}).", Exit.INPUT_UNREADABLE)
-
-
-def _processes(count: int) -> Executor:
-    ignore = (signal.SIGINT, signal.SIG_IGN)
-    return ProcessPoolExecutor(count, _spawning(), signal.signal, ignore)
 
 
 def _spawning() -> SpawnContext:
