@@ -12,10 +12,10 @@ import pickle
 import re
 import signal
 import sys
-import tempfile
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -33,7 +33,6 @@ except ImportError:
     Server = object  # `run` refuses
 
 THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
-CONNECTIONS_PER_LAB = 10  # browsers open six
 FONT_SERVER = re.compile(r"<link[^>]*fonts\.googleapis[^>]*>")
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
@@ -53,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
 
     settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
     try:
-        with tempfile.TemporaryDirectory(prefix="pendu-") as private:  # mode 700
+        with TemporaryDirectory(prefix="pendu-") as private:  # mode 700
             file = Path(private, "settings")
             file.write_bytes(pickle.dumps(settings))
             asyncio.run(LabServer(file, options).run())
@@ -84,31 +83,21 @@ class LabServer(Server):  # type: ignore[misc]
         app = await self._make_app()
         app.middlewares.append(web.middleware(partial(self.check)))
         app.on_response_prepare.append(add_policy)
-        runner = web.AppRunner(app, keepalive_timeout=3.0, shutdown_timeout=1.0)  # s
-        await runner.setup()
-
-        def connect() -> Any:
-            connection = runner.server()
-            if len(runner.server.connections) >= CONNECTIONS_PER_LAB * self._max_labs:
-                loop.call_later(0, connection.force_close)
-            return connection
-
+        runner = web.AppRunner(app, shutdown_timeout=1.0)  # s
         try:
-            listener = await loop.create_server(connect, self.host, self.port)
-            self._announce(*listener.sockets[0].getsockname()[:2])
+            await runner.setup()
+            await web.TCPSite(runner, self.host, self.port).start()
+            host, port, *_ = runner.addresses[0]
+            if self.host not in THIS_COMPUTER:
+                warn(
+                    f"anyone who can reach {self.host} can open labs on this computer, without a "
+                    "password or encryption."
+                )
+            address = URL.build(scheme="http", host=host, port=port)
+            print(f"{address} serves up to {self._max_labs} labs; Ctrl+C ends it.", flush=True)
             await stop.wait()
-            listener.close()
         finally:
             await runner.cleanup()
-
-    def _announce(self, host: str, port: int) -> None:
-        if self.host not in THIS_COMPUTER:
-            warn(
-                f"anyone who can reach {self.host} can open labs on this computer, without a "
-                "password or encryption."
-            )
-        address = URL.build(scheme="http", host=host, port=port)
-        print(f"{address} serves up to {self._max_labs} labs; Ctrl+C ends it.", flush=True)
 
     async def on_startup(self, app: Any) -> None:
         """Print nothing."""

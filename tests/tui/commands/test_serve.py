@@ -129,41 +129,31 @@ async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
                     assert (page.status, "labs are in use" in await page.text()) == (503, True)
                 with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
                     await session.ws_connect(f"{server.address}/ws")
-            async with asyncio.timeout(PATIENCE):
-                while (page := await session.get(server.address)).status != 200:
-                    await asyncio.sleep(0.05)
-            assert "//fonts" not in await page.text()
+            await server.until_labs(0)
+            async with session.get(server.address) as page:
+                assert (page.status, "//fonts" in await page.text()) == (200, False)
 
 
-async def test_each_tab_records_into_the_folder_that_was_asked_for(tmp_path):
+async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_flood_of_keys(
+    tmp_path,
+):
     folder = tmp_path / "recorded"
     library = str(tmp_path / "library")
     with serving("--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=library) as server:
-        async with server.tab() as one, server.tab() as other:
+        async with server.tab((120, 40)) as one, server.tab() as other:
             await asyncio.gather(*(tab.shows("scene spin", "REC ") for tab in (one, other)))
+            for _ in range(300):
+                await one.press("v+-bpr .,")
+            one.socket._response.connection.transport.abort()
         await server.until_labs(0)
     results = [verify(path) for path in folder.iterdir()]
     assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
     assert list(tmp_path.iterdir()) == [folder]
 
 
-async def test_a_tab_that_is_cut_off_under_a_flood_of_keys_leaves_a_whole_recording(tmp_path):
-    with serving("--record", str(tmp_path)) as server:
-        async with server.tab((120, 40)) as tab:
-            await tab.shows("REC ")
-            for _ in range(300):
-                await tab.press("v+-bpr .,")
-            tab.socket._response.connection.transport.abort()
-        await server.until_labs(0)
-    (path,) = tmp_path.iterdir()
-    result = verify(path)
-    assert (path.suffix, result.complete, result.identical) == (".mcap", True, True)
-
-
 REFUSED = [
     ({"Origin": "http://elsewhere.example"}, "403"),
     ({"Origin": "chrome-extension://{host}"}, "403"),
-    ({"Origin": "null"}, "403"),
     ({"Host": "rebound.example:8000", "Origin": "http://rebound.example:8000"}, "421"),
     ({"Host": "[::1"}, "421"),
 ]
@@ -189,20 +179,6 @@ async def test_only_pages_of_this_computer_get_a_lab_and_no_page_frames_it(serve
                 policy = page.headers["Content-Security-Policy"]
                 assert "frame-ancestors 'none'" in policy
                 assert "http" not in policy  # nothing is loaded from elsewhere
-
-
-async def test_half_requests_neither_stay_nor_keep_others_out():
-    with serving("--at-most", "2") as server:
-        host, _, port = server.address.removeprefix("http://").rpartition(":")
-        halves = [await asyncio.open_connection(host, int(port)) for _ in range(60)]
-        for _, writer in halves:
-            writer.write(b"GET / HTTP/1.1\r\nHost: x\r\n")
-        async with asyncio.timeout(PATIENCE):
-            for reader, _ in halves:
-                with contextlib.suppress(ConnectionError):
-                    assert await reader.read() == b""
-        async with server.tab() as tab:
-            await tab.shows("LIVE")
 
 
 async def test_what_a_browser_makes_up_prints_nothing(tmp_path):
