@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendu_tui.engine.run import levels
-from pendu_tui.engine.run.slope import slope_of, student
+from pendu_tui.engine.run.slope import Slope, student
 from pendu_tui.engine.run.verdicts import BOUNDED, GROWS, LOSES, UNDECIDED, Judgement
 
 
@@ -22,31 +22,24 @@ class Bins(NamedTuple):
     highs: Any
     spreads: Any  # standard deviations within each
     rounding: float  # differences up to this mean nothing
-    white: float = 0.0  # the variance of the means if all samples were independent; 0 if unknown
+    white: float = 0.0  # the deviation of the means if all samples were independent; 0 if unknown
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        columns = {name: value[-count:] for name, value in self._asdict().items() if np.ndim(value)}
-        return self._replace(**columns)
+        return Bins(*(column[-count:] for column in self[:5]), *self[5:])
 
     def scaled(self, factor: float) -> "Bins":
         """Return the bins of energies multiplied by a factor."""
-        energies = self._asdict()
-        times = energies.pop("times")
-        white = energies.pop("white") * factor**2
-        scaled = {name: value * factor for name, value in energies.items()}
-        return Bins(times, **scaled, white=white)
+        return Bins(self.times, *(energies * factor for energies in self[1:]))
 
 
 class Part:
     """Some bins up to the end, and the slope of one value of each."""
 
-    def __init__(self, bins: Bins, values: Any, white: float = 0.0) -> None:
-        """`white` is as in `slope_of`."""
+    def __init__(self, bins: Bins, values: Any) -> None:
         self.bins = bins
         self.values = values
-        self.white = white
-        self.slope = slope_of(bins.times, values, bins.rounding, white)
+        self.slope = Slope(bins.times, values, bins.rounding, bins.white)
         count = len(values)
         # the middles of the bins cover one bin less
         self.length = float(bins.times[-1] - bins.times[0]) * count / (count - 1)
@@ -60,11 +53,26 @@ class Part:
     def last(self, share: float) -> "Part":
         """Return the last bins, at least 4."""
         count = max(4, round(len(self.values) * share))
-        return Part(self.bins.last(count), self.values[-count:], self.white)
+        return Part(self.bins.last(count), self.values[-count:])
 
     def exceeds(self, level: float, move: float) -> bool:
         """Return whether a move is so many standard deviations of the fluctuation."""
-        return abs(move) >= max(level * self.fluctuation, self.bins.rounding)
+        return abs(move) >= level * self.fluctuation
+
+    def described(self, verdict: str, **known: Any) -> Judgement:
+        """Return a verdict with what this part tells of the slope, and what else is known."""
+        spread = max(self.slope.uncertainty * self.length, 1e-300)
+        return Judgement(
+            verdict,
+            slope=self.slope.mean,
+            uncertainty=self.slope.uncertainty,
+            bound=self.slope.bound,
+            share=self.move / self.width,
+            is_evident=self.slope.chance < levels.EVIDENT,
+            independent=12 * (self.fluctuation / spread) ** 2,
+            fluctuation=self.fluctuation,
+            **known,
+        )
 
     def why_not_bounded(self, ahead: float = 1.0) -> str:
         """Return the reason; "" if it is bounded.
@@ -74,14 +82,14 @@ class Part:
         """
         if self._widens:
             return levels.WIDENS
-        chance = self.slope.chance
-        if chance > levels.SUSPECT and not self._ends_alike:
+        is_suspect = self.slope.chance < levels.SUSPECT
+        if not (is_suspect or self._ends_alike):
             return levels.UNLIKE_END
         limit = self.width / self.length / ahead
         if self.slope.bound > limit:
             return self._open((3 * self.slope.uncertainty / limit) ** 2)
-        suspect = ahead > 1 or self.exceeds(levels.MATERIAL, self.move)
-        if self.exceeds(levels.LARGE, self.move) or (suspect and chance < levels.SUSPECT):
+        counts = ahead > 1 or self.exceeds(levels.MATERIAL, self.move)
+        if self.exceeds(levels.LARGE, self.move) or (counts and is_suspect):
             return self._open(2.0) if is_new(self.values, self.values, self.move) else levels.TURNED
         return "" if self._ends_alike else levels.UNLIKE_END
 
@@ -118,14 +126,14 @@ def judge_bins(bins: Bins, ahead: float = 1.0) -> Judgement:
     found = _moved(whole) or _rested(whole)
     if not found:
         reason = whole.why_not_bounded(ahead)
-        found = _described(UNDECIDED if reason else BOUNDED, whole)._replace(reason=reason)
+        found = whole.described(UNDECIDED if reason else BOUNDED, reason=reason)
     return found.scaled(unit)
 
 
 def measure_bins(bins: Bins) -> Judgement:
     """Return the slope of bins with its bounds, undecided."""
     unit, whole = whole_of(bins)
-    return _described(UNDECIDED, whole).scaled(unit)
+    return whole.described(UNDECIDED).scaled(unit)
 
 
 def whole_of(bins: Bins) -> tuple[float, Part]:
@@ -136,44 +144,28 @@ def whole_of(bins: Bins) -> tuple[float, Part]:
     """
     unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
     bins = bins.scaled(1 / unit)
-    parts = (Part(bins, bins.means, bins.white), Part(bins, (bins.lows + bins.highs) / 2))
+    known = bins._replace(white=0.0)
+    parts = (Part(bins, bins.means), Part(known, (bins.lows + bins.highs) / 2))
     whole = min(parts, key=lambda part: part.slope.uncertainty)
     rest = without_wave(bins.times, whole.values)
-    return unit, whole if rest is whole.values else Part(bins, rest)
-
-
-def _described(verdict: str, part: Part) -> Judgement:
-    slope = part.slope
-    spread = max(slope.uncertainty * part.length, 1e-300)
-    return Judgement(
-        verdict,
-        slope=slope.mean,
-        uncertainty=slope.uncertainty,
-        bound=slope.bound,
-        share=part.move / part.width,
-        is_evident=slope.chance < levels.EVIDENT,
-        independent=12 * (part.fluctuation / spread) ** 2,
-        fluctuation=part.fluctuation,
-    )
+    return unit, whole if rest is whole.values else Part(known, rest)
 
 
 def _moved(whole: Part) -> Judgement | None:
     """Return the judgement if the energy moves for good, in one of the windows up to the end."""
     ranks = np.unique(whole.values, return_inverse=True)[1].astype(float)
+    ranked = Part(whole.bins._replace(rounding=1.0, white=0.0), ranks)
     for share in levels.WINDOWS:
-        part = whole.last(share)
-        if not part.exceeds(levels.MATERIAL, part.move):
-            continue
-        last_ranks = ranks[-len(part.values) :]
-        ranked = slope_of(part.bins.times, last_ranks, 1.0)
-        rises = ranked.mean * part.length
-        for slope, level, values, move in (
-            (part.slope, levels.MOVES, whole.values, part.move),
-            (ranked, levels.MOVES_BY_RANK, ranks, rises),
-        ):
-            is_certain = slope.chance < level * share and move * part.move > 0
-            if is_certain and is_new(values, values[-len(part.values) :], move):
-                return _described(GROWS if part.move > 0 else LOSES, whole)
+        last = whole.last(share)
+        for every, level in ((whole, levels.MOVES), (ranked, levels.MOVES_BY_RANK)):
+            part = every.last(share)
+            is_certain = part.slope.chance < level * share and part.move * last.move > 0
+            if (
+                last.exceeds(levels.MATERIAL, last.move)
+                and is_certain
+                and is_new(every.values, part.values, part.move)
+            ):
+                return whole.described(GROWS if last.move > 0 else LOSES)
     return None
 
 
@@ -189,14 +181,11 @@ def _rested(whole: Part) -> Judgement | None:
         low = float(part.bins.lows.min())
         high = float(part.bins.highs.max())
         is_gone = max(low, -high) > levels.GONE * max(high - low, part.bins.rounding)
-        rises = low > 0
-        if not is_gone:
-            way = _way_from_start(whole, part)
-            if not way:
-                continue
-            rises = way > 0
+        way = low + high if is_gone else _way_from_start(whole, part)
+        if not way:
+            continue
         rests = not part.why_not_bounded()
-        found = _described(GROWS if rises else LOSES, part)._replace(rests=rests)
+        found = part.described(GROWS if way > 0 else LOSES, rests=rests)
         if rests:
             return found
         if is_gone and not gone:
@@ -228,17 +217,15 @@ def growth_of(bins: Bins) -> float | None:
     if bins.lows[-1] <= 1:
         return None
     logarithms = np.log1p(np.maximum(bins.means, 0))
-    bend, way = _bend_and_way(logarithms)
-    linear_bend, linear_way = _bend_and_way(bins.means / bins.means[-1])
-    if abs(bend * linear_way) > abs(linear_bend * way):
+    if _bend(logarithms) > _bend(bins.means):
         return None
-    return way / float(bins.times[-1] - bins.times[0])
+    return float((logarithms[-1] - logarithms[0]) / (bins.times[-1] - bins.times[0]))
 
 
-def _bend_and_way(values: Any) -> tuple[float, float]:
-    first = float(values[len(values) // 2] - values[0])
-    way = float(values[-1] - values[0])
-    return way - 2 * first, way
+def _bend(values: Any) -> float:
+    """Return how far the middle is from half way, over the way."""
+    first = values[len(values) // 2] - values[0]
+    return abs(float(first / (values[-1] - values[0])) - 0.5)
 
 
 def blocks_of(values: Any, size: int) -> Any:
@@ -273,35 +260,39 @@ def without_wave(times: Any, values: Any) -> Any:
     """Return values without the wave that explains what a line leaves, or unchanged without one."""
     x = (times - times[0]) / (times[-1] - times[0])
     level = np.full_like(x, 1 / math.sqrt(len(x)))
-    line = _unit(_without(x, (level,)))
-    rest = _without(values, (level, line))
+    line = _without(x, level)
+    line = line / math.sqrt(_dot(line, line))
+
+    def rest_of(rows: Any) -> Any:
+        return _without(_without(rows, level), line)
+
+    rest = rest_of(values)
     cycles = np.arange(levels.MIN_CYCLES, len(x) / 2, 0.25)
     for steps in (np.arange(-25, 26) / 100, np.zeros(1)):
         angles = math.tau * cycles[:, None] * x
-        cosines = _unit(_without(np.cos(angles), (level, line)))
-        sines = _unit(_without(np.sin(angles), (level, line, cosines)))
-        by_cosines = (cosines * rest).sum(axis=1)
-        by_sines = (sines * rest).sum(axis=1)
-        explained = by_cosines**2 + by_sines**2
+        cosines = rest_of(np.cos(angles))
+        sines = rest_of(np.sin(angles))
+        both = _dot(cosines, sines)
+        cosine_squares = _dot(cosines, cosines)
+        sine_squares = _dot(sines, sines)
+        along = _dot(cosines, rest)
+        across = _dot(sines, rest)
+        area = cosine_squares * sine_squares - both**2
+        a = (sine_squares * along - both * across) / area
+        b = (cosine_squares * across - both * along) / area
+        explained = a * along + b * across
         best = int(np.argmax(explained))
         cycles = cycles[best] + steps
-    if explained[best] < levels.WAVE * float((rest * rest).sum()):
+    if explained[best] < levels.WAVE * _dot(rest, rest):
         return values
-    cosine = np.cos(angles[best])
-    sine = np.sin(angles[best])
-    # of the wave itself: what it has in common with a line is no part of the line
-    by_sine = by_sines[best] / float((sine * sines[best]).sum())
-    left = by_cosines[best] - by_sine * float((sine * cosines[best]).sum())
-    by_cosine = left / float((cosine * cosines[best]).sum())
-    return values - by_cosine * cosine - by_sine * sine
+    return values - a[best] * np.cos(angles[best]) - b[best] * np.sin(angles[best])
 
 
-def _without(rows: Any, basis: tuple[Any, ...]) -> Any:
-    """Return rows without what they have in common with orthonormal ones."""
-    for row in basis:
-        rows = rows - (rows * row).sum(axis=-1, keepdims=True) * row
-    return rows
+def _dot(rows: Any, others: Any) -> Any:
+    """Return the products of rows, added up in an order that is the same everywhere."""
+    return (rows * others).sum(axis=-1)
 
 
-def _unit(rows: Any) -> Any:
-    return rows / np.maximum(np.sqrt((rows * rows).sum(axis=-1, keepdims=True)), 1e-300)
+def _without(rows: Any, unit: Any) -> Any:
+    """Return rows without what they have in common with one of length 1."""
+    return rows - _dot(rows, unit)[..., None] * unit

@@ -128,7 +128,9 @@ class Bands:
 class Judge:
     """The judge of one method from a start on."""
 
-    def __init__(self, h: float, period: float, method: Method, model: Model) -> None:
+    def __init__(
+        self, h: float, period: float, method: Method, model: Model, start: LookPoint
+    ) -> None:
         """`h` [s] is the method's step; `period` [s] as in `stride`."""
         self.judgement = Judgement()
         self.peak = 0.0  # the largest |error| of all steps so far
@@ -136,11 +138,11 @@ class Judge:
         self._period = period
         self._method = method
         self._model = model
-        self._start_error = 0.0  # at the first look point; bands are relative to it
-        self._last: LookPoint | None = None
+        self._start_error = start.error  # bands are relative to it
+        self._last = start
         self._judged = 0  # the step of the last judgement
         self._bands = Bands()
-        self._left = ""  # the word of an earlier judgement that it leaves
+        self._left = ""  # the word of the first judgement that it leaves
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
         self._may_beat = fastest_turn < levels.MIN_STEPS_A_TURN * self._h
@@ -157,19 +159,13 @@ class Judge:
 
     def look(self, point: LookPoint) -> None:
         """Take in the next look point; one step in eight or fewer brings a new judgement."""
-        if self._last is None:
-            self._last = point
-            self._start_error = point.error
-            return
         if self._is_rounded(point):
             return
         if self._orbit:
             self._orbit.look(self._last, point)
-        step = (self._last.step + point.step) / 2
-        start = self._start_error
-        low = point.low - start
-        high = point.high - start
-        each = _Bin(1, step, (low + high) / 2, low, high)
+        low = point.low - self._start_error
+        high = point.high - self._start_error
+        each = _Bin(1, (self._last.step + point.step) / 2, (low + high) / 2, low, high)
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
         is_full = self._bands.add(each) and len(self._bands.bins) >= levels.MIN_BINS
@@ -180,12 +176,16 @@ class Judge:
         self._add_evidence(point)
 
     def fail(self, steps: int) -> None:
-        """Note that the numbers have ended, so many steps after the first look point."""
+        """Note that the numbers have ended, so many steps after the start."""
         self.judgement = Judgement(FAILED, periods=steps * self._h / self._period)
 
     @property
     def _swings(self) -> float:
-        return self._last.step * self._h / self._period if self._last else 0.0
+        return self._last.step * self._h / self._period
+
+    @property
+    def _is_long(self) -> bool:
+        return self._last.step >= levels.LONG
 
     def _is_rounded(self, point: LookPoint) -> bool:
         """Return whether a damped energy is mostly rounding."""
@@ -215,7 +215,6 @@ class Judge:
         """Return the judgement of the core, or what is known better of this run."""
         from pendu_tui.engine.run.core import growth_of, judge_bins, measure_bins
 
-        assert self._last
         # how far roundings may have carried the error by now
         rounding = levels.WALK * self._method.epsilon * math.sqrt(self._last.step)
         if not self._model.conserves_energy:
@@ -224,44 +223,43 @@ class Judge:
         if self._orbit:
             measured = measure_bins(bins)
             return measured._replace(verdict=self.judgement.verdict, is_evident=False)
-        found = self._checked(judge_bins(bins, levels.AHEAD), rounding)
+        found = judge_bins(bins, levels.AHEAD)
+        low, high = self._bands.recent()
+        away = max(low, -high)  # how far the present band is from the start
+        if found.verdict == UNDECIDED:
+            found = self._kept(found, low, high)
+        elif found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
+            found = found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
+            self._left = self._left or found.verdict
+        elif reason := self._doubt(found.verdict, away > rounding):
+            found = found._replace(verdict=UNDECIDED, reason=reason)
         if found.verdict == GROWS:
             found = found._replace(growth=growth_of(bins))
         return found
 
-    def _checked(self, found: Judgement, rounding: float) -> Judgement:
-        """Return a judgement of the core, or what is known better of this run."""
-        low, high = self._bands.recent()
-        away = max(low, -high)  # how far the present band is from the start
-        if found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
-            found = found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
-            self._left = self._left or found.verdict
-            return found
-        if found.verdict == UNDECIDED:
-            before = self.judgement.verdict
-            beyond = low if before == GROWS else -high
-            if before in LEAVES and beyond > -levels.AWAY * (high - low):
-                return found._replace(verdict=before)
-            return found
-        is_straight = self._is_long and self._bands.one_way >= levels.MIN_ONE_WAY
-        reason = ""
-        if self._may_beat and not is_straight:
-            reason = levels.BEATS
-        elif found.verdict in LEAVES and self._method.symplectic:
-            reason = levels.RETURNS
-        elif self._left not in ("", found.verdict):
-            reason = levels.TURNED
-        elif found.verdict in LEAVES:
-            self._left = found.verdict
-        elif away > rounding:
-            reason = levels.NEAR
-        elif not self._is_long:
-            reason = levels.SHORT
-        return found._replace(verdict=UNDECIDED, reason=reason) if reason else found
+    def _kept(self, found: Judgement, low: float, high: float) -> Judgement:
+        """Return the verdict of before with what is found, until the band comes back."""
+        before = self.judgement.verdict
+        beyond = low if before == GROWS else -high
+        if before in LEAVES and beyond > -levels.AWAY * (high - low):
+            return found._replace(verdict=before)
+        return found
 
-    @property
-    def _is_long(self) -> bool:
-        return bool(self._last and self._last.step >= levels.LONG)
+    def _doubt(self, verdict: str, is_away: bool) -> str:
+        """Return why a verdict of the core does not hold for this run; "" if it does."""
+        is_straight = self._is_long and self._bands.one_way >= levels.MIN_ONE_WAY
+        if self._may_beat and not is_straight:
+            return levels.BEATS
+        if verdict in LEAVES and self._method.symplectic:
+            return levels.RETURNS
+        if self._left not in ("", verdict):
+            return levels.TURNED
+        if verdict in LEAVES:
+            self._left = verdict
+            return ""
+        if is_away:
+            return levels.NEAR
+        return "" if self._is_long else levels.SHORT
 
     def _progress(self) -> Progress | None:
         """Return how far it is to the first possible verdict, or else to the last one.
@@ -369,14 +367,18 @@ class Judges:
         """Judge anew from these look points on, each method with its own step size [s]."""
         self._below = frozenset()
         self._judges = [
-            Judge(h=h, period=self._period, method=method, model=self._model)
-            for method, h in zip(self._cast, steps, strict=True)
+            Judge(
+                h=h,
+                period=self._period,
+                method=method,
+                model=self._model,
+                start=point or LookPoint(0, 0.0, 0.0, 0.0),
+            )
+            for method, h, point in zip(self._cast, steps, points, strict=True)
         ]
         for judge, point in zip(self._judges, points, strict=True):
             if point is None:
                 judge.fail(0)
-            else:
-                judge.look(point)
 
     def look(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
         """Show each judge its method at a step of the lockstep; None: its numbers have ended."""

@@ -61,12 +61,45 @@ def _models(count: int) -> _Models:
     return _Models(cosines, *map(np.array, zip(*rows, strict=True)))
 
 
-class Slope:
-    """A distribution of the slope: a mixture of Student's t, one for each model of the noise."""
+def _white_model(v: Any, x: Any, white: float) -> tuple[Any, ...]:
+    """Return what a noise tells that is white and of a known standard deviation."""
+    square = float((v * v).sum())
+    centre = float((v * x).sum()) / square
+    misfit = float(((x - centre * v) ** 2).sum()) / white**2
+    log = _OCTAVE + math.log((len(x) + 1) / 2) - math.log(square) / 2
+    log -= ((len(x) - 1) * math.log(math.tau * white**2) + misfit) / 2
+    return centre, white / math.sqrt(square), _KNOWN, False, log
 
-    def __init__(
-        self, centres: Any, deviations: Any, freedoms: Any, walks: Any, weights: Any
-    ) -> None:
+
+class Slope:
+    """The slope of four values or more: a mixture of Student's t, one for each model of the noise."""
+
+    def __init__(self, times: Any, values: Any, rounding: float, white: float = 0.0) -> None:
+        """Each value is rounded to `rounding`.
+
+        `white`: the values' standard deviation if they are means of independent samples, which is
+        one more model.
+        """
+        models = _models(len(values))
+        v = (models.cosines * times).sum(axis=1)
+        x = (models.cosines * values).sum(axis=1)
+        squares = (models.inverse * v * v).sum(axis=1)
+        centres = (models.inverse * v * x).sum(axis=1) / squares
+        rest = (x - centres[:, None] * v) ** 2 + max(rounding, 1e-150) ** 2 / 12
+        residual = (models.inverse * rest).sum(axis=1)
+        sums = (models.octaves * rest[:, None, :]).sum(axis=2)
+        sizes = models.octaves.sum(axis=2)
+        log_sums = np.log(np.where(sizes > 0, sums, 1.0))
+        log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
+        log = log - (sizes / 2 * log_sums).sum(axis=1)
+        deviations = np.sqrt(residual / models.freedoms / squares)
+        columns = [centres, deviations, models.freedoms, models.walks, log]
+        if white > 0:
+            known = _white_model(v, x, white)
+            columns = [np.append(*each) for each in zip(columns, known, strict=True)]
+        centres, deviations, freedoms, walks, log = columns
+        weights = np.exp(log - log.max())
+        weights = weights / weights.sum()
         self.mean = float((weights * centres).sum())
         self.uncertainty = float((weights * deviations).sum())  # 68 % lie within
         self.walk = float(weights[walks].sum())  # probability of an endless variance
@@ -118,38 +151,3 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     size = math.sqrt(freedom * math.log1p(min(t * t, 1e300) / freedom))
     normal = math.copysign((8 * freedom + 1) / (8 * freedom + 3) * size, t)
     return math.erfc(-normal / math.sqrt(2)) / 2
-
-
-def slope_of(times: Any, values: Any, rounding: float, white: float = 0.0) -> Slope:
-    """Return the slope of four values or more, each rounded to `rounding`.
-
-    `white`: the values' variance if they are means of independent samples, which is one more model.
-    """
-    models = _models(len(values))
-    v = (models.cosines * times).sum(axis=1)
-    x = (models.cosines * values).sum(axis=1)
-    squares = (models.inverse * v * v).sum(axis=1)
-    centres = (models.inverse * v * x).sum(axis=1) / squares
-    rest = (x - centres[:, None] * v) ** 2 + max(rounding, 1e-150) ** 2 / 12
-    residual = (models.inverse * rest).sum(axis=1)
-    sums = (models.octaves * rest[:, None, :]).sum(axis=2)
-    sizes = models.octaves.sum(axis=2)
-    log_sums = np.log(np.where(sizes > 0, sums, 1.0))
-    log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
-    log = log - (sizes / 2 * log_sums).sum(axis=1)
-    deviations = np.sqrt(residual / models.freedoms / squares)
-    freedoms = models.freedoms
-    walks = models.walks
-    if white > 0:
-        square = float((v * v).sum())
-        centre = float((v * x).sum()) / square
-        misfit = float(((x - centre * v) ** 2).sum()) / white
-        known = _OCTAVE + math.log(len(values) / 2) - math.log(square) / 2
-        known -= ((len(values) - 2) * math.log(math.tau * white) + misfit) / 2
-        centres = np.append(centres, centre)
-        deviations = np.append(deviations, math.sqrt(white / square))
-        freedoms = np.append(freedoms, _KNOWN)
-        walks = np.append(walks, False)
-        log = np.append(log, known)
-    weights = np.exp(log - log.max())
-    return Slope(centres, deviations, freedoms, walks, weights / weights.sum())

@@ -108,9 +108,9 @@ def test_what_has_grown_keeps_its_word_until_a_quarter_of_its_band_is_below_the_
 
 
 def test_a_run_is_judged_when_it_is_an_eighth_longer():
-    judge = judged([])
+    judge = judged([0.0])
     judgements = []
-    for step in range(4000):
+    for step in range(1, 4000):
         slope = judge.judgement.slope
         judge.look(LookPoint(step, 1e-3 * step, 1e-3 * step, 1e-3 * step))
         if judge.judgement.slope != slope:

@@ -106,11 +106,12 @@ def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
     assert [judgement.verdict for judgement in lockstep.judgements] == BELOW_THE_LIMITS
 
 
-def judged(errors: list[float]) -> Judge:
+def judged(errors) -> Judge:
     """Return a judge of made-up errors, 16 steps a period."""
-    judge = Judge(h=0.1, period=1.6, method=R, model=Pendulum(1.0))
-    for step, error in enumerate(errors):
-        judge.look(LookPoint(step, error, error, error))
+    points = [LookPoint(step, error, error, error) for step, error in enumerate(errors)]
+    judge = Judge(h=0.1, period=1.6, method=R, model=Pendulum(1.0), start=points[0])
+    for point in points[1:]:
+        judge.look(point)
     return judge
 
 
