@@ -233,16 +233,16 @@ class Judge:
             self._left = self._left or found.verdict
         elif reason := self._doubt(found.verdict, away > rounding):
             found = found._replace(verdict=UNDECIDED, reason=reason)
-        if found.verdict == GROWS:
+        if found.verdict == GROWS and not found.rests:
             found = found._replace(growth=growth_of(bins))
         return found
 
     def _kept(self, found: Judgement, low: float, high: float) -> Judgement:
         """Return the verdict of before with what is found, until the band comes back."""
-        before = self.judgement.verdict
-        beyond = low if before == GROWS else -high
-        if before in LEAVES and beyond > -levels.AWAY * (high - low):
-            return found._replace(verdict=before)
+        before = self.judgement
+        beyond = low if before.verdict == GROWS else -high
+        if before.verdict in LEAVES and beyond > -levels.AWAY * (high - low):
+            return found._replace(verdict=before.verdict, rests=before.rests)
         return found
 
     def _doubt(self, verdict: str, is_away: bool) -> str:

@@ -11,7 +11,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import GENERAL, METHODS, RK4, implicit, learned, matching, measure
+from pendu_tui.engine.methods import (
+    GENERAL,
+    METHODS,
+    RK4,
+    VELOCITY_VERLET,
+    implicit,
+    learned,
+    matching,
+    measure,
+)
 from pendu_tui.engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from pendu_tui.engine.methods.runge_kutta import EXPLICIT_EULER, EXPLICIT_MIDPOINT, HEUN
 from pendu_tui.engine.models import Pendulum
@@ -121,6 +130,15 @@ def test_a_method_of_another_equation_has_no_order(coefficients, why):
     order = measure.order(stepping(*coefficients))
     assert order is None or abs(order) < 0.1
     assert why in measure.no_order(order)
+    assert [bool(measure.no_order(order)) for order in (0.4, 0.6)] == [True, False]
+
+
+@pytest.mark.parametrize(("parts", "limit"), [(7, 14), (8.1, math.inf)])
+def test_a_limit_is_found_up_to_sixteen(parts, limit):
+    def slower(force, phase, h):
+        return VELOCITY_VERLET.phases(force, phase, h / parts)
+
+    assert measure.linear_limit(slower) == pytest.approx(limit)
 
 
 @pytest.mark.parametrize("method", implicit.FAMILY, ids=lambda method: method.key)

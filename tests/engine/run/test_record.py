@@ -5,8 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.engine.run import levels
-from pendu_tui.engine.run.record import judge_record
+from pendu_tui.engine.run import core, levels
+from pendu_tui.engine.run.record import (
+    Fluctuation,
+    Order,
+    bins_of,
+    fluctuation,
+    judge_record,
+    order_of,
+    resolution,
+)
+from pendu_tui.engine.run.slope import student
+from pendu_tui.engine.run.verdicts import advice, outcome
 from tests.bench.foreign import correlated
 
 T = np.linspace(0, 100, 2000)
@@ -37,12 +47,17 @@ MAKES = {
     "a line within correlated noise": (noise_of(200) + 0.1 * T, "grows"),
     "five steps of the last digit": (np.round(0.05 * T), "grows"),
     "exponential growth from rounding": (1e-9 * np.exp(T / 5) + 1e-9 * NOISE, "grows"),
+    "exponential growth": (np.exp(T) - 1000, "grows"),
+    "exponential decay": (np.exp(-T / 5) - 1000, "loses"),
     "logarithmic growth": (np.log1p(T) + 0.1 * NOISE, "grows"),
     "an approach of a third of the record": (10 - 10 * np.exp(-T / 33) + NOISE, "grows"),
+    "cooling to a floor": (100 * np.exp(-T / 10) + 0.2 * noise_of(20), "loses"),
+    "backward Euler in a quartic well": ((1 + 0.06 * T) ** -2 * (1 + 0.01 * SINE), "loses"),
     "a drift that begins late": (NOISE + np.clip(T - 70, 0, None), "grows"),
-    "a wobble that gets wider": (T * np.sin(7 * T), "undecided"),
-    "a walk": (np.cumsum(NOISE), "undecided"),
-    "a wrong end": (NOISE + 20 * (T > 98), "undecided"),
+    "a walk": (np.cumsum(NOISE), levels.WALKS),
+    "a wrong end": (NOISE + 20 * (T > 98), levels.UNLIKE_END),
+    "a wobble that gets wider": (T * np.sin(7 * T), levels.WIDENS),
+    "a line that turns back": (NOISE + 2 * np.minimum(T, 160 - T) / 100, levels.TURNED),
 }
 RESTING = {
     "relaxation to another level": 1 - np.exp(-T / 8) + 0.02 * NOISE,
@@ -52,25 +67,33 @@ RESTING = {
 }
 
 
+def told(energies) -> str:
+    """Return the verdict on energies about 1000, or why there is none."""
+    found = judge_record(T, 1000 + energies)
+    return found.reason or found.verdict
+
+
 @pytest.mark.parametrize("name", MAKES)
-def test_the_verdict_is_the_truth(name):
+def test_the_verdict_or_the_reason_is_the_truth(name):
     energies, truth = MAKES[name]
-    assert judge_record(T, 1000 + energies).verdict == truth
+    assert told(energies) == truth
 
 
 @pytest.mark.parametrize("name", RESTING)
 def test_what_has_left_its_start_and_rests_has_the_slope_of_the_rest(name):
-    found = judge_record(T, 1000 + RESTING[name])
-    assert (found.verdict, found.rests) == ("grows", True)
-    assert abs(found.slope) < 3 * found.uncertainty
+    for sign, verdict in ((1, "grows"), (-1, "loses")):
+        found = judge_record(T, 1000 + sign * RESTING[name])
+        assert (found.verdict, found.rests) == (verdict, True)
+        assert abs(found.slope) < 3 * found.uncertainty
 
 
 @pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a walk"])
 def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
-    energies, truth = MAKES[name]
+    energies = 1e4 + MAKES[name][0]
+    truth = judge_record(T, energies).verdict
     mirrored = {"grows": "loses"}.get(truth, truth)
-    assert judge_record(1e-12 * T - 3e-9, 1e-20 * (1e4 + energies)).verdict == truth
-    assert judge_record(1e12 * T, -1e20 * (1e4 + energies)).verdict == mirrored
+    assert judge_record(1e-12 * T - 3e-9, 1e-20 * energies).verdict == truth
+    assert judge_record(1e12 * T, -1e20 * energies).verdict == mirrored
 
 
 @pytest.mark.parametrize("periods", [*range(20, 40), 50, 64, 96, 100, 128, 192, 256, 320])
@@ -98,68 +121,162 @@ def test_a_true_slope_lies_within_uncertainty_and_bound_as_often_as_promised(tim
     assert np.mean([each.bound > 0.01 for each in found]) > 0.95
 
 
-def sides_of(make, values, words):
-    assert tuple(judge_record(T, 1000 + make(value)).verdict for value in values) == words
+def with_chance(noise, chance):
+    """Return noise with a trend that is so unlikely by chance."""
+    low, high = 0.0, 100.0
+    for _ in range(40):
+        middle = (low + high) / 2
+        energies = noise + middle * T / 100
+        whole = core.whole_of(bins_of(T, energies - energies[0], 1e-12))[1]
+        if whole.slope.chance > chance:
+            low = middle
+        else:
+            high = middle
+    return energies
 
 
-def test_a_trend_is_material_from_half_a_standard_deviation_on():
-    sides_of(lambda move: SINE + move * T / 100, (0.4, 0.6), ("bounded", "grows"))
+GROWTH = np.log1p(10 * T) / math.log(1001)
+SLOW = noise_of(60, seed=3)
+SWING = 0.5 * np.cos(T / 20)  # so slow that nothing else can be told
+SIDES = {
+    # the chance of the slope is 0.02, that of its ranks 4e-6 or 2e-5
+    "MOVES_BY_RANK": (lambda size: GROWTH + size * noise_of(200), {0.06: "grows", 0.08: ""}),
+    "MOVES": (lambda chance: with_chance(noise_of(60, 2), chance), {1.4e-3: "", 7e-4: "grows"}),
+    "SUSPECT": (lambda chance: with_chance(noise_of(200, 2), chance), {0.07: "bounded", 0.035: ""}),
+    "MATERIAL": (lambda move: SINE + move * T / 100, {0.4: "bounded", 0.6: "grows"}),
+    "LARGE": (lambda move: SLOW + move * T / 100, {0.0: "bounded", 2.0: ""}),
+    # the quarters' mean widths differ by 1.7 and by 4.8
+    "WIDENING": (lambda last: SINE * (1 + (last - 1) * T / 100), {2.0: "bounded", 8.0: ""}),
+    "MIN_CYCLES": (lambda n: np.sin(math.tau * n * T / 100 + 1.3), {1.5: "", 2.5: "bounded"}),
+    "GONE": (lambda far: np.where(T < 10, 0, far + SWING), {3: "", 7: "grows"}),
+}
 
 
-def test_a_move_of_a_standard_deviation_is_not_bounded_however_likely_by_chance():
-    slow = noise_of(60, seed=3)
-    sides_of(lambda move: slow + move * T / 100, (0.0, 2.0), ("bounded", "undecided"))
+@pytest.mark.parametrize("name", SIDES)
+def test_each_level_has_a_case_on_both_sides(name):
+    make, words = SIDES[name]
+    for value, word in words.items():
+        assert judge_record(T, 1000 + make(value)).verdict == (word or "undecided")
 
 
 def test_a_wave_of_some_cycles_leaves_no_trend_behind():
     for cycles in (2.1, 2.3, 2.6, 3.4):
-        found = judge_record(T, 1000 + np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE)
-        assert found.verdict == "bounded"
+        assert told(np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE) == "bounded"
 
 
-def test_a_band_widens_from_threefold_on():
-    widths = (2.0, 8.0)  # the quarters' mean widths differ by 1.7 and by 4.8
-    sides_of(lambda last: SINE * (1 + (last - 1) * T / 100), widths, ("bounded", "undecided"))
+def test_an_end_is_unlike_the_rest_at_a_chance_of_1e_3():
+    values = np.random.default_rng(1).standard_normal(64)
+    *others, _ = core.blocks_of(values, 2)
+    spread = np.std(others) * math.sqrt(32 / 30)
+    shifts = np.linspace(0, 5, 1000) * spread
+    chances = np.array([2 - 2 * student(shift, spread, 30) for shift in shifts])
+    half = np.full(64, 0.5)
+    for chance, reason in ((1.3e-3, ""), (0.75e-3, levels.UNLIKE_END)):
+        values[-2:] = np.mean(others) + shifts[np.argmin(abs(chances - chance))]
+        bins = core.Bins(np.arange(64.0), values, values - half, values + half, half, 1e-12)
+        assert core.judge_bins(bins).reason == reason
 
 
-def test_a_wave_counts_from_two_cycles_on():
-    one_and_a_half = judge_record(T, 1000 + np.sin(math.tau * 1.5 * T / 100 + 1.3))
-    assert one_and_a_half.verdict != "bounded"
-    assert judge_record(T, 1000 + np.sin(math.tau * 2.5 * T / 100 + 1.3)).verdict == "bounded"
+@pytest.mark.parametrize(
+    ("before", "length", "move", "new", "old"),
+    # beyond what was before a window by half the move, and beyond its first half by a quarter
+    [(8, 32, 1.0, 0.42, 0.46), (32, 64, 0.65, 0.71, 0.74)],
+)
+def test_an_end_is_new_where_the_energy_has_never_been(before, length, move, new, old):
+    ramp = np.linspace(0, 1, 32)
+    for height, expected in ((new, True), (old, False)):
+        values = np.append(np.full(before, height), ramp)
+        assert core.is_new(values, values[-length:], move) == expected
 
 
-def test_what_has_gone_five_times_its_present_band_from_the_start_has_left_it():
-    swing = 0.5 * np.cos(T / 20)  # so slow that nothing else can be told
-    assert judge_record(T, np.where(T < 10, 1000, 1003 + swing)).verdict == "undecided"
-    assert judge_record(T, np.where(T < 10, 1000, 1007 + swing)).verdict == "grows"
+def test_a_digit_is_a_jump_that_comes_three_times():
+    energies = np.zeros(100)
+    energies[40:50] = 1
+    assert resolution(energies) < 1e-12
+    energies[60:] = 1
+    assert resolution(energies) == 1
 
 
 def test_64_samples_are_needed():
-    few = judge_record(T[:63], 1000 + NOISE[:63])
+    few = judge_record(T[:63], 1000 + SINE[:63])
     assert (few.verdict, few.reason) == ("undecided", "64 samples are needed")
     assert judge_record(T[:64], 1000 + SINE[:64]).reason != few.reason
 
 
 @pytest.mark.parametrize(
-    ("energies", "reason"),
+    ("value", "bound", "limit", "expected"),
     [
-        (np.cumsum(NOISE), levels.WALKS),
-        (NOISE + 20 * (T > 98), levels.UNLIKE_END),
-        (T * np.sin(7 * T), levels.WIDENS),
-        (NOISE + 2 * np.minimum(T, 160 - T) / 100, levels.TURNED),
+        (1.0, 2.0, 2.0, "below"),
+        (1.0, 2.0, 1.999, "cannot tell"),
+        (5.0, 6.0, 3.999, "above"),
+        (5.0, 6.0, 4.001, "cannot tell"),
+        (-5.0, -4.0, -3.0, "below"),
+        (0.0, 0.0, 0.0, "below"),
+        (None, None, 1.0, "cannot tell"),
+        (math.nan, 0.1, 1.0, "cannot tell"),
+        (0.0, math.inf, 1.0, "cannot tell"),
     ],
 )
-def test_undecided_has_a_reason(energies, reason):
-    found = judge_record(T, 1000 + energies)
-    assert (found.verdict, found.reason) == ("undecided", reason)
+def test_a_number_is_below_above_or_not_known(value, bound, limit, expected):
+    assert outcome(value, bound, limit) == expected
 
 
-def test_what_multiplies_grows_or_loses():
-    assert judge_record(T, np.exp(T)).verdict == "grows"
-    assert judge_record(T, np.exp(-T / 5)).verdict == "loses"
-    # backward Euler at h = 0.1 in a quartic well
-    assert judge_record(T, (1 + 0.06 * T) ** -2 * (1 + 0.01 * np.sin(T))).verdict == "loses"
+def test_the_advice_is_the_length_at_which_white_noise_would_tell():
+    assert "about 4 times as long" in advice(0.0, 8.0, limit=1.0)
+    assert "may not" in advice(1.0, 2.0, limit=1.0)
 
 
-def test_what_cools_to_a_floor_loses():
-    assert judge_record(T, 1 + 100 * np.exp(-T / 10) + 0.2 * noise_of(20)).verdict == "loses"
+def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():
+    assert fluctuation(T, 50 + 0.1 * T + 3 * NOISE).size == pytest.approx(3.0, rel=0.05)
+    assert fluctuation(T, np.full(2000, 7.0)) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("times", [1e6, 200])
+def test_the_uncertainty_of_a_fluctuation_is_the_spread_of_repetitions(times):
+    found = [fluctuation(T, noise_of(times, seed)) for seed in range(60)]
+    spread = np.std([each.size for each in found], ddof=1)
+    # 60 repetitions give a standard deviation to 9 %, 16 batches to 18 %.
+    assert np.mean([each.uncertainty for each in found]) == pytest.approx(spread, rel=0.3)
+
+
+@pytest.mark.parametrize("power", [0.0, 1.0, 2.0, 4.0])
+def test_the_order_is_the_power_of_the_step_within_its_uncertainty(power):
+    steps = (0.1, 0.2, 0.4)
+    random = np.random.default_rng(7)
+    missed = 0
+    for _ in range(40):
+        noises = [random.normal(size=2000) * step**power for step in steps]
+        found = order_of(steps, [fluctuation(T, noise) for noise in noises])
+        missed += abs(found.power - power) > 2 * found.uncertainty
+        assert found.uncertainty == pytest.approx(0.016, rel=0.7)
+    assert missed <= 6  # 2 of 40 are expected, and 7 in one of a hundred such tests
+
+
+def test_a_precise_fluctuation_counts_more():
+    precise = [Fluctuation(1.0, 0.001), Fluctuation(4.0, 0.004), Fluctuation(4.0, 2.0)]
+    assert order_of((1.0, 2.0, 4.0), precise).power == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("steps", "sizes", "reason"),
+    [
+        ((0.1, 0.1), (1.0, 2.0), "not all the same"),
+        ((0.1, 0.0), (1.0, 2.0), "above zero"),
+        ((0.1, 0.2), (1.0, 0.0), "never changes"),
+    ],
+)
+def test_what_has_no_order_is_refused(steps, sizes, reason):
+    with pytest.raises(ValueError, match=reason):
+        order_of(steps, [Fluctuation(size, 0.1) for size in sizes])
+
+
+def test_too_few_samples_have_no_fluctuation():
+    assert fluctuation(T[:64], NOISE[:64]).size > 0
+    with pytest.raises(ValueError, match="too few"):
+        fluctuation(T[:63], NOISE[:63])
+
+
+@pytest.mark.parametrize(("uncertainty", "highest"), [(0.49, 2.98), (0.5, None)])
+def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest):
+    assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
+    assert "about 2 times as long" in Order(2.0, uncertainty).advice

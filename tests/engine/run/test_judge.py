@@ -1,0 +1,343 @@
+"""Verdicts and milestones of runs: true, at their step, and the same however a run is cut."""
+
+import math
+import random
+from collections.abc import Iterable
+from dataclasses import replace
+from statistics import median
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from pendu_tui.engine.methods import EXPLICIT_EULER, GENERAL, USUAL_CAST
+from pendu_tui.engine.models.pendulum import Pendulum
+from pendu_tui.engine.run import levels
+from pendu_tui.engine.run.judge import Judge, LookPoint
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.rewindable import RewindableRun
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Milestone
+from pendu_tui.engine.scenes import SCENES, Scene
+from tests.bench.judging import exclude, judgements
+from tests.engine.run.test_record import noise_of
+from tests.truths import is_true, scene_at, truths, verdicts, watch
+
+E, S, V, R = USUAL_CAST
+DRIFT = SCENES["drift"]
+W0 = Scene().w0
+LOOPS = compiled if available() else PlainLoops  # the same bits
+CELLS = list(truths())[::47]  # 47 and the 36 steps of a line have no divisor in common
+BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
+
+
+def course(method, scene: Scene, steps: int) -> list[str]:
+    return [verdict for verdict, *_ in verdicts(method, scene, LOOPS, steps)]
+
+
+def words(lockstep: Lockstep) -> list[str]:
+    return [judgement.verdict for judgement in lockstep.judgements]
+
+
+def moved(scene: Scene, gaps: Iterable[int], loops=LOOPS) -> Lockstep:
+    lockstep = Lockstep(scene, loops=loops, judged=True)
+    for gap in gaps:
+        lockstep.advance(gap)
+        lockstep.sample()
+    return lockstep
+
+
+def milestones(lockstep: Lockstep, kind: str) -> list[Milestone]:
+    return [each for each in lockstep.milestones if each.kind == kind]
+
+
+@pytest.mark.slow
+def test_no_verdict_is_wrong_or_flickers() -> None:
+    for method, start, z, letter in CELLS:
+        scene = scene_at(start, z)
+        given = verdicts(method, scene, LOOPS, watch(scene))
+        assert is_true(letter, given), (method.key, start, z, letter, given)
+
+
+def test_verdicts_wait_for_nine_periods_as_a_rule() -> None:
+    """Beyond z = 0.9, or eight steps a period, resonances take thousands of steps."""
+    waits = []
+    for method, start, z, letter in CELLS[::2]:
+        scene = scene_at(start, z)
+        period = scene.exact().period or math.inf
+        if 0.01 <= z <= 0.9 and period >= 8 * scene.h:
+            given = verdicts(method, scene, LOOPS, round(60 * period / scene.h))
+            assert is_true(letter, given), (method.key, start, z, letter, given)
+            waits += [given[0][2]] if given else [60.0]
+    waits.sort()
+    assert median(waits) <= 9
+    assert waits[9 * len(waits) // 10] <= 25
+
+
+@pytest.mark.parametrize(
+    ("theta", "h"), [(1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757)]
+)
+def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(theta: float, h: float) -> None:
+    for method in (S, V):
+        assert course(method, Scene(theta=theta, h=h), 6000) in ([], ["bounded"])
+
+
+@pytest.mark.parametrize(
+    ("method", "theta", "h"), [(S, 0.3, 0.654514), (S, 2.3, 0.351203), (V, 2.3, 0.351203)]
+)
+def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number(method, theta, h) -> None:
+    lockstep = moved(Scene(theta=theta, h=h, cast=(method,)), [6000])
+    assert [each.verdict for each in milestones(lockstep, "verdict")] == ["chaotic"]
+    assert 0.01 < lockstep.judgements[0].lyapunov * h < 2  # per step
+
+
+@pytest.mark.parametrize(
+    ("method", "scene", "steps", "ends"),
+    [
+        (R, Scene(theta=0.0, omega=200.0, h=0.001), 30_000, ["", "undecided", "loses"]),
+        (R, SCENES["rk4-limit-above"], 6000, ["grows"]),
+        (E, DRIFT.altered(h=0.16), 10_000, ["grows"]),  # at omega h = pi
+        (R, Scene(h=1.2 / W0), 6000, ["loses"]),  # everything
+        (V, SCENES["chaos-fenced"], 6000, ["chaotic"]),
+        (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
+    ],
+)
+def test_what_leaves_or_is_lost_is_told_at_the_end(method, scene, steps, ends) -> None:
+    assert ["", *course(method, scene, steps)][-1] in ends
+
+
+def test_a_rotation_that_beats_with_its_steps_gets_no_early_verdict() -> None:
+    spin = Scene(theta=0.0, omega=6.2 * W0 / 0.1, h=0.1 / W0, cast=(R,))
+    (judgement,) = moved(spin, [2000]).judgements
+    assert judgement.verdict == "undecided"
+    assert judgement.progress is not None
+    assert judgement.progress.need == pytest.approx(4096, rel=0.02)  # a swing a step
+
+
+@pytest.mark.parametrize("h", [0.02, 0.1])
+def test_judging_may_begin_anywhere_in_a_swing(h: float) -> None:
+    """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
+    for steps in (5, 13, 29, 47):
+        lockstep = moved(SCENES["large-swing"], [steps])
+        lockstep.set_stepping(Stepping(h))
+        lockstep.advance(round(120 / h))
+        assert words(lockstep) == BELOW_THE_LIMITS
+
+
+def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
+    lockstep = moved(DRIFT, [0])
+    lockstep.set_stepping(Stepping(-DRIFT.h))
+    lockstep.advance(2000)
+    assert words(lockstep) == BELOW_THE_LIMITS
+
+
+def test_a_damped_energy_is_judged_only_where_it_is_above_rounding() -> None:
+    scene = SCENES["damped"].altered(theta=2.0, omega=9.0, friction=0.5)
+    found = words(moved(scene, [round(160 / scene.h)]))
+    assert found == ["grows", "loses", "undecided", "grows"]
+
+
+def judge_of(errors) -> Judge:
+    """Return a judge of made-up errors, 16 steps a period."""
+    points = [LookPoint(step, error, error, error) for step, error in enumerate(errors)]
+    judge = Judge(h=0.1, period=1.6, method=R, model=Pendulum(1.0), start=points[0])
+    for point in points[1:]:
+        judge.look(point)
+    return judge
+
+
+def told(errors) -> tuple[str, bool]:
+    judgement = judge_of(errors).judgement
+    return judgement.verdict, judgement.rests
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_random_walk_of_roundings_is_no_trend(seed: int) -> None:
+    walk = np.random.default_rng(seed).normal(0, 1e-15, 20_000)
+    assert told([0.0, *walk.cumsum()])[0] in ("undecided", "bounded")
+
+
+def test_before_four_swings_there_is_neither_verdict_nor_slope() -> None:
+    for steps, known in ((64, False), (66, True)):
+        judgement = judge_of([0.0] * steps).judgement
+        assert (judgement.verdict, judgement.slope is not None) == ("undecided", known)
+        assert judgement.progress is not None
+        assert judgement.progress.have < judgement.progress.need
+
+
+def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
+    away = 1e-3 * np.arange(640)
+    assert told(away) == ("grows", False)
+    assert told([*away, *(1e-2 * np.sin(np.arange(4000) / 3))])[0] != "grows"
+
+
+def test_the_largest_errors_that_a_lockstep_gives_leave_no_nan() -> None:
+    judgement = judge_of([-1.0] * 20 + [1e300 * (-1) ** k for k in range(6000)]).judgement
+    assert judgement.slope is None or math.isfinite(judgement.slope)
+    assert judgement.uncertainty is None or math.isfinite(judgement.uncertainty)
+
+
+def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length() -> None:
+    steps = np.arange(6000)
+    band = 0.5 - 0.5 * np.cos(math.tau * steps / 16)
+    noise = noise_of(200, seed=1, count=6000) * (steps > 0)
+    found = [judge_of(band + size * noise).judgement for size in (0.06, 0.07)]
+    shares = [each.bound * each.share / each.slope for each in found]
+    assert 0.09 < shares[0] < 0.1 < shares[1] < 0.11
+    assert [each.verdict for each in found] == ["bounded", "undecided"]
+
+
+@pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
+def test_a_band_has_left_the_start_by_half_its_width(sign: int, word: str) -> None:
+    for middle, expected in ((1.95, ("undecided", False)), (2.05, (word, True))):
+        errors = sign * (middle + np.sin(np.arange(6000) / 3))
+        assert told([0.0, *errors[1:]]) == expected
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.24, "grows"), (0.26, "undecided")])
+def test_a_word_is_kept_until_a_quarter_of_its_band_is_below_the_start(share, verdict) -> None:
+    rise = 3e-3 * np.arange(640)
+    amplitude = rise[-1] / (1 - share) / 2
+    wave = rise[-1] - amplitude + amplitude * np.cos(math.tau * np.arange(1400) / 100)
+    assert told([*rise, *wave])[0] == verdict
+
+
+def test_a_run_is_judged_when_it_is_an_eighth_longer() -> None:
+    judge = judge_of([0.0])
+    judgements = []
+    for step in range(1, 4000):
+        slope = judge.judgement.slope
+        judge.look(LookPoint(step, 1e-3 * step, 1e-3 * step, 1e-3 * step))
+        if judge.judgement.slope != slope:
+            judgements.append(step)
+    factors = np.divide(judgements[1:], judgements[:-1])
+    assert factors.min() == levels.LONGER_BY == 9 / 8
+    assert np.median(factors) < 1.16
+
+
+@pytest.mark.parametrize("name", ["drift", "gentle", "crossover", "spin", "damped", "learned"])
+def test_a_run_and_its_energies_alone_do_not_exclude_each_other(name: str) -> None:
+    found = list(judgements(SCENES[name], 60.0))
+    assert not [method.key for method, of_run, alone in found if exclude(of_run, alone)]
+    assert all(of_run.slope is not None for _, of_run, _ in found)
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)  # tests/bench/judging.py: 200
+@given(theta=st.floats(0.05, 2.5), z=st.floats(0.02, 1.5), method=st.sampled_from(GENERAL))
+@example(theta=1.3743756394805429, z=1.1501813060543329, method=EXPLICIT_EULER)  # rests at once
+def test_a_random_run_and_its_energies_do_not_exclude_each_other(theta, z, method) -> None:
+    """Over twenty swings and more: an unfinished one of few is a slope in a run's bins."""
+    scene = Scene(theta=theta, h=z / W0, cast=(method,))
+    ((_, of_run, alone),) = judgements(scene, 60.0)
+    assert not exclude(of_run, alone)
+
+
+@pytest.mark.parametrize("name", ["drift", "rk4-limit", "chaos-loose"])
+def test_the_step_over_the_top_does_not_depend_on_samples(name: str) -> None:
+    scene = SCENES[name]
+    expected: dict[str, tuple[int, float, float]] = {}
+    lockstep = Lockstep(scene)
+    for _ in range(math.ceil(30 / scene.h)):
+        lockstep.advance(1)
+        for method, reading in zip(scene.cast, lockstep.sample().readings, strict=True):
+            if abs(reading.theta) > math.pi:
+                at = (lockstep.step, lockstep.t, reading.energy_error)
+                expected.setdefault(method.key, at)
+    for gap in (7, 400):
+        last = lockstep.step // gap * gap
+        found = milestones(moved(scene, [gap] * (last // gap)), "over the top")
+        assert {each.method.key: (each.step, each.t, each.energy_error) for each in found} == {
+            key: top for key, top in expected.items() if top[0] <= last
+        }
+
+
+def test_a_pendulum_that_spins_goes_over_no_top() -> None:
+    assert not milestones(moved(SCENES["spin"], [2000]), "over the top")
+
+
+def test_verdicts_happen_when_they_are_given() -> None:
+    lockstep = moved(DRIFT, [0])
+    changes = []
+    before = words(lockstep)
+    for _ in range(1200):
+        lockstep.advance(1)
+        after = words(lockstep)
+        for method, now, word in zip(USUAL_CAST, after, before, strict=True):
+            if now != word:
+                changes.append((lockstep.step, method, now))
+        before = after
+    verdicts = milestones(lockstep, "verdict")
+    assert [(each.step, each.method, each.verdict) for each in verdicts] == changes
+    assert before == BELOW_THE_LIMITS
+
+
+def test_rk4s_error_passes_verlets_once_for_good() -> None:
+    lockstep = moved(SCENES["crossover"], [7] * 86)
+    (passing,) = milestones(lockstep, "errors cross")
+    assert (passing.method, passing.other, passing.step) == (R, V, 167)
+    assert passing.t == pytest.approx(33.4)
+    assert {R, V} <= {each.method for each in milestones(lockstep, "verdict") if each.step <= 167}
+
+
+def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
+    lockstep = moved(Scene(model="linear", h=1.0), [2000])
+    failed = {each.method: each.t for each in milestones(lockstep, "failed")}
+    readings = lockstep.sample().readings
+    ends = {m: r.diverged_at for m, r in zip(USUAL_CAST, readings, strict=True) if r.diverged_at}
+    assert failed == ends
+    assert failed
+    assert [word == "failed" for word in words(lockstep)] == [m in failed for m in USUAL_CAST]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped", "stiff-slow"],
+)
+def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str) -> None:
+    scene, uneven = SCENES[name], random.Random(1)
+    steps = min(8000, math.ceil(40 * (scene.exact().period or 1.0) / scene.h))
+    whole = moved(scene, [steps])
+    assert whole.milestones
+    gaps = [uneven.randint(1, 400) for _ in range(steps // 400)]
+    cut = moved(scene, [*gaps, steps - sum(gaps)], PlainLoops)
+    assert (cut.milestones, cut.judgements) == (whole.milestones, whole.judgements)
+
+
+@settings(max_examples=6, deadline=None)
+@given(back=st.integers(0, 1500), at=st.integers(0, 1500))
+def test_after_a_way_back_verdicts_are_those_of_their_step(back: int, at: int) -> None:
+    run = RewindableRun(DRIFT, loops=LOOPS)
+    run.forward(1500)
+    run.go_to(back)
+    run.forward(max(0, at - back))
+    alone = moved(DRIFT, [run.step])
+    assert run.lockstep.judgements == alone.judgements
+    assert list(run.lockstep.milestones) == list(alone.milestones)
+
+
+def test_a_change_of_the_stepping_in_the_past_forgets_what_came_later() -> None:
+    run = RewindableRun(DRIFT, loops=LOOPS)
+    run.forward(1200)
+    everything = list(run.lockstep.milestones)
+    run.go_to(300)
+    run.branch(2)
+    run.change(Stepping(0.02, cast=DRIFT.cast))
+    assert list(run.lockstep.milestones) == [each for each in everything if each.step <= 300]
+    assert set(words(run.lockstep)) == {"undecided"}
+    run.forward(1500)
+    assert words(run.lockstep) == BELOW_THE_LIMITS
+
+
+@pytest.mark.parametrize("name", ["drift", "near-separatrix", "crossover"])
+def test_nothing_is_simulated_for_the_judge(name: str) -> None:
+    """Velocity Verlet evaluates the force once a step, and once more where it begins."""
+    calls = []
+
+    def counting(force, phase, h):
+        return V.phases(lambda theta: calls.append(theta) or force(theta), phase, h)
+
+    scene = SCENES[name].with_cast((replace(V, phases=counting),))
+    moved(scene, [600], PlainLoops)
+    assert sum(type(theta) is float for theta in calls) == 601  # tangent maps take complex numbers
