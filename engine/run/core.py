@@ -26,11 +26,11 @@ class Bins(NamedTuple):
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        return Bins(*(column[-count:] for column in self[:5]), *self[5:])
+        return Bins._make([*(column[-count:] for column in self[:5]), *self[5:]])
 
     def scaled(self, factor: float) -> "Bins":
         """Return the bins of energies multiplied by a factor."""
-        return Bins(self.times, *(energies * factor for energies in self[1:]))
+        return Bins._make([self.times, *(energies * factor for energies in self[1:])])
 
 
 class Part:

@@ -93,10 +93,10 @@ class Slope:
         log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
         log = log - (sizes / 2 * log_sums).sum(axis=1)
         deviations = np.sqrt(residual / models.freedoms / squares)
-        columns = [centres, deviations, models.freedoms, models.walks, log]
+        columns: Any = (centres, deviations, models.freedoms, models.walks, log)
         if white > 0:
             known = _white_model(v, x, white)
-            columns = [np.append(*each) for each in zip(columns, known, strict=True)]
+            columns = (np.append(*each) for each in zip(columns, known, strict=True))
         centres, deviations, freedoms, walks, log = columns
         weights = np.exp(log - log.max())
         weights = weights / weights.sum()
