@@ -131,6 +131,10 @@ LAYOUTS = (
         columns=("temperature (K)", "kinetic (eV)", "potential (eV)"),
     ),
     Layout(
+        programs="JSON, an object a line",
+        line=rf'"(?P<name>(?!\d+")[^"]+)" *: *"?{VALUE}"?(?=\s*[,}}])',
+    ),
+    Layout(
         programs="prints of name value",
         line=rf"(?<!\S)(?P<name>[A-Z]\w{{,40}}) +{VALUE},?"
         rf"(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",

@@ -1,4 +1,7 @@
-"""Read the tables of any program: text of any layout, JSON, NumPy arrays, compressed or not."""
+"""Read the tables of any program: lines of text, JSON, NumPy arrays, compressed or not.
+
+Documents and arrays become lines of text, a record each, so that there is one reader.
+"""
 
 import bz2
 import csv
@@ -8,8 +11,7 @@ import json
 import lzma
 import re
 import zlib
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
 from typing import Any
@@ -19,18 +21,17 @@ import numpy as np
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
-from pendu_tui.tui.cli.tables import SAMPLE, Sheet, Wanted, choose, known_names
+from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names
 from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
-MAX_LINE = 1 << 20  # bytes
+MAX_LINE = 1 << 20  # characters
 MAX_LINES_BEFORE = 100_000  # the first row
 MAX_LINES = 5_000_000  # some seconds; the input may be endless
-TOO_MANY = f"more than {MAX_LINES:,} lines; leave some out."
-MAX_DOCUMENT = 1 << 28  # characters of JSON
+BLOCK = 1 << 16  # characters
+MAX_DOCUMENT = 1 << 27  # characters of JSON
 MAX_COLUMNS = 5000
 MAX_SHAPES = 10_000
 MAX_HEADS = 20  # lines that may be the head of the next row
-BLOCK = 1 << 16  # characters
 _NOT_TEXT = {
     b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
     b"PAR1": "Parquet; save it as CSV",
@@ -42,12 +43,11 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBER_LIKE = re.compile(r"[-+.\d][\d.]*(?:[eEdD][-+]?\d+)?")  # three times as fast as NUMBER
+_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?:[eEdD][-+]?\d+)?)")  # twice as fast as NUMBER
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
-_NO_NUMBERS = {ord(sign): None for sign in "0123456789.+-"}
 _FORTRAN_POWERS = str.maketrans("dD", "ee")
 
 
@@ -65,7 +65,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     if not start:
         raise unreadable("the input is empty; nothing to judge.")
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return [_of_arrays(stream, wanted)]
+        return _Text(wanted, file).read(_records(_arrays(stream)))
     for magic, kind in _NOT_TEXT.items():
         if start.startswith(magic):
             raise unreadable(f"this is {kind}.")
@@ -75,28 +75,103 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     elif b"\0" in start:
         raise unreadable("this is not text.")
     text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
+    lines = _lines(text)
     if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
-        return _of_json(text, wanted, file)
-    return _Text(wanted, file).read(_blocks(text))
+        lines = _json(text)
+    return _Text(wanted, file).read(lines)
 
 
 def unreadable(sentence: str) -> UserError:
     return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
-def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
-    """Yield lines, many at a time.  Raises UserError where there is no end to them."""
+def _lines(text: io.TextIOBase) -> Iterator[str]:
+    """Yield lines.  Raises UserError where there is no end to them."""
     count = 0
     rest = ""
     while chunk := text.read(BLOCK):
         *lines, rest = (rest + chunk).split("\n")
         count += len(lines)
         if count > MAX_LINES:
-            raise unreadable(TOO_MANY)
-        if len(rest) > MAX_LINE:
+            raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
+        if max(map(len, [*lines, rest])) > MAX_LINE:
             raise unreadable("a line is longer than 1 MB; is this a table?")
-        yield lines
-    yield [rest]
+        yield from lines
+    yield rest
+
+
+def _json(text: io.TextIOBase) -> Iterator[str]:
+    """Yield a line for each record of a document or of lines of JSON, or other lines as they are."""
+    whole = text.read(MAX_DOCUMENT)
+    if len(whole) == MAX_DOCUMENT:
+        raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
+    document = _parsed(whole)
+    if document is not None:
+        yield from _records(document)
+        return
+    for line in _lines(io.StringIO(whole)):
+        item = None
+        if line.count("{") > 1 or "[" in line:
+            item = _parsed(line)
+        yield line if item is None else _record(item)
+
+
+def _parsed(text: str) -> Any:
+    with suppress(ValueError, RecursionError):
+        return json.loads(text)
+    return None
+
+
+def _records(document: Any) -> Iterator[str]:
+    """Yield a line for each object or row of a list, or for each row of an object of lists."""
+    if isinstance(document, list):
+        yield from map(_record, document)
+    if not isinstance(document, dict):
+        return
+    columns = {}
+    for name, each in document.items():
+        if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
+            each = [*each.values()]
+        if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], (dict, list)):
+            columns[name] = each
+    size = max(map(len, columns.values()), default=0)
+    columns = {name: each for name, each in columns.items() if len(each) == size}
+    if columns:
+        rows = zip(*columns.values(), strict=True)
+        yield from (_record(dict(zip(columns, row, strict=True))) for row in rows)
+        return
+    for inner in document.values():
+        for first in (lines := _records(inner)):
+            yield from chain([first], lines)
+            return
+
+
+def _record(item: Any) -> str:
+    """Return an object or a row in one line; the names of inner values have those around them."""
+    if isinstance(item, list):
+        return " ".join(map(str, item))
+    return json.dumps(dict(_flat(item)), ensure_ascii=False)
+
+
+def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(item, dict):
+        for inner, value in item.items():
+            yield from _flat(value, f"{name}.{inner}".lstrip("."))
+    elif not isinstance(item, list):
+        yield name, item
+
+
+def _arrays(stream: io.BufferedReader) -> Any:
+    """Return the arrays of an .npz or .npy as lists, by name if they have names."""
+    try:
+        loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
+        names = getattr(loaded, "files", None) or loaded.dtype.names
+        if not names:
+            return loaded.reshape(len(loaded), -1).tolist()
+        return {name: np.squeeze(loaded[name]).tolist() for name in names}
+    except Exception as error:  # a broken archive may raise anything
+        why = printable(str(error), 100)
+        raise unreadable(f"its arrays cannot be read: {why}; save a workbook as CSV.") from None
 
 
 def number(text: str) -> float | None:
@@ -104,7 +179,7 @@ def number(text: str) -> float | None:
 
     It may have a decimal comma, Fortran's D, a unit or brackets.
     """
-    text = text.strip("()[] \t\"'")
+    text = text.strip("()[] \t\r\n\"'")
     with suppress(ValueError):
         return float(text)
     if _IS_FAILED.fullmatch(text):
@@ -119,140 +194,84 @@ def number(text: str) -> float | None:
     return None
 
 
+def _values(fields: Sequence[str], places: Group, is_certain: bool) -> list[float | None]:
+    """Return the numbers in fields that are certain to be some, nothing if the first is none."""
+    try:
+        return [float(fields[place]) for place in places]
+    except ValueError:
+        values = [number(fields[place]) for place in places if is_certain]
+        return values if values and values[0] is not None else []
+
+
 class _Text:
     """Tables in lines of text."""
 
     def __init__(self, wanted: Wanted, file: str) -> None:
         self._wanted = wanted
-        self._units = ("", "")  # of times and energies, if the layout has only these
-        self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
-        self._labels: dict[int, str] = {}  # names of columns by place
-        self._passed = 0  # columns of earlier sets
-        self._shared: list[str] = []  # units of xmgrace's y axis
-        named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
-        self._columns = list(next(named, ()))
+        self._line = 0
         self._sheets: list[Sheet] = []
+        self._prints = [Sheet(wanted, is_printed=True)]  # of each run
+        self._shapes: dict[str, tuple[Group, Group]] = {}  # what lines of known shapes hold
         self._delimiter: str | None = None
         self._opening = ""  # the word with which each row begins
-        self._width = 0  # fields in a row
-        self._prints = [Sheet(wanted, is_printed=True)]  # of each run
+        self._width = -1  # fields in a row
+        self._remarks = 0  # lines of text since the last row
+        self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
+        self._units = ("", "")  # of times and energies, if the layout has only these
+        named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
+        self._labels = dict(enumerate(next(named, ())))  # names of columns by place
+        self._passed = 0  # columns of earlier sets
+        self._shared: list[str] = []  # units of xmgrace's y axis
         self._over: list[str] = []  # names above a line of numbers
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
-        self._line = 0
-        self._remarks = 0  # lines of text since the last row
-        self._shapes: dict[str, list[tuple[str, int]]] = {}  # what lines of known shapes hold
 
-    def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
+    def read(self, lines: Iterable[str]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
-        for block in blocks:
-            at = 0
-            while at < len(block):
-                at += self._read_known(block[at:]) or self._read_line(block[at])
-            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0]:
+        for self._line, line in enumerate(lines, 1):
+            if not self._read_known(line):
+                self._read_new(line)
+            if self._line == MAX_LINES_BEFORE and not self._sheets and not self._prints[0].puts:
                 raise unreadable(f"{self._line:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
         for sheet in self._prints:
             sheet.choose()
             if sheet.choice and sheet.choice.energy and not (named and sheet.choice.doubt):
                 named.append(sheet)
-        return sorted(named or self._sheets, key=lambda sheet: sheet.line)
+        return sorted(named or self._sheets or self._prints, key=lambda sheet: sheet.line)
 
-    def _read_known(self, lines: list[str]) -> int:
-        """Read the first of these lines, as far as they are like earlier ones; count them."""
+    def _read_known(self, line: str) -> bool:
+        """Read a line that is like an earlier one.  Return whether it is."""
         if self._heads or self._over or self._is_over or self._begins:
-            return 0
-        rows: list[int] = []
-        others: dict[str, list[int]] = {}
-        for place, line in enumerate(lines):
-            is_row = self._width > 0 and self._is_like_a_row(line)
-            if is_row and not line.lstrip()[:1].isalpha():
-                rows.append(place)
-                continue
-            shape = line.translate(_NO_NUMBERS)
-            if shape in self._shapes:
-                others.setdefault(shape, []).append(place)
-            elif is_row:
-                rows.append(place)
-            else:
-                lines = lines[:place]
-                break
-        count = self._read_rows(lines, rows)
-        for shape, places in others.items():
-            self._read_shape(shape, lines, [place for place in places if place < count])
-        below = max((place + 1 for place in rows if place < count), default=0)
-        if below:
-            self._remarks = 0
-        self._remarks += sum(map(bool, map(str.strip, lines[below:count])))
-        self._line += count
-        return count
+            return False
+        if (
+            self._sheets
+            and len(fields := _split(line, self._delimiter)) == self._width
+            and line.startswith(self._opening)
+        ):
+            sheet = self._sheets[-1]
+            if values := _values(fields, sheet.kept, self._delimiter is not None):
+                sheet.put(self._line, sheet.kept, values)
+                self._remarks = 0
+                return True
+        fields = _NUMBERS.split(line)
+        known = self._shapes.get("\0".join(fields[::2]))
+        if known is None:
+            return False
+        places, found = known
+        if places:
+            fields.append("nan")
+            if not (values := _values(fields, found, is_certain=True)):
+                return False
+            self._prints[-1].put(self._line, places, values)
+        self._remarks += bool(line.strip())
+        return True
 
-    def _is_like_a_row(self, line: str) -> bool:
-        is_wide = len(_split(line, self._delimiter)) == self._width
-        return is_wide and line.startswith(self._opening) and line.strip() != ""
-
-    def _read_rows(self, lines: list[str], rows: list[int]) -> int:
-        """Read the lines at these places into the last table.  Return how many lines are done."""
-        if not rows:
-            return len(lines)
-        sheet = self._sheets[-1]
-        if len(sheet) < SAMPLE:
-            return rows[0]
-        if sheet.choice is None:
-            sheet.choose()
-        texts = [lines[place] for place in rows]
-        with suppress(ValueError):
-            block = np.loadtxt(
-                texts,
-                delimiter=self._delimiter,
-                comments=None,
-                quotechar='"',
-                usecols=sheet.kept,
-                ndmin=2,
-            )
-            sheet.extend(self._line + 1 + np.array(rows), block, sheet.kept)
-            return len(lines)
-        for place, text in zip(rows, texts, strict=True):
-            fields = _split(text, self._delimiter)
-            numbers = {at: number(fields[at]) for at in sheet.kept}
-            if numbers[sheet.kept[0]] is None:
-                return place
-            sheet.put_row(self._line + 1 + place, numbers)
-        return len(lines)
-
-    def _read_shape(self, shape: str, lines: list[str], places: list[int]) -> None:
-        """Read the lines at these places, which have a known shape.
-
-        They hold nothing, or numbers: a count, and names with their places in it, -1 for nan.
-        """
-        holds = self._shapes[shape]
-        if not holds or not places:
-            return
-        text = "\n".join([lines[place] for place in places]).replace("D", "e").replace("d", "e")
-        numbers = _NUMBER_LIKE.findall(text)
-        count = holds[0][1]
-        nans = ["nan"] * len(places)
-        try:
-            if len(numbers) != count * len(places):
-                raise ValueError
-            columns = [[*map(float, nans if at < 0 else numbers[at::count])] for _, at in holds[1:]]
-        except ValueError:
-            first = self._line
-            for place in places:
-                self._line = first + place
-                self._read_line(lines[place])
-            self._line = first
-            return
-        sheet = self._prints[-1]
-        kept = [sheet.place(name, self._unit(name)) for name, _ in holds[1:]]
-        sheet.extend(self._line + 1 + np.array(places), np.array(columns).T, kept)
-
-    def _read_line(self, line: str) -> int:
-        """Read one line: what a layout finds in it, or else words or a row.  Return 1."""
-        self._line += 1
+    def _read_new(self, line: str) -> None:
+        """Read a line of a new form: what a layout finds in it, or else words or a row."""
         self._remarks += bool(line.strip())
         if self._read_below(line):
-            return 1
+            return
         values: dict[str, tuple[int, str]] = {}
         is_data = False
         for layout in LAYOUTS:
@@ -270,24 +289,25 @@ class _Text:
         is_nothing = not is_data and not self._is_over and self._words_or_row(line)
         if is_nothing or values:
             self._remember(line, values)
-        return 1
 
     def _remember(self, line: str, values: dict[str, tuple[int, str]]) -> None:
         """Remember what lines of this shape hold: these values, at their places in the line."""
-        numbers = {match.start(): match[0] for match in _NUMBER_LIKE.finditer(line)}
-        holds = [("", len(numbers))]
+        numbers = {match.start(): match[0] for match in _NUMBERS.finditer(line)}
+        places = self._prints[-1].places
+        holds: dict[int, int] = {}
         for name, (start, text) in values.items():
-            if re.search(r"\d", name):  # another name may have the same shape
+            if name not in places or _NUMBERS.search(name):  # another name may have this shape
                 return
             if numbers.get(start) == text:
-                holds.append((name, [*numbers].index(start)))
+                holds[places[name]] = 2 * [*numbers].index(start) + 1
             elif _IS_FAILED.fullmatch(text):
-                holds.append((name, -1))
+                holds[places[name]] = -1
             else:
                 return
-        shape = line.translate(_NO_NUMBERS)
-        if len(self._shapes) < MAX_SHAPES and re.search(r"[^\W\d_]", shape):
-            self._shapes[shape] = holds if values else []
+        shape = _NUMBERS.sub("\0", line)
+        is_text = re.search(r"[^\W\d_]", shape) or not numbers
+        if len(self._shapes) < MAX_SHAPES and is_text:
+            self._shapes[shape] = (tuple(holds), tuple(holds.values()))
 
     def _read_below(self, line: str) -> bool:
         """Read values below their names.  Return whether there are such."""
@@ -308,6 +328,7 @@ class _Text:
                 self._is_over = False
                 self._passed += max(self._width - 1, 0)
                 self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
+                self._shapes.clear()
             case {"end": _}:
                 self._is_over = True
             case {"again": _}:
@@ -341,7 +362,8 @@ class _Text:
         return True
 
     def _print(self, name: str, value: float | None, unit: str = "") -> None:
-        self._prints[-1].print(name, unit or self._unit(name), self._line, value)
+        if value is not None:
+            self._prints[-1].print(name, unit or self._unit(name), self._line, value)
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or that of its layout's times or energies."""
@@ -357,7 +379,7 @@ class _Text:
         text = line.strip()
         bare = text.lstrip("#@!%; \t")
         if text.startswith("@") or not re.search(r"[\w*]", text):
-            return False  # what else xmgrace is told, or a rule
+            return True  # what else xmgrace is told, or a rule
         is_comment = bare != text and number(text.split()[0]) is None
         fields, delimiter = _fields(bare)
         if len(fields) > MAX_COLUMNS:
@@ -388,7 +410,8 @@ class _Text:
             is_like = True
         if is_like:
             self._remarks = 0
-            self._sheets[-1].put_row(self._line, dict(enumerate(numbers)))
+            sheet = self._sheets[-1]
+            sheet.put(self._line, sheet.kept, [numbers[place] for place in sheet.kept])
         elif self._sheets and opening == self._opening and (opening or numbers[0] is not None):
             self._sheets[-1].skipped += 1
         return is_like
@@ -442,13 +465,11 @@ class _Text:
         width = len(fields)
         above = (names for ways in [*self._heads.values()][::-1] for names in ways)
         labels = [names for names in (self._labelled(width),) if any(names)]
-        for names in chain(labels, above, [self._columns]):
+        for names in chain(labels, above):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
             elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
                 names = ["", *names]  # the rows are numbered
-            elif names is self._columns:
-                names = [*names, *[""] * (width - len(names))]
             if len(names) == width and (worth := self._worth(names, numbers)) > most:
                 found = names
                 most = worth
@@ -542,101 +563,3 @@ def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
     if glued:
         text = _GLUED.sub(" ", text)
     return _split(text, None) or [""], None
-
-
-def _of_json(text: io.TextIOBase, wanted: Wanted, file: str) -> list[Sheet]:
-    """Read JSON: an object or a list a line, or one document."""
-    lines = _lines(text)
-    first = next((line for line in lines if line.strip()), "")
-    second = next(lines, "")
-    item = _parsed(first)
-    items: Iterable[Any] = _records(item)
-    if item is not None and second.strip():
-        items = chain([item], map(_parsed, chain([second], lines)))
-    elif item is None:
-        whole = first + second + text.read(MAX_DOCUMENT)
-        item = _parsed(whole)
-        if item is None:
-            return _Text(wanted, file).read([whole.split("\n")])
-        items = _records(item)
-    sheet = Sheet(wanted, is_printed=True)
-    for line, item in enumerate(items):
-        for name, text in _flat(item):
-            sheet.print(name, split_unit(name)[1], line, number(str(text)))
-    return [sheet]
-
-
-def _lines(text: io.TextIOBase) -> Iterator[str]:
-    for _ in range(MAX_LINES):
-        line = text.readline(MAX_DOCUMENT)
-        if not line:
-            return
-        yield line
-    raise unreadable(TOO_MANY)
-
-
-def _parsed(text: str) -> Any:
-    with suppress(ValueError, RecursionError):
-        return json.loads(text)
-    return None
-
-
-def _records(item: Any) -> Iterable[Any]:
-    """Return the objects or rows in a document: those of a list, or of lists in an object."""
-    if isinstance(item, list):
-        return item
-    if not isinstance(item, dict):
-        return []
-    columns = {}
-    for name, each in item.items():
-        if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
-            each = [*each.values()]
-        if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], (dict, list)):
-            columns[name] = each
-    size = max(map(len, columns.values()), default=0)
-    columns = {name: each for name, each in columns.items() if len(each) == size}
-    if columns:
-        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    return next(filter(None, map(_records, item.values())), [])
-
-
-def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the values of an object with their names; those of a list have numbers."""
-    if isinstance(item, dict):
-        for inner, value in item.items():
-            yield from _flat(value, f"{name}.{inner}".lstrip("."))
-    elif isinstance(item, list) and not name:
-        for place, value in enumerate(item, 1):
-            yield str(place), value
-    elif not isinstance(item, list):
-        yield name, item
-
-
-def _of_arrays(stream: io.BufferedReader, wanted: Wanted) -> Sheet:
-    """Read an .npz of columns, or an .npy of a column, of columns or of records."""
-    try:
-        loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
-        names: Any = getattr(loaded, "files", None) or loaded.dtype.names or [""]
-        if hasattr(loaded, "zip") and not all(
-            name.endswith(".npy") for name in loaded.zip.namelist()
-        ):
-            raise unreadable("this is a workbook or another archive; save the table as CSV.")
-        arrays = [(name, loaded[name or ...]) for name in names]
-        columns = [
-            (name, column.astype(float))
-            for name, each in arrays
-            if each.ndim in (1, 2) and each.size
-            for column in np.reshape(each, (len(each), -1)).T
-        ]
-    except UserError:
-        raise
-    except Exception as error:  # a broken archive may raise anything
-        raise unreadable(f"its arrays cannot be read: {printable(str(error), 100)}.") from None
-    sheet = Sheet(wanted)
-    rows = Counter(len(column) for _, column in columns).most_common(1)
-    long = [(name, column) for name, column in columns if len(column) == rows[0][0]]
-    for name, _ in long:
-        sheet.add_column(name, split_unit(name)[1])
-    block = np.stack([column for _, column in long], axis=1)
-    sheet.extend(np.arange(len(block)), block, sheet.kept)
-    return sheet

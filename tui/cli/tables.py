@@ -7,7 +7,8 @@ restart from a checkpoint: the same series.
 
 import math
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -58,8 +59,8 @@ class Choice(NamedTuple):
     doubt: str = ""  # what is not certain
 
     @property
-    def columns(self) -> list[int]:
-        return sorted({*self.time, *self.energy, *self.kinetic})
+    def columns(self) -> Group:
+        return tuple(sorted({*self.time, *self.energy, *self.kinetic}))
 
 
 def choose(
@@ -69,11 +70,13 @@ def choose(
 
     `samples` are the first values of each column; a column without a name is called "".
     """
-    asked = (wanted.time, wanted.energy, wanted.kinetic)
-    groups = [name and find(names, name) for name in asked]
-    if any(name and not group for name, group in zip(asked, groups, strict=True)):
-        return None
-    time, energy, kinetic = (group or () for group in groups)
+    groups: list[Group] = []
+    for name in (wanted.time, wanted.energy, wanted.kinetic):
+        group = find(names, name) if name else ()
+        if group is None:
+            return None
+        groups.append(group)
+    time, energy, kinetic = groups
     doubts = []
     if not wanted.time:
         guess = _time(names, samples, excluded=energy)
@@ -92,19 +95,20 @@ def find(names: Sequence[str], text: str) -> Group | None:
 
     Case and unit of a name do not count, if it is not there to the letter.
     """
-    known: dict[str, int] = {}
-    for ways in (str.strip, _bare, lambda name: name.strip().casefold()):
+    for parts in ([text], text.split("+")):
+        found = [_place(names, part.strip()) for part in parts]
+        if None not in found:
+            return tuple(place for place in found if place is not None)
+    return None
+
+
+def _place(names: Sequence[str], text: str) -> int | None:
+    if text.isdecimal() and 0 < int(text) <= len(names):
+        return int(text) - 1
+    for way in (str.strip, str.casefold, _bare):
         for place, name in enumerate(names):
-            known.setdefault(ways(name), place)
-    known |= {str(place + 1): place for place in range(len(names))}
-    known.pop("", None)
-    for parts in ([text.strip()], text.split("+")):
-        found = []
-        for part in parts:
-            spellings = (part.strip(), part.strip().casefold(), _bare(part))
-            found += [known[each] for each in spellings if each in known][:1]
-        if len(found) == len(parts):
-            return tuple(found)
+            if name and way(name.strip()) == way(text):
+                return place
     return None
 
 
@@ -120,12 +124,12 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         if place not in excluded and len(sample) > 2 and (np.diff(sample) > 0).all()
     ]
     for known in ("time", "step"):
-        places = [place for place, name in enumerate(names) if role(name)[0] == known]
-        # T is a temperature, unless it increases
         places = [
             place
-            for place in places
-            if _bare(names[place]) != "t" or names[place][0] == "t" or place in rising
+            for place, name in enumerate(names)
+            if role(name)[0] == known
+            # T is a temperature, unless it increases
+            and (_bare(name) != "t" or name[0] == "t" or place in rising)
         ]
         if places:
             return (
@@ -145,37 +149,29 @@ def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Grou
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
         return _only(places)
-    roles: dict[tuple[str, int], list[int]] = {}
+    roles: dict[str, dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
     for place in places:
         unit = units[place]
-        is_energy = plain("energy", unit) or not (
-            plain("time", unit) or unit.casefold() in NO_ENERGIES
-        )
-        if is_energy:
-            roles.setdefault(role(names[place]), []).append(place)
-    ranked = [roles[each] for each in sorted(roles, key=lambda each: each[1])]
-    best = [found for found in ranked if role(names[found[0]])[0] in ("conserved", "total")]
-    if best:
-        return _only(best[0])
+        if plain("energy", unit) or not (plain("time", unit) or unit.casefold() in NO_ENERGIES):
+            name, rank = role(names[place])
+            roles[name][rank].append(place)
+    for name in ("conserved", "total"):
+        if name in roles:
+            return _only(roles[name][min(roles[name])])
     parts = [
         place
-        for (name, _), found in sorted(roles.items())
+        for name in ("kinetic", "potential")
+        for found in roles[name].values()
         for place in found
-        if name in ("kinetic", "potential")
     ]
-    if [role(names[place])[0] for place in parts] == ["kinetic", "potential"]:
-        if units[parts[0]] != units[parts[1]]:
-            return ()
-        return tuple(parts)
-    errors = [place for place in places if role(names[place])[0] == "error"]
-    return _only(errors)
+    if len(roles["kinetic"]) == len(roles["potential"]) == 1 and len(parts) == 2:
+        return tuple(parts) if units[parts[0]] == units[parts[1]] else ()
+    return _only([place for place in places if role(names[place])[0] == "error"])
 
 
 def _only(places: Sequence[int]) -> Group:
     """Return the only one of some columns, () if there are more."""
-    if len(places) > 1:
-        return ()
-    return tuple(places)
+    return tuple(places) if len(places) == 1 else ()
 
 
 def known_names(names: Sequence[str]) -> int:
@@ -194,99 +190,81 @@ class Sheet:
         self.names: list[str] = []
         self.units: list[str] = []
         self.line = line  # where it begins
-        self.kept: Sequence[int] = ()  # the columns that are still read
+        self.kept: Group = ()  # the columns that are still read
         self.choice: Choice | None = None
         self.skipped = 0  # rows without numbers
+        self.puts = 0
         self.places: dict[str, int] = {}  # of columns by name
-        self._lines: list[array[int]] = []
-        self._values: list[array[float]] = []
         self.wanted = wanted
         self._is_printed = is_printed
+        self._once: dict[str, tuple[int, float]] = {}  # what was printed only once
+        self._values: dict[Group, array[float]] = defaultdict(lambda: array("d"))
+        """The line and the values of some columns, in turn."""
 
-    def add_column(self, name: str, unit: str = "") -> int:
-        """Add an empty column and return its place."""
+    def add_column(self, name: str, unit: str = "") -> None:
+        self.kept += (len(self.names),)
         self.names.append(name)
         self.units.append(unit)
-        self._lines.append(array("q"))
-        self._values.append(array("d"))
-        self.kept = range(len(self.names))
-        return len(self.names) - 1
 
-    def place(self, name: str, unit: str = "") -> int:
-        """Return the place of a named column, which is added if it is not there yet."""
-        if name not in self.places:
-            bare = "" if name.isdecimal() else name  # a place in a list
-            self.places[name] = self.add_column(bare, unit)
-        return self.places[name]
+    def put(self, line: int, places: Group, values: Sequence[float | None]) -> None:
+        """Add the values of some columns that are numbers."""
+        if None in values:
+            pairs = zip(places, values, strict=True)
+            places = tuple(place for place, value in pairs if value is not None)
+            values = [value for value in values if value is not None]
+        self._values[places].extend((line, *values))  # type: ignore[arg-type]
+        self.puts += 1
+        if self.puts == SAMPLE:
+            self.choose()
 
-    def put(self, place: int, line: int, value: float) -> None:
-        self._lines[place].append(line)
-        self._values[place].append(value)
-
-    def print(self, name: str, unit: str, line: int, value: float | None) -> None:
-        """Add a value that is printed with its name."""
-        if value is not None and (name in self.places or len(self.places) < MAX_NAMES):
-            self.put(self.place(name, unit), line, value)
-
-    def put_row(self, line: int, numbers: Mapping[int, float | None]) -> None:
-        for place in self.kept:
-            value = numbers[place]
-            if value is not None:
-                self.put(place, line, value)
-
-    def extend(self, lines: Any, block: Any, places: Sequence[int]) -> None:
-        """Add rows of some columns, (n, len(places)), found in these lines."""
-        for place, values in zip(places, block.T, strict=True):
-            self._lines[place].frombytes(lines.tobytes())
-            self._values[place].frombytes(values.tobytes())
+    def print(self, name: str, unit: str, line: int, value: float) -> None:
+        """Add a value that is printed with its name.  Once is not repeatedly."""
+        if name not in self.places and name in self._once:
+            self.places[name] = len(self.names)
+            self.add_column(name, unit)
+            first, before = self._once[name]
+            self.put(first, (self.places[name],), [before])
+        if name in self.places:
+            self.put(line, (self.places[name],), [value])
+        elif len(self._once) < MAX_NAMES:
+            self._once[name] = (line, value)
 
     def _column(self, place: int) -> tuple[Any, Any]:
         """Return the lines and values of a column, in the order of the lines."""
-        lines = np.array(self._lines[place])
-        values = np.array(self._values[place])
-        if (lines[1:] < lines[:-1]).any():
-            order = np.argsort(lines, kind="stable")
-            return lines[order], values[order]
-        return lines, values
-
-    def __len__(self) -> int:
-        """Return the length of the longest column."""
-        return max(map(len, self._values), default=0)
+        found = [np.empty((0, 2))]
+        for places, values in self._values.items():
+            if place in places:
+                table = np.frombuffer(values).reshape(-1, 1 + len(places))
+                found.append(table[:, [0, 1 + places.index(place)]])
+        column = np.concatenate(found)
+        order = np.argsort(column[:, 0], kind="stable")
+        return column[order, 0], column[order, 1]
 
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
         samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
         if len(self.names) > 1 and not self.names[0] and any(self.names) and not _counts(samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
-        if self._is_printed:  # once is not repeatedly
-            named = zip(self.names, samples, strict=True)
-            samples = [sample for name, sample in named if len(sample) > 1]
-            once = [place for place, values in enumerate(self._values) if len(values) < 2]
-            for place in reversed(once):
-                for columns in (self.names, self.units, self._lines, self._values):
-                    del columns[place]
         self.choice = choose(self.names, self.units, samples, self.wanted)
-        self.kept = (self.choice or Choice()).columns
-        if not self.kept and len(self):
-            self.kept = [0]  # to count rows
+        if not self._is_printed and self.puts >= SAMPLE:
+            self.kept = (self.choice or Choice()).columns or (0,)  # to count rows
 
     def last_time(self) -> float | None:
         """Return the time of the last row; None if it is not known which column that is."""
         if self.choice is None:
             self.choose()
-        time = (self.choice or Choice()).time
-        if len(time) != 1 or not self._values[time[0]]:
+        columns = [*(self.choice or Choice()).time]
+        if len(columns) != 1:
             return None
-        return self._values[time[0]][-1]
+        _, values = self._column(columns[0])
+        return float(values[-1]) if len(values) else None
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
         self.choose()
         choice = self.choice or Choice()
-        if not self._lines:
-            return
-        leading = (*choice.time, *choice.energy, 0)[0]
-        lines = self._column(leading)[0]
+        leading = [*choice.time, *choice.energy, 0]
+        lines, _ = self._column(leading[0])
         if not len(lines):
             return
         columns = {}
