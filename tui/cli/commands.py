@@ -228,3 +228,22 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
 }
 """The commands by name, in the order of pendu-tui --help."""
+
+DROPPED = {
+    "stability --section": "pendu-tui live, and there F3 and the key x",
+    "stability --starts": "pendu-tui live, and there F3 and the key x",
+    "stability --map": "-o map.csv; pendu-tui live draws it with F5",
+    "run --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    "judge --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    "run --resume": "several lists that are shorter",
+    "run --executor": "--workers N, or --dask ADDRESS for other machines",
+    "stability --executor": "--workers N, or --dask ADDRESS for other machines",
+    "accuracy --executor": "--workers N, or --dask ADDRESS for other machines",
+    "accuracy --budget": "--target, whose table has the cost of each method",
+    "accuracy --safety": "a smaller --target",
+    "export --format": "CSV, which DuckDB, polars and pandas read",
+    "recordings prune": "rm; pendu-tui recordings lists the files, newest first",
+    "diff": "pendu-tui verify, which names the first difference; or export both and compare",
+    "live --ghost": "pendu-tui replay FILE; in the lab r keeps the run before it, dimmed",
+}
+"""What to use instead of a COMMAND, a `COMMAND SUBCOMMAND` or a `COMMAND --option` of before."""

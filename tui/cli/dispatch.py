@@ -12,11 +12,12 @@ from _thread import interrupt_main
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.inputs import did_you_mean
-from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ def _dispatch(arguments: list[str]) -> int:
         if arguments and arguments[0].startswith("--print-completion"):
             completion_parser().parse_args(arguments)
         name, arguments = split(arguments)
+        refuse_dropped(name, arguments)
         options = parser_of(name).parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
         return Exit.FINE
@@ -125,7 +127,7 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     If the first word is a scene or a file, the command is live or replay.
     """
     first = next(iter(arguments), "-")
-    if first in COMMANDS:
+    if first in COMMANDS or first in DROPPED:
         return first, arguments[1:]
     if first.endswith((".mcap", ".mcap.part")):
         return "replay", arguments
@@ -136,6 +138,14 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     if first in SCENES:
         return "live", arguments
     return first, []
+
+
+def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
+    """Raise UserError if a command, or one of the words after it, has been dropped."""
+    words = takewhile("--".__ne__, arguments)
+    for name in (command, *(f"{command} {word.partition('=')[0]}" for word in words)):
+        if name in DROPPED:
+            raise UserError(f"{name} has been dropped; use instead: {DROPPED[name]}.")
 
 
 def parser_of(name: str) -> "Parser":

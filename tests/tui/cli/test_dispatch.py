@@ -12,7 +12,7 @@ import pytest
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.recordings.files import GOLDEN
-from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.commands import options
@@ -52,10 +52,18 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("export drift a.csv", 2, "-o a.csv"),
         ("--h 0.1 run", 2, "there is no scene 'run'"),
         ("--theta=--", 2, "--theta: expected one argument"),
+        *((f"{name} x --json", 2, new) for name, new in DROPPED.items()),
     ],
 )
 def test_a_mistake_is_one_sentence_that_helps(line, code, words):
     assert pendu(*line.split()).refused(code, words)
+
+
+def test_what_has_been_dropped_does_not_exist():
+    options = {
+        f"{name} {option}" for name in COMMANDS for option in parser_of(name)._option_string_actions
+    }
+    assert not {*COMMANDS, *options} & {*DROPPED}
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
