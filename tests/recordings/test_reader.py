@@ -191,6 +191,12 @@ def test_a_file_cut_anywhere_reads_as_far_as_it_goes(whole):
         whole.check(whole.data[:length])
 
 
+def test_chunks_are_found_wherever_they_begin_in_a_block(whole, monkeypatch):
+    monkeypatch.setattr(reader, "_BLOCK", 100)
+    whole.path.write_bytes(whole.data[:-20])
+    assert [place.offset for place in places_in(whole.path)] == whole.chunks
+
+
 @pytest.mark.parametrize("cut", [0, 1_500], ids=["finished", "killed"])
 def test_a_flipped_bit_is_noticed_and_never_a_wrong_number(whole, cut):
     for _ in range(60):
