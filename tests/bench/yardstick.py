@@ -9,11 +9,19 @@ import re
 import select
 import sys
 import time
+import timeit
 from itertools import pairwise
+from pathlib import Path
 from statistics import mean, median
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from mcap.reader import make_reader
+
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.recordings.events import simulate
+from pendu_tui.recordings.recorder import Recorder
+from pendu_tui.recordings.recording import Recording
 from tests.bench import painter
 from tests.tui.pty_lab import PtyLab
 
@@ -25,6 +33,7 @@ LIMITS = {
     "kilobytes_per_second": 200,
     "phase_processor_ratio": 1.6,
     "first_pendulum_ratio": 1.4,
+    "opening_ratio": 0.2,
     "slow_line_key_max_ms": 1000,  # 64 KiB/s and 5 frames a second
 }
 KEYS = 30
@@ -140,6 +149,20 @@ def first_pendulum_ratio(starts: int) -> float:
     return round(median(pendulums) / median(empty), 2)
 
 
+def opening_ratio() -> float:
+    """Return the time to open a lab's hour, of 7200 chunks, over that of mcap for its summary."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "hour.mcap"
+        with Recorder(path) as recorder:
+            for _ in simulate(DEFAULT_SCENE, 360.0, recorder, sample_every=1):
+                recorder.flush()
+        cpu = {"timer": time.process_time, "number": 1, "repeat": 15}
+        ours = timeit.repeat(lambda: Recording.open(path).close(), **cpu)
+        with path.open("rb") as file:
+            theirs = timeit.repeat(lambda: make_reader(file).get_summary(), **cpu)
+    return round(min(ours) / min(theirs), 2)
+
+
 def slow_line_key_max_ms() -> float:
     """Return the longest time from a key to its effect in all views, on a slow line."""
     longest = []
@@ -166,5 +189,6 @@ def measure(share: float) -> dict[str, Any]:
         "phase_percent": phase["percent"],
         "phase_kilobytes_per_second": phase["kilobytes_per_second"],
         "first_pendulum_ratio": first_pendulum_ratio(max(1, round(9 * share))),
+        "opening_ratio": opening_ratio(),
         "slow_line_key_max_ms": slow_line_key_max_ms(),
     }
