@@ -86,7 +86,9 @@ class Recording:
         self._places = contents.places
         self._topics = contents.topics
         self._models: dict[str, str] = {}  # by topic
-        self._topics_of = lru_cache(maxsize=32)(self._named)
+        self._topics_of = lru_cache(maxsize=32)(
+            lambda channels: tuple(self._topics.get(channel, "") for channel in channels)
+        )
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._decode_event = lru_cache(MAX_EVENTS)(decode_event)  # which `events` keeps anyway
         self._find_runs()
@@ -246,8 +248,9 @@ class Recording:
         event = self._decode_event(data)
         run = self._runs.get(event.run)
         if event.scene is not None and event.arithmetic is not None and run is None:
-            self._runs[event.run] = Run(event.run, event.scene, event.arithmetic, clock, clock)
-            self._models |= dict.fromkeys(topics_of(event.scene), event.scene.model)
+            run = Run(event.run, event.scene, event.arithmetic, clock, clock)
+            self._runs[event.run] = run
+            self._models |= dict.fromkeys(run.topics, run.scene.model)
         elif run is not None and event.h is not None:
             try:
                 stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
@@ -262,9 +265,6 @@ class Recording:
         if sample.run in self._runs and topics != self._runs[sample.run].topics:
             raise RecordingError("a sample is incomplete")
         return sample
-
-    def _named(self, channels: tuple[int, ...]) -> tuple[str, ...]:
-        return tuple(self._topics.get(channel, "") for channel in channels)
 
 
 def _as_recorded(clock: float) -> int:

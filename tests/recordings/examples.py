@@ -2,10 +2,8 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 
-from pendu_tui.engine.methods import VELOCITY_VERLET
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene
@@ -74,17 +72,6 @@ def record(path: Path, entries: list[Entry]) -> Path:
                 recorder.flush()
                 flushed_at = clock
     return path
-
-
-def tiny(path: Path) -> Path:
-    """A very small recording: one method, three samples, two chunks and one for the stop."""
-    scene = replace(SCENE, cast=(VELOCITY_VERLET,))
-    lockstep = Lockstep(scene)
-    entries = [Entry(0.0, start(scene=scene)), Entry(0.0, lockstep.sample())]
-    for clock in (0.5, 1.0):
-        lockstep.advance(3)
-        entries.append(Entry(clock, lockstep.sample()))
-    return record(path, entries)
 
 
 Changes = Sequence[tuple[int, float]]

@@ -10,7 +10,7 @@ from pendu_tui.recordings import files
 from pendu_tui.recordings.files import GOLDEN, DiskError, RecordingError, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
-from tests.recordings.examples import start, tiny
+from tests.recordings.examples import record, start, two_runs
 from tests.tui.command_line import IS_WINDOWS
 
 
@@ -25,7 +25,7 @@ def old_and_new(library):
     """Recordings of the library, 100 s and 1 s old."""
     library.mkdir()
     for name, age in (("old", 100), ("new", 1)):
-        path = tiny(library / f"{name}.mcap")
+        path = record(library / f"{name}.mcap", two_runs())
         os.utime(path, (1_700_000_000 - age,) * 2)
     return library / "old.mcap", library / "new.mcap"
 
@@ -55,8 +55,8 @@ def test_a_new_recording_has_a_free_name_with_the_time(library, monkeypatch):
 def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(library):
     assert listing() == []
     library.mkdir()
-    killed = tiny(library / "killed.mcap").rename(library / "killed.mcap.part")
-    old = tiny(library / "old.mcap")
+    killed = record(library / "killed.mcap", two_runs()).rename(library / "killed.mcap.part")
+    old = record(library / "old.mcap", two_runs())
     os.utime(old, (1, 1))
     (library / "notes.txt").touch()
     (library / "folder.mcap").mkdir()
@@ -78,7 +78,7 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
     old_and_new, tmp_path, monkeypatch
 ):
     old, new = old_and_new
-    elsewhere = tiny(tmp_path / "elsewhere.mcap")
+    elsewhere = record(tmp_path / "elsewhere.mcap", two_runs())
     assert resolve(str(elsewhere)) == elsewhere
     assert resolve("latest") == new
     assert resolve("old") == resolve("old.mcap") == old
@@ -103,7 +103,7 @@ def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
 
 
 def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
-    taken = tiny(tmp_path / "a.mcap")
+    taken = record(tmp_path / "a.mcap", two_runs())
     for path, force, why in (
         (taken, False, "--force"),
         (taken, None, "name$"),

@@ -164,8 +164,7 @@ class Replay(Source):
         """Show the last sample before the playhead, adding those in between if they are few."""
         if self._closed:
             return
-        # files round clocks to nanoseconds
-        target = self.recording.at(self.playhead.position + 1e-9) or self._place
+        target = self.recording.at(self.playhead.position) or self._place
         for _ in range(MAX_FOLLOWED):
             if self._place < target and (following := self.recording.beside(self._place, 1)):
                 self._show(following)

@@ -46,15 +46,14 @@ class Ghost:
         self.label = label
         self._window = window
         failed = ~np.isfinite(rows["high"][:, 0])
-        self._x = rows["x"]
         self._thetas = np.where(failed, math.nan, rows["states"][:, :-1, 0])
         self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
         """The largest angle that it comes to [rad]."""
 
     def rods(self, t: float) -> dict[str, float]:
         """Return the angles [rad] at a time [s] by method key, without failed methods."""
-        row = int(np.searchsorted(self._x, t + 1e-9, "right")) - 1
-        if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
+        row = int(np.searchsorted(self._window.x, t + 1e-9, "right")) - 1
+        if not self.scene.equations.rigid or row < 0 or t > self._window.x[-1] + abs(self.scene.h):
             return {}
         pairs = zip(self.scene.cast, self._thetas[row].tolist(), strict=True)
         return {method.key: theta for method, theta in pairs if not math.isnan(theta)}

@@ -192,5 +192,9 @@ def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     assert run(DRIFT, (10, 0.05), (40, -0.03)).returned is None  # it goes past
     history = run(DRIFT, (200, 0.05), (230, -0.05))
     assert history.returned.step == 400
-    history.add(history.returned._replace(step=399))
+    back = history.returned
+    history.add(back._replace(step=399))
+    assert history.returned is None
+    history.add(back._replace(step=399, t=0.05, run=2))
+    history.add(back._replace(step=450, t=0.1, run=2))
     assert history.returned is None

@@ -30,7 +30,7 @@ class Table(Clocked):
     @property
     def due(self) -> Sample:
         """The last sample recorded before the playhead, found the slow way."""
-        position = self.replay.playhead.position + 1e-9  # s, to which clocks in a file are rounded
+        position = round(self.replay.playhead.position, 9)  # s, as clocks in a file
         return [value for clock, value in self.samples if clock <= position][-1]
 
     @property
