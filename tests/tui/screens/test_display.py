@@ -1,4 +1,4 @@
-"""Themes and pixels change while the lab runs, and everything is drawn anew."""
+"""Themes change while the lab runs, and everything is drawn anew."""
 
 from itertools import chain
 
@@ -12,14 +12,7 @@ from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views import VIEWS
 from tests.tui.drawn import screen
-from tests.tui.harness import key_of, lab
-from tests.tui.monkey import small_studies
-
-
-@pytest.fixture(autouse=True)
-def small(tmp_path):
-    with small_studies(tmp_path):
-        yield
+from tests.tui.harness import key_of, lab, uncomputed
 
 
 async def test_a_theme_changes_all_colours_and_no_character():
@@ -46,19 +39,17 @@ def colours(app) -> set[Color]:
     return {each for style in styles for each in (style.color, style.bgcolor)} - {None}
 
 
-async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
+async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     async with lab() as theatre:
         theatre.app.action_use_theme("ansi")
         await theatre.run(1)
         for key in (*map(key_of, VIEWS), "i"):
             await theatre.press(key)
-            await theatre.pilot.pause(0.3)
+            await theatre.pilot.pause()
             found = colours(theatre.app)
             assert len(found) > 3
             assert all(each.is_system_defined or each.is_default for each in found)
-
-
-async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     async with lab() as theatre:
         for theme in PALETTES:
@@ -67,6 +58,6 @@ async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):
             assert all(colour.is_default for colour in colours(theatre.app))
 
 
-def test_an_empty_no_color_means_nothing(monkeypatch):
+def test_an_empty_no_color_means_nothing(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("NO_COLOR", "")
     assert not PenduApp(LabScreen(Live(DEFAULT_SCENE))).no_color

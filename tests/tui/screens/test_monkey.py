@@ -1,54 +1,140 @@
-"""Hundreds of random events over all views, live and replay."""
+"""Hundreds of random events over all views, live and replay, the same for the same seed."""
 
 import itertools
 import os
+import random
 import shutil
+import string
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from textual._xterm_parser import XTermParser
+from textual.events import Key, Resize
+from textual.geometry import Size
 
+from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.engine.studies.accuracy import ladder
 from pendu_tui.recordings.files import new_path
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.options import resolve
+from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
-from tests.tui.harness import on_stage
-from tests.tui.monkey import ESC, LOOK, SIZE, play_on_stage, small_studies, wild_presses, wild_stage
+from tests.tui.harness import Theatre, on_stage
 
-pytestmark = [pytest.mark.other_process, pytest.mark.slow]  # what is computed is left again at once
+pytestmark = pytest.mark.slow
 
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))
+ESC, FIND = "\x1b", "\x10"
+MOVES = [f"\x1b[{key}" for key in ("A", "B", "C", "D", "H", "F", "5~", "6~")]
+VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
+KEYS = [*"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t", *MOVES, *VIEWS]
+CALMING = "<<00++rp   "  # else the lab would often be paused, or take long to verify
+GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"
+KINDS = {"key": 45, "calm": 6, "text": 12, "click": 12, "drag": 4, "wheel": 2, "over": 6}
+KINDS |= {"enter": 4, "paste": 3, "size": 6}
+EPISODE = 60  # presses until dialogs are closed
+LOOK = 0.004  # s by which the work clock advances when it is read, so that a frame's budget ends
+STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next
 
 
-@pytest.fixture
-def library(tmp_path: Path) -> Iterator[Path]:
-    folder = tmp_path / "library"
-    folder.mkdir()
-    with small_studies(folder):
-        yield folder
+def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
+    """Yield what a terminal sends, and sizes."""
+    chance = random.Random(seed)
+    size = (120, 40)
+
+    def mouse(button: int, end: str) -> str:
+        column = chance.randint(1, size[0])
+        row = chance.randint(1, max(size[1] - 1, 1))  # not the key line: Quit would end it all
+        return f"\x1b[<{button};{column};{row}{end}"
+
+    for done in range(number):
+        if done % EPISODE == 0:
+            yield from (ESC, ESC)
+        match chance.choices([*KINDS], KINDS.values())[0]:
+            case "calm":
+                yield chance.choice(CALMING)
+            case "text":
+                yield chance.choice(string.ascii_lowercase + string.digits + "-\x7f. ")
+            case "click":
+                down = mouse(0, "M")
+                yield down + down[:-1] + "m"
+            case "drag":
+                button = chance.choice((0, 4, 2))  # left, with shift, right
+                yield mouse(button, "M") + mouse(button + 32, "M") + mouse(button, "m")
+            case "wheel":
+                yield mouse(chance.choice((64, 65)), "M")
+            case "over":
+                yield chance.choice(("?", "i", "d", "E", FIND))
+            case "enter":
+                yield "\r"
+            case "paste":
+                garbage = "".join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))
+                yield f"\x1b[200~{garbage}\x1b[201~"
+            case "size":
+                columns, rows = chance.choice(((120, 40), (12, 12), (300, 90), (300, 90)))
+                size = chance.randint(1, columns), chance.randint(1, rows)
+                yield size
+            case _:
+                yield chance.choice(KEYS)
+
+
+async def play(theatre: Theatre, what: list[str | tuple[int, int]]) -> None:
+    """Send input; after each the app settles and the clock advances, on any machine alike."""
+    app = theatre.app
+    driver = app._driver
+    assert driver is not None
+    parser = XTermParser()
+    chance = random.Random(-SEED)
+
+    async def settle() -> None:
+        await theatre.pilot.pause(0)
+        while not all(worker.is_finished for worker in app.workers):
+            await theatre.pilot.pause(0.001)
+
+    for item in what:
+        if isinstance(item, tuple):
+            driver._size = item
+            app.post_message(Resize(Size(*item), Size(*item)))
+        elif item == ESC:
+            driver.process_message(Key("escape", None))
+        else:
+            for message in parser.feed(item):
+                driver.process_message(message)
+        await settle()
+        theatre.now += chance.choice(STRIDES)
+        theatre.stage.frame()
+        await settle()
 
 
 @pytest.mark.parametrize("command", ["live", "replay"])
-async def test_random_events_do_no_harm_and_the_recordings_verify(
-    tmp_path, library, monkeypatch, command
-):
+async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monkeypatch, command):
+    library = tmp_path / "library"
+    library.mkdir()
+    few = ladder(5.0, 0.2, 0.05, 2)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(library))
+    monkeypatch.setattr("pendu_tui.tui.views.accuracy.usual", lambda scene, all: (5.0, few))
+    monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (2, 6))
     monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
+    work_clock = itertools.count(0.0, LOOK).__next__
 
-    def replayed(clock: Callable[[], float]) -> LabScreen:
+    def make(clock: Callable[[], float]) -> LabScreen:
+        if command == "live":
+            live = Live(DEFAULT_SCENE, clock=work_clock)
+            live.record(LiveRecorder(new_path(library)))
+            return LabScreen(live, clock)
         path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
-        replay = Replay(Recording.open(path), clock=itertools.count(0.0, LOOK).__next__)
-        screen = LabScreen(replay, clock)
+        screen = LabScreen(Replay(Recording.open(path), clock=work_clock), clock)
         screen.record = lambda live: live.record(LiveRecorder(new_path(library)))
         return screen
 
-    make = {"live": wild_stage(library), "replay": replayed}[command]
     events = [*wild_presses(80, SEED), ESC, ESC, "f", *wild_presses(80, SEED + 1)]
-    async with on_stage(make, SIZE) as theatre:
-        await play_on_stage(theatre, events, SEED)
+    async with on_stage(make, (120, 40)) as theatre:
+        await play(theatre, events)
         assert theatre.app.is_running
     paths = list(library.glob("*.[mp]*"))
     assert paths

@@ -2,8 +2,6 @@
 
 import html
 import re
-import subprocess
-import sys
 
 import pytest
 
@@ -83,18 +81,9 @@ def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_len
         (["--size", "big"], "120x40"),
         (["--time", "nan"], "not a valid time"),
         (["-o", "lab.png"], "lab.svg"),
-        (["-o", "lab"], "lab.svg"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
     assert pendu("snapshot", "-o", "x.svg", *arguments).refused(2, words)
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.slow
-def test_the_pictures_are_the_same_on_processors_with_other_last_bits():
-    options = ["-q", "-n0", "-m", "not slow", "-p", "no:cacheprovider"]
-    python = [sys.executable, "-m", "pytest", "-p", "tests.tui.last_bits", *options, __file__]
-    done = subprocess.run(python, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout
