@@ -7,7 +7,6 @@ import argparse
 import asyncio
 import ipaddress
 import logging
-import os
 import pickle
 import re
 import signal
@@ -19,6 +18,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
+from pendu_tui.recordings.files import check_target, new_path
 from pendu_tui.recordings.system import ENDING, shell_command
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
@@ -46,10 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if folder is not None:
         folder.mkdir(exist_ok=True)
         folder = folder.absolute()
-        if not os.access(folder, os.W_OK | os.X_OK):
-            why = f"{folder} is not writable: choose another folder for --record."
-            raise UserError(why, Exit.DISK)
-
+        check_target(new_path(folder))
     settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
     try:
         with TemporaryDirectory(prefix="pendu-") as private:  # mode 700

@@ -3,7 +3,6 @@
 import argparse
 import asyncio
 import gc
-import os
 import shlex
 import sys
 from collections.abc import Sequence
@@ -34,7 +33,6 @@ from pendu_tui.tui.terminal.options import (
     TerminalOptions,
     background,
     check_terminal,
-    fitting_theme,
     terminal_options_of,
 )
 from pendu_tui.tui.words.plain_text import tell
@@ -90,11 +88,10 @@ def open_recording(path: Path) -> "Recording":
 def show(screen: LabScreen, options: argparse.Namespace) -> int:
     """Run the app with this screen first, say goodbye, and return the exit code."""
     assert sys.__stderr__ is not None  # where Textual draws
-    if options.theme == "auto" and not os.environ.get("COLORFGBG"):
-        options.theme = fitting_theme(environment())
-        if options.theme != "ansi":
-            options.theme = background() or options.theme
-    terminal = terminal_options_of(options, environment(), sys.__stderr__.encoding)
+    known = environment()
+    terminal = terminal_options_of(options, known, sys.__stderr__.encoding)
+    if options.theme == "auto" and terminal.theme != "ansi" and not known.get("COLORFGBG"):
+        terminal = terminal._replace(theme=background() or terminal.theme)
     app = PenduApp(screen, terminal)
     try:
         result = app.run(mouse=terminal.mouse)
