@@ -5,6 +5,7 @@ Tests compare them with the fields of METHODS; a user's own method has them as f
 
 import cmath
 import math
+from functools import partial
 from itertools import islice
 from operator import neg
 from statistics import linear_regression
@@ -13,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendu_tui.engine.methods.method import Phases
+from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models.model import Force, Phase
 from pendu_tui.engine.models.pendulum import Pendulum
 
@@ -126,23 +128,11 @@ def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
     return mean, round(first - steps * mean)
 
 
-def determinant(phases: Phases, phase: Phase, h: float) -> float:
-    """Return area after a step over area before, by complex-step derivatives."""
-    tiny = 1e-100
-    force = PENDULUM.force(cmath.sin)
-    theta, omega = phase
-    ends = (
-        *after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1),
-        *after(phases, force, (complex(theta), omega + 1j * tiny), h, 1),
-    )
-    a, c, b, d = (end.imag / tiny for end in ends)
-    return float(a * d - b * c)
-
-
 def is_symplectic(phases: Phases) -> bool:
     """Return whether a step keeps area wherever it starts."""
+    bound = partial(phases, PENDULUM.force(cmath.sin))
     starts = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
-    return all(abs(determinant(phases, start, LARGE_H) - 1) < 1e-12 for start in starts)
+    return all(abs(jacobian(bound, start, LARGE_H).determinant - 1) < 1e-12 for start in starts)
 
 
 def is_reversible(phases: Phases) -> bool:

@@ -18,9 +18,9 @@ from itertools import pairwise, permutations
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.methods.tangent import Stretching, at_bottom
 from pendu_tui.engine.models.model import Model
 from pendu_tui.engine.run import levels
-from pendu_tui.engine.run.tangent import Stretching, at_bottom
 from pendu_tui.engine.run.verdicts import (
     BOUNDED,
     CHAOTIC,

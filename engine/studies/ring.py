@@ -1,5 +1,6 @@
 """How each method changes the area of a ring of neighbouring starts in phase space."""
 
+import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models.model import Phase
 from pendu_tui.engine.run.loops import OVERFLOW
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
-from pendu_tui.engine.run.tangent import jacobian
 from pendu_tui.engine.scenes import Scene
 
 # theta [rad] and omega [rad/s] of the neighbours
@@ -67,13 +68,12 @@ class Neighbourhood:
 
     def _carry(self, carried: _Carried, steps: int, h: float) -> None:
         method = carried.method
-        model = self._model
-        phases = method.on(model)(carried.phase, h)
-        rings = method.on(model, np.sin)(carried.ring, h)
+        phases = method.on(self._model)(carried.phase, h)
+        rings = method.on(self._model, np.sin)(carried.ring, h)
+        displaced = method.on(self._model, cmath.sin)
         try:
             for _ in range(steps):
-                theta, omega = carried.phase
-                determinant = jacobian(method, model, theta, omega, h).determinant
+                determinant = jacobian(displaced, carried.phase, h).determinant
                 phase = next(phases)
                 ring = next(rings)
                 log_area = carried.log_area + math.log(abs(determinant))

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Method
+from pendu_tui.engine.methods.tangent import Stretching
 from pendu_tui.engine.models.model import Model, Phase
 from pendu_tui.engine.run.loops import OVERFLOW
-from pendu_tui.engine.run.tangent import Stretching
 
 Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape

@@ -8,24 +8,24 @@ import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import islice, product
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
+from pendu_tui.engine.methods.tangent import at_bottom, tangent_map
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.run import verdicts
 from pendu_tui.engine.run.levels import CHAOTIC_SEPARATION
-from pendu_tui.engine.run.loops import available
-from pendu_tui.engine.run.tangent import at_bottom, tangent_map
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.engine.studies import BAND
-from pendu_tui.engine.studies.ensemble import Floats as Floats
-from pendu_tui.engine.studies.ensemble import Watched, compiled, plain
 
-PARKED = 1 / 8  # share of an ensemble's swings: when so many are lost, it goes on without them
+Floats = NDArray[np.float64]
+
+UNIT = Pendulum(1.0)
+PARKED = 1 / 8  # share of the swings: when so many are lost, the others go on without them
 
 FATES = (
     *("holds", "over the top", verdicts.GROWS, verdicts.LOSES),
@@ -52,6 +52,40 @@ def is_lost(cells: Cells) -> NDArray[np.bool_]:
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
+class Watched(NamedTuple):
+    """The limits and extremes of each of many swings; energies in s⁻², angles in rad."""
+
+    start: Floats  # energies at the start
+    band: Floats  # largest allowed energy difference from the start; inf: no limit
+    top: Floats  # largest allowed |theta|; inf: no limit
+    off: Floats  # energies, less the start's, after the last step
+    worst: Floats  # largest |off| so far
+    width: Floats  # largest |theta| so far
+
+
+def watch(
+    method: Method, phase: tuple[Floats, Floats], h: Floats, watched: Watched, n: int
+) -> Iterator[tuple[int, tuple[Floats, Floats]]]:
+    """Take n steps of many swings at once; all arrays are one-dimensional and of one length.
+
+    Yields the steps done and the phase there after the last step, and whenever an energy is out of
+    its band or a swing over its top.  Updates off, worst and width; the caller may change band and
+    top.
+    """
+    energy = UNIT.energy(np.sin)
+    start, band, top, off, worst, width = watched
+    size = np.empty_like(off)
+    bounded = np.isfinite(band).any()
+    phases = islice(method.phases(UNIT.force(np.sin), phase, h), n)  # type: ignore[arg-type]
+    for done, phase in enumerate(phases, 1):
+        np.subtract(energy(phase), start, out=off)
+        np.fmax(worst, np.abs(off, out=size), out=worst)
+        outside = bounded and (size > band).any()
+        np.fmax(width, np.abs(phase[0], out=size), out=width)
+        if outside or done == n or (size > top).any():
+            yield done, phase
+
+
 def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Floats, ...]:
     """Return how far a held swing's energy may rise and fall, and theta's largest value [rad]."""
     distinct, where = np.unique(z, return_inverse=True)
@@ -65,18 +99,16 @@ def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Fl
 
 
 @np.errstate(all="ignore")  # lost swings may overflow
-def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
-    """Return the outcome of each of many swings within `steps` steps; `fast`: compiled by Numba.
+def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
+    """Return the outcome of each of many swings within `steps` steps.
 
     theta [rad], between 0 and pi, and z are one-dimensional and of one length, as are the CELLs
     returned.  No cell depends on the others.
     """
-    model = Pendulum(1.0)
-    watch = (compiled if fast else plain)(method, model)
     h = z
     rest = np.zeros(len(theta))
     phase = (theta, rest)
-    start: Floats = model.energy(np.sin)(phase)
+    start: Floats = UNIT.energy(np.sin)(phase)
     up, down, reach = _bounds(method, theta, z, start)
     band = np.minimum(up, down)
     watched = Watched(start, band, rest + math.pi, rest.copy(), rest.copy(), theta.copy())
@@ -86,7 +118,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     begun = 0
     while begun < steps and len(index):
         parked = np.zeros(len(index), np.bool_)
-        for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
+        for done, phase in watch(method, phase, h, watched, steps - begun):  # noqa: B020
             over = np.abs(phase[0]) > watched.top
             above = watched.off > up
             lost = over | above | (watched.off < -down)
@@ -190,7 +222,7 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     logarithm per step tends to the largest Lyapunov exponent, for K >= 10 ln(K/2): Chirikov, Phys.
     Rep. 52 (1979) 263.
     """
-    phases = method.on(Pendulum(1.0), np.sin)
+    phases = method.on(UNIT, np.sin)
     along = 1.0 + 0.0 * theta
     across = 0.0 * theta
     total = 0.0 * theta
@@ -216,7 +248,6 @@ def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
 
 
 PART = 4096  # swings of a method: NumPy's calls cost little, and the arrays fit in the cache
-COMPILED_FROM = 100_000_000  # steps of a method: they take as long as importing and compiling
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -227,7 +258,6 @@ class Grid:
     z: Floats  # h·w0, above 0
     steps: int
     methods: Cast = USUAL_CAST
-    fast: bool | None = None  # compiled by Numba; None: where it is installed and pays
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -238,17 +268,10 @@ class Grid:
         """Return the outcome of every swing."""
         z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
         by_method = [
-            outcomes(method, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
+            outcomes(method, theta, z, self.steps).reshape(len(self.z), -1)
             for method in self.methods
         ]
         return np.stack(by_method, axis=1)
-
-    @property
-    def compiled(self) -> bool:
-        """Whether Numba compiles the loops."""
-        if self.fast is None:
-            return len(self.theta) * len(self.z) * self.steps >= COMPILED_FROM and available()
-        return self.fast
 
     def unknown(self) -> Cells:
         """Return cells of unknown outcome."""
@@ -257,13 +280,12 @@ class Grid:
     def parts(self, width: int | None = None) -> list["Part"]:
         """Return the grid cut into `width` z of one method; the cells are the same to the bit.
 
-        They depend on `sin`, that is on processor, libm and Numba, so all workers must be alike.
+        They depend on `sin`, that is on processor and libm, so all workers must be alike.
         """
         width = width or max(1, PART // len(self.theta))
-        whole = replace(self, fast=self.compiled)
         zs = [slice(first, first + width) for first in range(0, len(self.z), width)]
         return [
-            Part(z, index, replace(whole, z=self.z[z], methods=(method,)))
+            Part(z, index, replace(self, z=self.z[z], methods=(method,)))
             for z, (index, method) in product(zs, enumerate(self.methods))
         ]
 
@@ -291,12 +313,9 @@ class Piece:
 
 
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
-    """Yield the map in pieces of `width` z and one method, with the steps of each pass.
-
-    By default in NumPy, because compiling would delay the first piece.
-    """
+    """Yield the map in pieces of `width` z and one method, with the steps of each pass."""
     for steps in passes:
-        parts = replace(grid, steps=steps, fast=bool(grid.fast)).parts(width)
+        parts = replace(grid, steps=steps).parts(width)
         for done, part in enumerate(parts, 1):
             yield Piece(part, part.cells(), done / len(parts))
 

@@ -1,7 +1,6 @@
 """Which swings a method holds: swing by swing, as grids, by theory, and where there is chaos."""
 
 import math
-from dataclasses import replace
 from itertools import islice, pairwise
 
 import numpy as np
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import (
     EXPLICIT_EULER,
-    FAMILIES,
     GENERAL,
     RK4,
     SYMPLECTIC_EULER,
@@ -20,9 +18,7 @@ from pendu_tui.engine.methods import (
     method_of,
 )
 from pendu_tui.engine.models import Pendulum
-from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.studies.ensemble import Watched, compiled, plain
 from pendu_tui.engine.studies.stability import (
     BAND,
     ELSEWHERE,
@@ -34,6 +30,7 @@ from pendu_tui.engine.studies.stability import (
     PARKED,
     UNKNOWN,
     Grid,
+    Watched,
     amplification,
     amplitude,
     first_failure,
@@ -44,13 +41,10 @@ from pendu_tui.engine.studies.stability import (
     outcomes,
     parting,
     pieces,
+    watch,
     wobble,
 )
 
-needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
-each_way = pytest.mark.parametrize(
-    "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
-)
 SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
 each_symplectic = pytest.mark.parametrize("method", SYMPLECTIC, ids=lambda method: method.key)
 UNIT = Pendulum(1.0)  # so that h is z
@@ -63,9 +57,8 @@ def watched(band=math.inf):
     return Watched(start, band, top, off, worst, np.abs(THETA))
 
 
-def stops(method, seen, steps, fast):
-    watch = (compiled if fast else plain)(method, UNIT)
-    return watch((THETA, OMEGA), np.full(37, 0.2), seen, steps)
+def stops(method, seen, steps):
+    return watch(method, (THETA, OMEGA), np.full(37, 0.2), seen, steps)
 
 
 def path(method, steps):
@@ -74,51 +67,29 @@ def path(method, steps):
     return np.array([*islice(phases, steps)])
 
 
-WAYS = [(method, False) for method in GENERAL]
-# compiling takes a second a method: the two that have other phases to compile
-WAYS += [
-    pytest.param(family[0], True, marks=needs_numba)
-    for family in (FAMILIES["splitting"], FAMILIES["implicit"])
-]
-
-
-@pytest.mark.parametrize(("method", "fast"), WAYS, ids=lambda value: getattr(value, "key", value))
-def test_each_swing_is_the_methods_and_its_extremes_are_kept(method, fast):
+@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
+def test_each_swing_is_the_methods_and_its_extremes_are_kept(method):
     seen, points = watched(), path(method, 10)
-    ((done, phase),) = stops(method, seen, 10, fast)
+    ((done, phase),) = stops(method, seen, 10)
     assert done == 10
     off = UNIT.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
     width = np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0))
     found = np.array([*phase, seen.off, seen.worst, seen.width])
     last = [*points[-1], off[-1], np.abs(off).max(axis=0), width]
-    assert found == pytest.approx(np.array(last), rel=0, abs=1e-13)  # rounding
+    assert np.array_equal(found, last)
 
 
-@each_way
-def test_it_stops_at_the_steps_that_pass_the_top_or_leave_the_band(fast):
+def test_it_stops_at_the_steps_that_pass_the_top_or_leave_the_band():
     over = np.abs(path(EXPLICIT_EULER, 100)[:, 0]) > math.pi
     seen, found = watched(), []
-    for done, (theta, _) in stops(EXPLICIT_EULER, seen, 100, fast):
+    for done, (theta, _) in stops(EXPLICIT_EULER, seen, 100):
         found.append(done)
         seen.top[np.abs(theta) > seen.top] = math.inf
     assert found == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
     seen = watched(0.1)
-    done, _ = next(stops(EXPLICIT_EULER, seen, 100, fast))
+    done, _ = next(stops(EXPLICIT_EULER, seen, 100))
     assert 0 < done < found[0]
     assert (seen.worst > 0.1).any()
-
-
-@needs_numba
-def test_compiled_steps_are_freed():
-    """Numba 0.68 keeps all that a compiled generator yields: 4 pages a step of these."""
-    resource = pytest.importorskip("resource", reason="no count of page faults")
-    start, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
-    numbers = [np.full(1024, value) for value in (0.5, math.inf, math.inf, 0.0, 0.0, 0.0)]
-    watch = compiled(EXPLICIT_EULER, UNIT)
-    next(watch(start, h, Watched(*numbers), 1000))
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-    next(watch(start, h, Watched(*numbers), 4000))
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 4000
 
 
 @given(
@@ -153,15 +124,14 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, step
         assert (cell["steps"], cell["error"]) == (survived, worst)
 
 
-def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch):
-    """Numba never frees what a generator holds that has not ended."""
+def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monkeypatch):
     begun = []
 
-    def counting(method, model):
-        watch = plain(method, model)
-        return lambda phase, h, *others: begun.append(len(h)) or watch(phase, h, *others)
+    def counting(method, phase, h, *others):
+        begun.append(len(h))
+        return watch(method, phase, h, *others)
 
-    monkeypatch.setattr("pendu_tui.engine.studies.stability.plain", counting)
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.watch", counting)
     cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
     assert len(np.unique(cells["steps"])) > 200
     assert begun[0] == 500
@@ -221,31 +191,22 @@ def test_methods_fail_each_in_its_way(key, theta, expected, reason, steps):
 
 
 GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2:])
-MAP = map_of(Scene(), None, None, 10_000)
 
 
-@each_way
 @pytest.mark.parametrize("width", [5, None])
-def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width, fast):
-    grid = replace(GRID, fast=fast)
-    whole = grid.unknown()
+def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width):
+    whole = GRID.unknown()
     assert (whole["fate"] == UNKNOWN).all()
-    for part in grid.parts(width):
+    for part in GRID.parts(width):
         whole[part.z, part.method] = part.cells()
-    assert len(grid.parts(width)) == 2 * -(-13 // (width or 13))
-    assert whole.tobytes() == grid.cells().tobytes()
+    assert len(GRID.parts(width)) == 2 * -(-13 // (width or 13))
+    assert whole.tobytes() == GRID.cells().tobytes()
     assert whole.shape == GRID.shape == (13, 2, 7)  # z, method, amplitude
     assert 0 < (whole["fate"] == HOLDS).sum() < whole.size
-    assert whole[4, 0, 5] == outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200, fast)[0]
-
-
-@needs_numba
-def test_a_large_map_is_compiled_but_not_a_small_one_or_one_in_pieces():
-    for grid, fast in ((MAP, True), (GRID, False), (replace(GRID, fast=True), True)):
-        assert {part.grid.compiled for part in grid.parts()} == {fast} == {grid.compiled}
-    piece = next(pieces(MAP, [50]))
-    alone = replace(MAP, z=MAP.z[piece.part.z], methods=USUAL_CAST[:1], steps=50, fast=False)
-    assert piece.cells.tobytes() == alone.cells()[:, 0].tobytes()
+    assert whole[4, 0, 5] == outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200)[0]
+    computed = list(pieces(GRID, [50, 200], width or 13))
+    assert computed[-1].cells.tobytes() == whole[computed[-1].part.z, 1].tobytes()
+    assert [piece.done for piece in computed if piece.part.method][-1] == 1
 
 
 @pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])

@@ -8,8 +8,7 @@ import math
 from itertools import islice
 from typing import Any, NamedTuple
 
-from pendu_tui.engine.methods import Method
-from pendu_tui.engine.methods.method import BoundPhases
+from pendu_tui.engine.methods.method import BoundPhases, Method
 from pendu_tui.engine.models import LinearOscillator
 from pendu_tui.engine.models.model import Model, Phase
 
@@ -42,17 +41,16 @@ class Jacobian(NamedTuple):
         return self.theta_theta * self.omega_omega - self.theta_omega * self.omega_theta
 
 
-def jacobian(method: Method, model: Model, theta: float, omega: float, h: float) -> Jacobian:
-    """Return the step's Jacobian at (theta, omega), exact to rounding."""
-    phases = method.on(model, cmath.sin)
-    _, by_theta = tangent_map(phases, (theta, omega), (1.0, 0.0), h)
-    _, by_omega = tangent_map(phases, (theta, omega), (0.0, 1.0), h)
+def jacobian(phases: BoundPhases, phase: Phase, h: float) -> Jacobian:
+    """Return the step's Jacobian at a phase, exact to rounding; `phases` take complex numbers."""
+    _, by_theta = tangent_map(phases, phase, (1.0, 0.0), h)
+    _, by_omega = tangent_map(phases, phase, (0.0, 1.0), h)
     return Jacobian(by_theta[0], by_omega[0], by_theta[1], by_omega[1])
 
 
 def at_bottom(method: Method, z: float) -> Jacobian:
     """Return the step's Jacobian for small swings with h·w0 = z, in units where w0 = 1."""
-    return jacobian(method, LinearOscillator(1.0), 0.0, 0.0, z)
+    return jacobian(method.on(LinearOscillator(1.0), cmath.sin), (0.0, 0.0), z)
 
 
 class Stretching:

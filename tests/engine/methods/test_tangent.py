@@ -1,12 +1,13 @@
 """The step's Jacobian by complex step; tests/engine/methods/test_claims.py has its determinant."""
 
+import cmath
 import math
 
 import pytest
 
 from pendu_tui.engine.methods import GENERAL, Method
+from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run.tangent import jacobian
 
 
 @pytest.mark.parametrize("method", GENERAL, ids=lambda m: m.key)
@@ -16,7 +17,7 @@ def test_the_jacobian_agrees_with_central_differences(method: Method):
     def force(angle: float) -> float:
         return -9.81 * math.sin(angle)
 
-    exact = jacobian(method, Pendulum(9.81), theta, omega, h)
+    exact = jacobian(method.on(Pendulum(9.81), cmath.sin), (theta, omega), h)
     right, left = (method.step(force, (theta + s * d, omega), h) for s in (1, -1))
     up, down = (method.step(force, (theta, omega + s * d), h) for s in (1, -1))
     differences = [(p - q) / (2 * d) for p, q in ((right[0], left[0]), (up[0], down[0]))]
