@@ -197,7 +197,7 @@ def _found(
     if isinstance(ours, str):
         reason = reading.get("reason")
         return f"{name} is {ours}: {reason}" if reason else f"{name} is {ours}"
-    return f"{name} is {ours:.3g}"
+    return f"{name} is {reading.get('shown', {}).get(field) or format(ours, '.3g')}"
 
 
 def _drifting(

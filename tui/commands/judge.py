@@ -291,7 +291,8 @@ def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:
         return dict(orders)
     order = Order(power, uncertainty)
     unknown = {"fluctuation_order": f"cannot tell: it goes as {order}; {order.advice}"}
-    return {**orders, "fluctuation_order": order.highest, "unknown": unknown}
+    shown = {"fluctuation_order": str(order).removeprefix("h^")}
+    return {**orders, "fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
 
 
 def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
