@@ -19,6 +19,13 @@ for command in {["", *COMMANDS]}:
     assert main([*command.split(), "--help"]) == main(["--version"]) == 0
 """
 FIRST_PAINT = "import pendu_tui.tui.commands.lab, pendu_tui.tui.views.lab"
+FEW_STEPS = """
+import pendu_tui.engine.studies.accuracy
+from pendu_tui.engine.run.loops import TieredLoops, available
+from pendu_tui.engine.scenes import DEFAULT_SCENE as scene
+available()
+TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
+"""
 
 
 @pytest.mark.parametrize(
@@ -26,6 +33,8 @@ FIRST_PAINT = "import pendu_tui.tui.commands.lab, pendu_tui.tui.views.lab"
     [
         (ALL_HELP, "textual numpy rich.console plotext mcap numba distributed matplotlib"),
         (FIRST_PAINT, "numpy plotext mcap numba"),
+        (FEW_STEPS, "numba"),
+        ("import pendu_tui.engine", "pendu_tui.engine. numpy"),
     ],
 )
 def test_what_takes_long_to_load_is_loaded_when_it_is_needed(work, later):

@@ -12,15 +12,10 @@ from pendu_tui import engine, recordings
 from pendu_tui.engine import METHODS, SCENES, judge, limits, recommend, simulate
 from pendu_tui.engine.methods import METHODS as LISTED
 from pendu_tui.engine.run.lockstep import Lockstep
-from tests.test_architecture import loaded_after
 
 GENERAL = [key for key, method in METHODS.items() if method.general]
 TIMES = np.arange(2000.0)
 WAVE = 10 + np.cos(TIMES)
-
-
-def test_importing_the_engine_loads_no_numpy_and_nothing_else_of_it():
-    assert loaded_after("import pendu_tui.engine", "pendu_tui.engine.", "numpy") == []
 
 
 def test_no_module_hides_a_name_of_the_library():

@@ -10,7 +10,6 @@ from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run import loops as loops_module
 from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, TieredLoops, available, compiled
 from tests.engine.run.test_loops import OVERFLOWING
-from tests.test_architecture import loaded_after
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 PENDULUM = Pendulum(9.81)
@@ -90,17 +89,6 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     for n in (1, 2, 4):
         loops.propagate((1.0, 0.0), 0.05, n)
     assert used == compiled_steps
-
-
-def test_few_steps_and_asking_for_numba_do_not_import_it():
-    work = """
-import pendu_tui.engine.studies.accuracy
-from pendu_tui.engine.run.loops import TieredLoops, available
-from pendu_tui.engine.scenes import DEFAULT_SCENE as scene
-available()
-TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
-"""
-    assert loaded_after(work, "numba") == []
 
 
 @needs_numba
