@@ -195,19 +195,13 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
 
     from pendu_tui.engine.run.record import judge_record
 
-    t = _finite("times", _array("times", times))
-    e = _array("energies", energies)
-    _same_length(t, e)
+    t, e = _series(times, energies)
     finite = int(np.isfinite(e).cumprod().sum())
-    failed = 0 < finite < len(e)
     failed_at = None
-    if failed:
+    if finite < len(e):
         failed_at = float(t[finite])
-        t = t[:finite]
-        e = e[:finite]
-    e = _finite("energies", e)
-    _increasing(t)
-    judgement = judge_record(t, e, failed=failed)
+    e = _finite("energies", e[: max(finite, 1)])
+    judgement = judge_record(t[: len(e)], e, failed=failed_at is not None)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
     if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
@@ -258,9 +252,9 @@ def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "
     fluctuations = []
     for h, times, energies in runs:
         steps.append(_number("h", h))
-        t = _increasing(_finite("times", _array("times", times)))
-        e = _finite(f"energies at h = {h:g}", _array("energies", energies))
-        _same_length(t, e)
+        name = f"energies at h = {h:g}"
+        t, e = _series(times, energies, name)
+        _finite(name, e)
         try:
             fluctuations.append(fluctuation(t, e))
         except ValueError as error:
@@ -414,21 +408,23 @@ def _finite(name: str, array: "Floats") -> "Floats":
     return array
 
 
-def _same_length(times: "Floats", energies: "Floats") -> None:
-    if len(times) != len(energies):
-        raise InputError(f"{len(times)} times and {len(energies)} energies do not belong together.")
-
-
-def _increasing(times: "Floats") -> "Floats":
+def _series(
+    times: "ArrayLike", energies: "ArrayLike", name: str = "energies"
+) -> tuple["Floats", "Floats"]:
+    """Return arrays of times, which increase, and of as many energies, named so in errors."""
     import numpy as np
 
-    later = np.diff(times) > 0
+    t = _finite("times", _array("times", times))
+    e = _array(name, energies)
+    if len(t) != len(e):
+        raise InputError(f"{len(t)} times and {len(e)} energies do not belong together.")
+    later = np.diff(t) > 0
     if not later.all():
         place = int(np.argmin(later)) + 1
         raise InputError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    return times
+    return t, e
 
 
 def _size(energies: Any, scale: float | str) -> float:
