@@ -28,7 +28,7 @@ COMMANDS = {
     "recordings show of a cut recording": "recordings show cut.mcap",
     "recordings recover": "recordings recover cut.mcap -o saved.mcap",
     "recordings": "recordings",
-    "scenes": "scenes drift damped stiff-slow mean-field",
+    "scenes": "scenes",
     "methods": "methods",
     "methods --method": "methods --methods mine --method mine.py:mine",
     "doctor": "doctor",
