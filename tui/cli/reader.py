@@ -11,7 +11,7 @@ import json
 import lzma
 import re
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 from typing import Any
@@ -47,6 +47,12 @@ _NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?:[eEdD][-+]?\d+)?)")  # twice as
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
+_DELIMITERS = "\t;,|"
+_BETWEEN = (
+    r"\s{2,}",  # names may contain single blanks
+    r"\s+(?![\s(\[])",  # or a blank before the unit
+    r"(?<=[)\]])\s+",  # or end with the unit
+)
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
 _FORTRAN_POWERS = str.maketrans("dD", "ee")
 
@@ -65,7 +71,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     if not start:
         raise unreadable("the input is empty; nothing to judge.")
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return _Text(wanted, file).read(_records(_arrays(stream)))
+        return _Text(wanted, file).read(map(_record, _records(_arrays(stream))))
     for magic, kind in _NOT_TEXT.items():
         if start.startswith(magic):
             raise unreadable(f"this is {kind}.")
@@ -107,12 +113,11 @@ def _json(text: io.TextIOBase) -> Iterator[str]:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
     if document is not None:
-        yield from _records(document)
+        yield from map(_record, _records(document))
         return
     for line in _lines(io.StringIO(whole)):
-        item = None
-        if line.count("{") > 1 or "[" in line:
-            item = _parsed(line)
+        is_nested = line.count("{") > 1 or "[" in line
+        item = _parsed(line) if is_nested else None
         yield line if item is None else _record(item)
 
 
@@ -122,12 +127,12 @@ def _parsed(text: str) -> Any:
     return None
 
 
-def _records(document: Any) -> Iterator[str]:
-    """Yield a line for each object or row of a list, or for each row of an object of lists."""
+def _records(document: Any) -> list[Any]:
+    """Return the objects or rows in a document: those of a list, or of lists in an object."""
     if isinstance(document, list):
-        yield from map(_record, document)
+        return document
     if not isinstance(document, dict):
-        return
+        return []
     columns = {}
     for name, each in document.items():
         if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
@@ -137,13 +142,8 @@ def _records(document: Any) -> Iterator[str]:
     size = max(map(len, columns.values()), default=0)
     columns = {name: each for name, each in columns.items() if len(each) == size}
     if columns:
-        rows = zip(*columns.values(), strict=True)
-        yield from (_record(dict(zip(columns, row, strict=True))) for row in rows)
-        return
-    for inner in document.values():
-        for first in (lines := _records(inner)):
-            yield from chain([first], lines)
-            return
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    return next(filter(None, map(_records, document.values())), [])
 
 
 def _record(item: Any) -> str:
@@ -166,9 +166,9 @@ def _arrays(stream: io.BufferedReader) -> Any:
     try:
         loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
         names = getattr(loaded, "files", None) or loaded.dtype.names
-        if not names:
-            return loaded.reshape(len(loaded), -1).tolist()
-        return {name: np.squeeze(loaded[name]).tolist() for name in names}
+        if names:
+            return {name: np.squeeze(loaded[name]).tolist() for name in names}
+        return loaded.reshape(len(loaded), -1).tolist()
     except Exception as error:  # a broken archive may raise anything
         why = printable(str(error), 100)
         raise unreadable(f"its arrays cannot be read: {why}; save a workbook as CSV.") from None
@@ -270,9 +270,13 @@ class _Text:
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
         self._remarks += bool(line.strip())
-        if self._read_below(line):
+        names = self._over
+        self._over = []
+        if names and len(fields := line.split()) == len(names):
+            for name, field in zip(names, fields, strict=True):
+                self._print(name, field)
             return
-        values: dict[str, tuple[int, str]] = {}
+        prints: dict[str, tuple[int, str]] = {}
         is_data = False
         for layout in LAYOUTS:
             for match in layout.pattern.finditer(line):
@@ -280,45 +284,34 @@ class _Text:
                     self._units = layout.units
                 groups = {name: text for name, text in match.groupdict().items() if text}
                 is_data |= self._found(layout, line, groups)
-                if "value" in groups:
-                    values[groups["name"]] = (match.start("value"), groups["value"])
-                if "step" in groups:
-                    values["Step"] = (match.start("step"), groups["step"])
+                for value, name in (("value", groups.get("name", "")), ("step", "Step")):
+                    if value in groups and not self._is_over:
+                        self._print(name, groups[value], groups.get("unit", ""))
+                        prints[name] = (match.start(value), groups[value])
             if is_data:
                 break
         is_nothing = not is_data and not self._is_over and self._words_or_row(line)
-        if is_nothing or values:
-            self._remember(line, values)
+        if is_nothing or prints:
+            self._remember(line, prints)
 
-    def _remember(self, line: str, values: dict[str, tuple[int, str]]) -> None:
-        """Remember what lines of this shape hold: these values, at their places in the line."""
-        numbers = {match.start(): match[0] for match in _NUMBERS.finditer(line)}
-        places = self._prints[-1].places
-        holds: dict[int, int] = {}
-        for name, (start, text) in values.items():
-            if name not in places or _NUMBERS.search(name):  # another name may have this shape
+    def _remember(self, line: str, prints: Mapping[str, tuple[int, str]]) -> None:
+        """Remember what lines of this shape hold: these prints, at their places in the line."""
+        starts = [match.start() for match in _NUMBERS.finditer(line)]
+        holds = {}
+        for name, (start, text) in prints.items():
+            place = self._prints[-1].places.get(name)
+            if place is None or _NUMBERS.search(name):  # another name may have this shape
                 return
-            if numbers.get(start) == text:
-                holds[places[name]] = 2 * [*numbers].index(start) + 1
+            if start in starts:
+                holds[place] = 2 * starts.index(start) + 1
             elif _IS_FAILED.fullmatch(text):
-                holds[places[name]] = -1
+                holds[place] = -1
             else:
                 return
         shape = _NUMBERS.sub("\0", line)
-        is_text = re.search(r"[^\W\d_]", shape) or not numbers
-        if len(self._shapes) < MAX_SHAPES and is_text:
+        is_text = re.search(r"[^\W\d_]", shape) or not starts
+        if is_text and len(self._shapes) < MAX_SHAPES:
             self._shapes[shape] = (tuple(holds), tuple(holds.values()))
-
-    def _read_below(self, line: str) -> bool:
-        """Read values below their names.  Return whether there are such."""
-        names = self._over
-        self._over = []
-        values = [number(field) for field in line.split()]
-        is_below = bool(names) and len(values) == len(names) and None not in values
-        if is_below:
-            for name, value in zip(names, values, strict=True):
-                self._print(name, value)
-        return is_below
 
     def _found(self, layout: Layout, line: str, groups: dict[str, str]) -> bool:
         """Take what a layout found.  Return whether that is all there is in the line."""
@@ -335,17 +328,14 @@ class _Text:
                 self._is_over = False
             case _ if self._is_over:
                 pass
-            case {"name": name, "value": value}:
-                self._print(name, number(value), groups.get("unit", ""))
-            case {"step": value}:
-                self._print("Step", number(value))
-                return False
+            case {"value": _}:
+                pass
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
                 self._over = [name.strip() for name in re.findall(layout.cells, text)]
             case {"row": text}:
-                fields, delimiter = _fields(text, glued=True)
+                fields, delimiter = self._fields(text, is_row=True)
                 opening = fields[0]
                 if number(opening) is not None:
                     opening = ""
@@ -361,7 +351,8 @@ class _Text:
                 return False
         return True
 
-    def _print(self, name: str, value: float | None, unit: str = "") -> None:
+    def _print(self, name: str, text: str, unit: str = "") -> None:
+        value = number(text)
         if value is not None:
             self._prints[-1].print(name, unit or self._unit(name), self._line, value)
 
@@ -381,13 +372,11 @@ class _Text:
         if text.startswith("@") or not re.search(r"[\w*]", text):
             return True  # what else xmgrace is told, or a rule
         is_comment = bare != text and number(text.split()[0]) is None
-        fields, delimiter = _fields(bare)
+        if bare[:1] == bare[-1:] == "|":  # Markdown
+            bare = bare[1:-1]
+        fields, delimiter = self._fields(bare)
         if len(fields) > MAX_COLUMNS:
             return True
-        if delimiter is None and len(fields) != self._width:
-            divided = _fields(bare, glued=True)[0]
-            if len(divided) == self._width:
-                fields = divided
         has_number = any(number(each) is not None for each in fields)
         if has_number and not is_comment and self._row(fields, delimiter):
             return False
@@ -397,6 +386,19 @@ class _Text:
                 del self._heads[next(iter(self._heads))]
         is_like = len(fields) == self._width
         return has_number and not is_like and (is_comment or number(fields[0]) is None)
+
+    def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
+        """Return the fields of a row and what separates them, None for blanks."""
+        text = text.strip()
+        bare = re.sub(r'"[^"]*"', "", text)
+        for sign in [sign for sign in _DELIMITERS if sign in bare]:
+            fields = _split(text, sign)
+            if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
+                return fields, sign
+        divided = _GLUED.sub(" ", text).split()
+        if is_row or len(divided) == self._width:
+            return divided, None
+        return _split(text, None) or [""], None
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to its table, which may begin here.  Return whether it is a row."""
@@ -428,17 +430,19 @@ class _Text:
         names = self._head(fields, numbers)
         if names is None:
             is_like = len(fields) == self._width and opening == self._opening
-            names = [""] * len(fields)
+            names = self._labelled(len(fields))
             rest = numbers[bool(opening) :]
             is_bare = delimiter and not self._heads  # rows that were cut out of a table
-            is_row = None not in rest or self._worth(names, numbers) > 0
+            is_row = None not in rest or self._worth([""] * len(fields), numbers) > 0
             is_row |= bool(is_bare) and len(rest) > rest.count(None) + 1
             is_below = before and not self._begins and (is_like or any(before.names))
             if is_below or not is_row:
+                for line, ways in self._heads.items():
+                    if is_like and not self._begins and not any(map(self._worth, ways)):
+                        self._remember(line, {})  # it never will be a head
                 if is_like:
-                    self._pass_over_heads()
+                    self._heads.clear()
                 return False
-            names = self._labelled(len(fields))
         units = self._units_of(names, fields)
         self._heads.clear()
         if before and before.names == names and not self._begins:
@@ -450,13 +454,6 @@ class _Text:
         for name, unit in zip(names, units, strict=True):
             self._sheets[-1].add_column(name, unit)
         return True
-
-    def _pass_over_heads(self) -> None:
-        """Forget lines that are no heads, and remember those that never will be."""
-        for line, ways in self._heads.items():
-            if not self._begins and not any(map(self._worth, ways)):
-                self._remember(line, {})
-        self._heads.clear()
 
     def _head(self, fields: list[str], numbers: list[float | None]) -> list[str] | None:
         """Return the best names above that fit a row, None without any."""
@@ -523,21 +520,12 @@ class _Text:
 
 def _ways(text: str, cells: str = "") -> list[list[str]]:
     """Return the names in a head, divided in each way that there may be."""
-    text = _without_bars(text.strip().rstrip(",; "))
+    text = text.strip().rstrip(",; ")
+    ways = [_split(text, sign) for sign in (*_DELIMITERS, None)]
+    ways += [re.split(between, text) for between in _BETWEEN]
     if cells:
-        return [[name.strip() for name in re.findall(cells, text)]]
-    ways = [_split(text, sign) for sign in ("\t", ";", ",", "|", None) if (sign or text) in text]
-    ways.append(re.split(r"\s{2,}", text))  # names may contain single blanks
-    ways.append(re.sub(r"\s+(?=[(\[])", "\0", text).split())  # or a blank before the unit
-    ways.append(re.split(r"(?<=[)\]])\s+", text))  # or end with the unit
-    return [[name.replace("\0", " ").strip(" '\"#") for name in names] for names in ways if names]
-
-
-def _without_bars(text: str) -> str:
-    """Return a row without the bars at its ends, as Markdown has them."""
-    if len(text) > 1 and text[0] == text[-1] == "|":
-        return text[1:-1]
-    return text
+        ways = [re.findall(cells, text)]
+    return [[name.strip(" '\"#") for name in names] for names in ways]
 
 
 def _split(text: str, delimiter: str | None) -> list[str]:
@@ -550,16 +538,3 @@ def _split(text: str, delimiter: str | None) -> list[str]:
         )
         return fields
     return []
-
-
-def _fields(text: str, glued: bool = False) -> tuple[list[str], str | None]:
-    """Return the fields of a row and what separates them, None for blanks."""
-    text = _without_bars(text.strip())
-    bare = re.sub(r'"[^"]*"', "", text)
-    for sign in [sign for sign in "\t;,|" if sign in bare]:
-        fields = _split(text, sign)
-        if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
-            return fields, sign
-    if glued:
-        text = _GLUED.sub(" ", text)
-    return _split(text, None) or [""], None

@@ -267,19 +267,21 @@ class Sheet:
         lines, _ = self._column(leading[0])
         if not len(lines):
             return
-        columns = {}
         here = np.ones(len(lines), dtype=bool)
-        for place in choice.columns:
-            columns[place], has_value = self._joined(place, lines)
-            here &= has_value
+        sums = []
+        for group in (choice.time, choice.energy, choice.kinetic):
+            sums.append(np.zeros(len(lines)))
+            for place in group:
+                column, has_value = self._joined(place, lines)
+                here &= has_value
+                sums[-1] += column
         last = np.flatnonzero(here).max(initial=-1)
         inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
         missing = len(here) - 1 - last  # rows after the last energy
         if last >= 0 and missing > max(inner, 1):  # it ended, it is not only rarer
             here[last + 1 :] = True
-        columns = {place: column[here] for place, column in columns.items()}
-        rows = int(np.count_nonzero(here))
-        times: Any = sum(columns[place] for place in choice.time)
+        times, energies, kinetic = (total[here] for total in sums)
+        rows = len(times)
         if not choice.time:
             times = np.arange(rows, dtype=float)
         runs = list(_runs(times))
@@ -287,11 +289,10 @@ class Sheet:
             raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
         skipped = self.skipped + len(here) - rows
         if choice.energy and not self._is_printed:  # energies without a time
-            own = self._column(choice.energy[0])[0]
+            own, _ = self._column(choice.energy[0])
             skipped += int(np.count_nonzero(~np.isin(own, lines)))
-        for first, last in runs:
-            part = {place: column[first:last] for place, column in columns.items()}
-            series = Series(self, choice, times[first:last], part)
+        for run in runs:
+            series = Series(self, choice, times[run], energies[run], kinetic[run])
             series.skipped["without_numbers"] = skipped
             skipped = 0
             yield series
@@ -325,19 +326,17 @@ def _counts(samples: Sequence[Any]) -> bool:
     )
 
 
-def _runs(times: Any) -> Iterator[tuple[int, int]]:
-    """Yield first and last index (exclusive) of each part that ends where time starts again."""
+def _runs(times: Any) -> Iterator[slice]:
+    """Yield each part of the times that ends where time starts again."""
     first = 0
     for _ in range(MAX_SERIES):
-        if first == len(times):
-            return
         usable = np.abs(times[first:]) < LATEST
-        start = first + int(np.argmax(usable))
         if not usable.any():
             return
+        start = first + int(np.argmax(usable))
         again = np.flatnonzero(usable[start - first + 1 :] & (times[start + 1 :] <= times[start]))
         last = start + 1 + int(again[0]) if len(again) else len(times)
-        yield first, last
+        yield slice(first, last)
         first = last
     raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
 
@@ -349,13 +348,12 @@ class Series:
     sheet: Sheet
     choice: Choice
     times: Any
-    parts: dict[int, Any]  # a column for each place
+    energies: Any
+    kinetic: Any
     number: int = 0
     count: int = 0  # series in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
     failed_at: float | None = None  # the time of the first energy that is no finite number
-    energies: Any = ()
-    kinetic: Any = ()
     units: tuple[str, str] = ("", "")  # of time and energy
 
     @property
@@ -376,16 +374,13 @@ class Series:
         return "+".join(name or f"column {place + 1}" for name, place in parts) or "row"
 
     def finish(self, start: float = -math.inf, end: float = math.inf) -> None:
-        """Apply step and units, add up columns, leave out and count rows that cannot be used."""
-        choice = self.choice
-        wanted = self.sheet.wanted
-        self.units = self._units(wanted)
+        """Apply step and units, leave out and count rows that cannot be used."""
+        step = self.sheet.wanted.step
+        self.units = self._units()
         times = np.where(np.abs(self.times) < LATEST, self.times, -np.inf)
-        if wanted.step:
-            times = times * wanted.step[0]
+        if step:
+            times = times * step[0]
         before = np.maximum.accumulate(np.concatenate([[-np.inf], times[:-1]]))
-        energies = sum((self.parts[place] for place in choice.energy), np.zeros(len(times)))
-        kinetic = sum((self.parts[place] for place in choice.kinetic), np.zeros(len(times)))
         left = np.ones(len(times), dtype=bool)
         for why, bad in (
             ("time_not_finite", np.isinf(times)),
@@ -395,31 +390,29 @@ class Series:
             self.skipped[why] = int(np.count_nonzero(bad & left))
             left &= ~bad
         used = np.flatnonzero(left)
-        lost = np.flatnonzero(~np.isfinite(energies[used] + kinetic[used]))
+        lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
         if len(lost):
             self.failed_at = float(times[used[lost[0]]])
             self.skipped["energy_not_finite"] = len(used) - int(lost[0])
             used = used[: lost[0]]
         self.times = times[used]
-        self.energies = energies[used]
-        self.kinetic = kinetic[used]
+        self.energies = self.energies[used]
+        self.kinetic = self.kinetic[used]
 
-    def _units(self, wanted: Wanted) -> tuple[str, str]:
+    def _units(self) -> tuple[str, str]:
         """Return the units of time and energy.  Raises UserError if --step contradicts one."""
-        names = self.sheet.names
-        units = [self.sheet.units[place] for place in (*self.choice.time[:1],)] or [""]
-        time = units[0]
-        is_time = any(role(names[place])[0] == "time" for place in self.choice.time)
-        if wanted.step and (time or is_time):
+        wanted = self.sheet.wanted
+        found = {}
+        for kind, group in (("time", self.choice.time), ("energy", self.choice.energy)):
+            units = {self.sheet.units[place] for place in group}
+            found[kind] = units.pop() if len(units) == 1 else ""
+        is_time = any(role(self.sheet.names[place])[0] == "time" for place in self.choice.time)
+        if wanted.step and (found["time"] or is_time):
             raise UserError(
                 f"--step is for steps, but {self.named(self.choice.time)} is a time already; "
                 "name the column of steps with --time, or leave out --step."
             )
         if wanted.step:
-            time = wanted.step[1]
-        energies = {self.sheet.units[place] for place in self.choice.energy}
-        energy = energies.pop() if len(energies) == 1 else ""
-        return (
-            shown("time", wanted.units.get("time", time)),
-            shown("energy", wanted.units.get("energy", energy)),
-        )
+            found["time"] = wanted.step[1]
+        time, energy = (shown(kind, unit) for kind, unit in (found | wanted.units).items())
+        return time, energy
