@@ -169,20 +169,32 @@ class Judged:
     failed_at: float | None = None  # the time of the first energy that is nan or infinite
 
     def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    def lines(self, time_unit: str = "", energy_unit: str = "", step: str = "") -> list[str]:
+        """Return the answer in lines, with these units, per `step` where time has none."""
+        per = f"per {time_unit or step or 'unit of time'}"
         verdict = f"{self.verdict}{', and rests now' * self.rests}"
         if self.reason:
             verdict += f": {self.reason}"
         if self.failed_at is not None:
-            verdict += f": its numbers end at {self.failed_at:g}"
+            verdict += f": its numbers end at {self.failed_at:g} {time_unit}".rstrip()
         lines = [f"verdict       {verdict}"]
         if self.slope is not None and self.uncertainty is not None:
-            slope = f"{self.slope:+.2e} ± {self.uncertainty:.0e} per unit of time"
-            share = f"{100 * (self.share or 0):+.2g} % of its band over this record"
-            lines.append(f"trend         {slope}, {share}")
-            lines.append(f"bound         {self.bound:.1e} per unit of time at 99 %")
-        error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most"
-        lines.append(f"energy error  {error}, relative to {self.scale:g}")
-        return "\n".join(lines)
+            absolute = f"{self.slope * self.scale:+.2e} ± {self.uncertainty * self.scale:.0e}"
+            trend = (
+                f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}, absolute {absolute}"
+            )
+            lines.append(f"trend         {trend} {energy_unit}".rstrip() + f" {per}")
+            share = self.share or 0.0
+            band = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
+            bound = f"relative {self.bound:.1e} {per} at 99 %; over this record {band} the band"
+            lines.append(f"bound         {bound}")
+        error = "too large for a number"
+        if math.isfinite(self.max_error):
+            error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "
+            error += f"{self.scale:.6g} {energy_unit}".rstrip()
+        return [*lines, f"energy error  {error}"]
 
 
 def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first") -> Judged:

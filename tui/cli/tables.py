@@ -350,8 +350,7 @@ class Series:
     times: Any
     energies: Any
     kinetic: Any
-    number: int = 0
-    count: int = 0  # series in the input
+    number: int = 0  # from 1
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
     failed_at: float | None = None  # the time of the first energy that is no finite number
     units: tuple[str, str] = ("", "")  # of time and energy

@@ -59,25 +59,33 @@ def run(options: argparse.Namespace) -> int:
     results = [judge(name, options) for name in options.files]
     lines = [line for result in results for line in lines_of(result)]
     fields = results[0]
-    orders: dict[str, float | None] = {}
+    gated: dict[str, Any] = {}
     if options.steps:
-        orders = orders_of(options.steps, results)
-        fields = {"steps": options.steps, "files": results, **orders}
-        for name in ("fluctuation_order", "drift_order"):
-            lines.append(_line(name.removesuffix("_order"), _goes_as(name, orders)))
+        order = _fluctuation_order(options.steps, results)
+        drift = _drift_order(options.steps, results)
+        lines.append(_line("fluctuation", _goes_as(*order)))
+        lines.append(_line("drift", _goes_as(drift)))
+        gated = {"drift_order": drift, **_gated(*order)}
+        fields = {
+            "steps": options.steps,
+            "files": results,
+            "fluctuation_order": order[0],
+            "fluctuation_order_uncertainty": order[1],
+            "drift_order": drift,
+        }
     charts = []
     if form_of(options) == "table" and sys.stdout.isatty():
         columns = shutil.get_terminal_size().columns
         rows = sum(1 + len(line) // columns for line in lines)
         charts = [line for result in results for line in _chart(result, rows)]
     for result in results:
-        del result["series"]
+        del result["series"], result["judged"]
     publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
     failures: list[str] = []
     if gate:
         for result in results:
             skipped = sum(result["skipped"].values())  # rows, for whatever reason
-            failures.append(gate({"": result | _gated(orders) | {"skipped": skipped}}))
+            failures.append(gate({"": result | gated | {"skipped": skipped}}))
     failure = "; ".join(filter(None, dict.fromkeys(failures)))
     code = conclude(options.fail_if, [Check("", failure)])
     if any(result["verdict"] == FAILED for result in results):
@@ -97,7 +105,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
             doubt = seen[-1].choice.doubt or "the total energy"
             raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
-        fields |= {**_judged(series, options), "series": series}
+        fields |= {"tables": len(seen), **_judged(series, options)}
     except UserError as error:
         raise UserError(f"{shown}: {error}", error.code) from None
     except OSError as error:
@@ -121,7 +129,6 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
         raise unreadable("no row of numbers is in it.")
     for place, series in enumerate(found, 1):
         series.number = place
-        series.count = len(found)
     return found
 
 
@@ -171,11 +178,9 @@ def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one table.  Raises UserError."""
     _finish(series, options)
     judged = _judgement(series, options.scale)
-    size = judged.scale
     time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields = {
         "table": series.number,
-        "tables": series.count,
         "time": printable(series.named(series.choice.time)),
         "energy": printable(series.named(series.choice.energy)),
         **fields_of(judged, "verdict", "reason", "rests", "share", "scale"),
@@ -184,25 +189,28 @@ def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
         "trend_unit": time_unit and f"1/{time_unit}",
         "time_unit": time_unit,
         "energy_unit": energy_unit,
-        "absolute_trend": judged.slope and judged.slope * size,
-        "absolute_uncertainty": judged.uncertainty and judged.uncertainty * size,
-        "absolute_bound": judged.bound and judged.bound * size,
-        "fluctuation": judged.fluctuation and judged.fluctuation * size,
         "independent_samples": judged.independent,
         "max_energy_error": judged.max_error,
         "energy_error": judged.error,
         "first_energy": float(series.energies[0]),
         "lowest_energy": float(series.energies.min()),
         "highest_energy": float(series.energies.max()),
-        "samples": len(series.times),
+        "samples": series.rows,
         "first_time": float(series.times[0]),
         "last_time": float(series.times[-1]),
         "diverged_at": series.failed_at,
         "skipped": series.skipped,
     }
+    for name, value in (
+        ("absolute_trend", judged.slope),
+        ("absolute_uncertainty", judged.uncertainty),
+        ("absolute_bound", judged.bound),
+        ("fluctuation", judged.fluctuation),
+    ):
+        fields[name] = value and value * judged.scale
     if options.atoms is not None:
         fields |= _per_atom(fields, options.atoms, options.temperature)
-    return finite(fields)
+    return finite(fields) | {"series": series, "judged": judged}
 
 
 def _judgement(series: Series, scale: float | str | None) -> library.Judged:
@@ -269,10 +277,8 @@ def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> 
     return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
 
 
-def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
+def _goes_as(power: float | None, uncertainty: float | None = None) -> str:
     """Return a sentence's end on the power of h with which something goes."""
-    power = orders[name]
-    uncertainty = orders.get(f"{name}_uncertainty")
     if power is None:
         return "no clear power of h"
     text = f"goes as h^{power:.2f}"
@@ -283,43 +289,33 @@ def _goes_as(name: str, orders: Mapping[str, float | None]) -> str:
     return text
 
 
-def _gated(orders: Mapping[str, float | None]) -> dict[str, Any]:
-    """Return the orders as --fail-if compares them: as high as they may be, or not known."""
-    power = orders.get("fluctuation_order")
-    uncertainty = orders.get("fluctuation_order_uncertainty")
+def _gated(power: float | None, uncertainty: float | None) -> dict[str, Any]:
+    """Return the order of the fluctuation as --fail-if compares it, as high as it may be."""
     if power is None or uncertainty is None:
-        return dict(orders)
+        return {}
     order = Order(power, uncertainty)
     unknown = {"fluctuation_order": f"cannot tell: it goes as {order}; {order.advice}"}
     shown = {"fluctuation_order": str(order).removeprefix("h^")}
-    return {**orders, "fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
+    return {"fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
 
 
-def orders_of(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
-    """Return the powers of the step size with which fluctuation and drift scale.
+def _fluctuation_order(
+    steps: Sequence[float], results: Sequence[dict[str, Any]]
+) -> tuple[float | None, float | None]:
+    """Return the power of the step size with which fluctuations go, and its uncertainty."""
+    series = [fields["series"] for fields in results if fields["verdict"] != FAILED]
+    if len(series) < len(steps):
+        return None, None
+    try:
+        return order_of(steps, [fluctuation(each.times, each.energies) for each in series])
+    except ValueError:  # too few samples, or an energy that never changes
+        return None, None
 
-    The drift has no order unless it is significant at each step size.
-    """
+
+def _drift_order(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> float | None:
+    """Return the power of the step size with which drifts go, if all of them are significant."""
     drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
-    orders = {
-        "fluctuation_order": None,
-        "fluctuation_order_uncertainty": None,
-        "drift_order": _power(steps, drifts),
-    }
-    if all(fields["verdict"] != FAILED for fields in results):
-        series = [fields["series"] for fields in results]
-        try:
-            order = order_of(steps, [fluctuation(each.times, each.energies) for each in series])
-        except ValueError:  # too few samples, or an energy that never changes
-            return orders
-        orders["fluctuation_order"] = order.power
-        orders["fluctuation_order_uncertainty"] = order.uncertainty
-    return orders
-
-
-def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | None:
-    """Return the slope of log |value| over log step, or None if a value is missing or 0."""
-    logs = [math.log(abs(value)) for value in values if value]
+    logs = [math.log(abs(drift)) for drift in drifts if drift]
     if len(logs) < len(steps):
         return None
     return linear_regression([math.log(step) for step in steps], logs).slope
@@ -327,40 +323,20 @@ def _power(steps: Sequence[float], values: Sequence[float | None]) -> float | No
 
 def lines_of(fields: dict[str, Any]) -> list[str]:
     """Return the lines on one file."""
-    time_unit = _spaced(fields["time_unit"])
-    energy_unit = _spaced(fields["energy_unit"])
-    verdict = fields["verdict"]
-    if fields["rests"]:
-        verdict += ", and rests now"
-    if fields["reason"]:
-        verdict += f": {fields['reason']}"
-    if fields["diverged_at"] is not None:
-        verdict += f": its numbers end at {fields['diverged_at']:g}{time_unit}"
-    lines = [_title(fields), *_listed(fields), _line("verdict", verdict)]
-    if fields["trend"] is not None:
-        unit = "unit of time"
-        if role(fields["time"])[0] == "step":
-            unit = fields["time"].casefold()
-        per = f"per {fields['time_unit'] or unit}"
-        relative = f"relative {fields['trend']:+.2e} ± {fields['uncertainty']:.0e} {per}"
-        absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}"
-        lines.append(_line("trend", f"{relative}, absolute {absolute}{energy_unit} {per}"))
-        share = fields["share"]
-        text = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
-        bound = f"relative {fields['bound']:.1e} {per} at 99 %"
-        lines.append(_line("bound", f"{bound}; over this record {text} the band"))
+    step = ""
+    if role(fields["time"])[0] == "step":
+        step = fields["time"].casefold()
+    energy_unit = fields["energy_unit"]
+    lines = fields["judged"].lines(fields["time_unit"], energy_unit, step)
+    lines = [_title(fields), *_listed(fields), *lines]
     if fields.get("energy_per_ns_per_atom") is not None:
-        text = f"{fields['energy_per_ns_per_atom']:+.2e}{energy_unit} per ns"
+        text = f"{fields['energy_per_ns_per_atom']:+.2e}{_spaced(energy_unit)} per ns"
         if "temperature" in fields:
             text += f", {fields['kt_per_ns_per_atom']:+.2e} kT per ns"
         lines.append(_line("per atom", text))
-    if fields["max_energy_error"] is None:
-        return [*lines, _line("energy error", "too large for a number")]
-    error = f"{fields['energy_error']:+.2e} at the end, {fields['max_energy_error']:.2e} at most"
-    lines.append(_line("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
-    if is_of_first and is_around_zero and fields["max_energy_error"] >= 1:
+    if is_of_first and is_around_zero and (fields["max_energy_error"] or 0) >= 1:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
         lines.append(_line("hint", hint))
     return lines

@@ -36,7 +36,6 @@ def read(data: str | bytes, time: str | None = None, energy: str | None = None) 
     found = [series for sheet in sheets for series in sheet.series() if sheet.choice]
     if not found:
         raise UserError("nothing")
-    found[-1].count = len(found)
     found[-1].finish()
     return found[-1]
 
