@@ -37,7 +37,7 @@ def cast_of(
     cast = default
     if options.methods is not None:
         known = (*METHODS, *own)
-        if getattr(options, "cost", None) == "seconds":
+        if options.cost == "seconds":
             known = (*known, TAYLOR_20)
         with given_by("--methods"):
             cast = all_named(options.methods.split(","), known, model)

@@ -17,7 +17,7 @@ class Command(NamedTuple):
     examples: str
     more: str = ""  # above its options
     place: str = ""  # MODULE:FUNCTION in tui/commands, if it is another
-    defaults: Mapping[str, str | None] = {}  # other than those of its options
+    defaults: Mapping[str, str] = {}  # other than those of its options
 
     @property
     def text(self) -> str:
@@ -25,7 +25,7 @@ class Command(NamedTuple):
         return f"{self.about[0].upper()}{self.about[1:]}.\n\n{self.more}".strip()
 
 
-STILL = {"theme": "dark", "pixels": "braille", "no_mouse": None, "fps": None}
+STILL = {"theme": "dark", "pixels": "braille"}
 COMMANDS = {
     "live": Command(
         "the lab: methods side by side, their errors, a recording",
@@ -49,7 +49,6 @@ COMMANDS = {
 Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
         place="lab:tour",
-        defaults={"record": None},
     ),
     "replay": Command(
         "play a recording on the same screen",

@@ -113,7 +113,7 @@ def _dispatch(arguments: list[str]) -> int:
     module, _, function = COMMANDS[name].place.partition(":")
     run = getattr(import_module(f"{ROOM}.{module or name}"), function or "run")
     refuse_to_replace_inputs(options)
-    if getattr(options, "method", None):
+    if options.method:
         from pendu_tui.tui.cli.watchdog import watch_calls_in_c
 
         keep_results_apart()

@@ -289,6 +289,12 @@ GROUPS: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
 }
 """Options that belong together: their title in the help, a sentence, and their names."""
 
+UNASKED: Settings = {
+    **dict.fromkeys(("output", "record", "csv", "force", "cost", "no_mouse", "fps")),
+    "method": [],
+}
+"""The values of options that a command does not have."""
+
 _MEANINGS = {word: f"  {word}: {each.meaning}" for word, each in VERDICTS.items()}
 TEXTS = {
     "{lost}": LOST,
@@ -301,6 +307,7 @@ TEXTS = {
 def add_options(parser: argparse.ArgumentParser, name: str) -> None:
     """Add the options of a command, and its examples below them."""
     command = COMMANDS[name]
+    parser.set_defaults(**UNASKED)
     _add(parser, name, command.options)
     parser.set_defaults(**command.defaults)
     examples = command.examples

@@ -212,13 +212,12 @@ def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object
 
 def form_of(options: argparse.Namespace) -> Form:
     """Return the form that the options or the suffix of the -o file ask for."""
-    path: Path | None = getattr(options, "output", None)
-    suffix = path.suffix.lower() if path else ""
+    suffix = options.output.suffix.lower() if options.output else ""
     if suffix in FIGURES:
         return "figure"
     if options.json or suffix == ".json":
         return "json"
-    return "csv" if path or getattr(options, "csv", False) else "table"
+    return "csv" if options.output or options.csv else "table"
 
 
 def check_output(options: argparse.Namespace) -> Form:
@@ -238,13 +237,10 @@ def check_output(options: argparse.Namespace) -> Form:
 def publish(report: Report, options: argparse.Namespace) -> None:
     """Print the report, or write it to the -o file in the form of its suffix."""
     form = form_of(options)
-    path: Path | None = getattr(options, "output", None)
-    if path is None:
-        report.show(form)
-    elif form == "figure":
+    if form == "figure":
         assert report.figure is not None
-        with whole_file(path, options.force) as part:
-            report.figure.draw(part, path.suffix.lower())
+        with whole_file(options.output, options.force) as part:
+            report.figure.draw(part, options.output.suffix.lower())
     else:
-        with text_file(path, options.force) as out:
+        with text_file(options.output, options.force) as out:
             report.show(form, out)
