@@ -46,8 +46,9 @@ def test_show_shows_what_a_recording_contains(whole):
     assert "damaged:" not in shown
 
 
-def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path):
-    hostile.write_file(tmp_path / "runs.mcap", "many runs", 600)
+def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path, monkeypatch):
+    monkeypatch.setattr(hostile, "MANY", 601)
+    hostile.write(tmp_path / "runs.mcap", hostile.runs())
     out = pendu("recordings", "show", tmp_path / "runs.mcap").out
     assert "and 100 runs more" in out
     assert len(pendu("recordings", "show", tmp_path / "runs.mcap", "--json").json["runs"]) == 600
