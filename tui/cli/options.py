@@ -9,7 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import InputError, did_you_mean, number, seconds
+from pendu_tui.engine.inputs import InputError, did_you_mean, number
 from pendu_tui.tui.cli.errors import Exit, UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
@@ -119,17 +119,20 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
     return read
 
 
-def positive(text: str, read: Callable[[str], float] = number) -> float:
-    """Return a number above zero, and finite."""
-    value = read(text)
-    if not 0 < value < math.inf:
-        raise ValueError(f"{text!r} is out of range; use a number above zero")
-    return value
+def above_zero(read: Callable[[str], Any], limit: float = math.inf) -> Callable[[str], Any]:
+    """Return a reader of numbers above zero and below a limit."""
+
+    def read_one(text: str) -> Any:
+        value = read(text)
+        if not 0 < value < limit:  # also refuses nan
+            below = "" if limit == math.inf else f" and below {limit:g}"
+            raise ValueError(f"{text!r} is out of range; use a number above zero{below}")
+        return value
+
+    return read_one
 
 
-def duration(text: str) -> float:
-    """Return a time above zero [s]."""
-    return positive(text, seconds)
+positive = above_zero(number)
 
 
 def count(text: str) -> int:
@@ -179,11 +182,12 @@ def scale(text: str) -> float | str:
     if text in ("first", "std") or text.startswith("kinetic:"):
         return text
     try:
-        return positive(text)
+        size: float = positive(text)
     except ValueError:
         raise ValueError(
             f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
         ) from None
+    return size
 
 
 def step_sizes(text: str) -> list[float]:

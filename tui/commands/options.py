@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from pendu_tui.engine.inputs import angle, number
+from pendu_tui.engine.inputs import angle, number, seconds
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import CHAOTIC, VERDICTS
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Z_LIMITS
 from pendu_tui.engine.studies import LOST
 from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
@@ -24,8 +24,8 @@ from pendu_tui.tui.cli.files import FIGURES
 from pendu_tui.tui.cli.options import (
     LIST,
     Suggestions,
+    above_zero,
     count,
-    duration,
     ladder,
     moment,
     positive,
@@ -87,6 +87,7 @@ def with_suffix(*suffixes: str) -> Callable[[str], Path]:
     return read
 
 
+MAX_TIME = 1e9  # s, 30 years, which is also the limit of a recording's clock
 KEYS = [method.key for method in METHODS]
 VERBS = ("list", "show", "recover")
 RECORDING = "FILE|latest|NAME"
@@ -173,11 +174,15 @@ OPTIONS: dict[str, Settings] = {
     "--host": option("ADDRESS", "address to listen on (%(default)s)", default="127.0.0.1"),
     "--at-most": option("N", "limit of open labs (%(default)s)", count, default=20),
     # times and steps
-    "run --time": option("S", "simulated time, which is required: 60 (s) or 1min", duration),
-    "accuracy --time": option("S", "simulated time (ten small swings)", duration),
+    "run --time": option(
+        "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
+    ),
+    "accuracy --time": option("S", "simulated time (ten small swings)", above_zero(seconds)),
     "snapshot --time": option("S", "simulated seconds (%(default)g)", moment, default=12.0),
     "--sample-every": option("N", "record every N steps (default: every 1/30 s)", count),
-    "stability --steps": option("N", "steps for each swing (%(default)s)", count, default=10_000),
+    "stability --steps": option(
+        "N", "steps for each swing (%(default)s)", above_zero(count, 2**31), default=10_000
+    ),
     "--max-steps": option("N", "simulate at most N steps of each recording", count),
     "--no-compiled": flag("do not use Numba (same results)"),
     "--workers": option(
@@ -211,12 +216,12 @@ OPTIONS: dict[str, Settings] = {
     "--theta-values": option(
         "LIST",
         f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; for a map 100)",
-        values(angle),
+        values(above_zero(angle, math.pi)),
     ),
     "--z-values": option(
         "LIST",
         f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 in steps of 1 %%; for a map 200 up to 3)",
-        values(number),
+        values(above_zero(number, Z_LIMITS[1])),
     ),
     # gates
     "run --fail-if": gate(
@@ -290,7 +295,8 @@ GROUPS: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
 """Options that belong together: their title in the help, a sentence, and their names."""
 
 UNASKED: Settings = {
-    **dict.fromkeys(("output", "record", "csv", "force", "cost", "no_mouse", "fps")),
+    **dict.fromkeys(("output", "record", "csv", "cost", "no_mouse", "fps")),
+    "force": False,
     "method": [],
 }
 """The values of options that a command does not have."""
