@@ -33,34 +33,12 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert pendu("live", "--plain").refused(5, str(path))
 
 
-def test_a_lab_whose_recording_stopped_exits_with_5(tmp_path, capsys):
-    live = Live(DEFAULT_SCENE)
-    live.record(LiveRecorder(tmp_path / "lab.mcap"))
-    (tmp_path / "lab.mcap.part").unlink()
-    live.tick(0.0)
-    live.tick(2.0)
-    live.pause(True)
-    live.close()
-    assert say_goodbye(live) == 5
-    assert "the recording stopped" in capsys.readouterr().err
-
-
 def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys):
     live = Live(DEFAULT_SCENE)
     live.record(LiveRecorder(tmp_path / "lab.mcap"))
     live.recorder._fail(DiskError("no space is left", "disk"))
     live.recorder.abandon()
     assert say_goodbye(live) == 5
-    assert f"saved {tmp_path / 'lab.mcap.part'}" in capsys.readouterr().out
-
-
-def test_a_folder_with_escapes_in_its_name_does_not_steer_the_terminal(tmp_path, capsys):
-    folder = tmp_path / "a\x1b]0;title\x07 \x1b[2J"
-    folder.mkdir()
-    live = Live(DEFAULT_SCENE)
-    live.record(LiveRecorder(folder / "lab.mcap"))
-    live.close()
-    assert say_goodbye(live) == 0
-    printed = capsys.readouterr().out
-    assert "lab.mcap" in printed
-    assert all(line.isprintable() for line in printed.splitlines())
+    printed = capsys.readouterr()
+    assert f"saved {tmp_path / 'lab.mcap.part'}" in printed.out
+    assert "the recording stopped" in printed.err
