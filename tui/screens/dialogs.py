@@ -21,12 +21,10 @@ from pendu_tui.engine.methods import METHODS, Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.scenes import MAX_METHODS, Scene
 from pendu_tui.tui.drawing.picture import PALETTES
-from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.lines import SizedScreen, key_text
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
 from pendu_tui.tui.words.cards import glossary, method_card, scene_card
 from pendu_tui.tui.words.numbers import counted, z_text
-from pendu_tui.tui.words.plain_text import step_text
 
 KEY_WIDTH = 9  # characters
 COLUMN_WIDTH = 36  # characters, a key and what it does
@@ -91,7 +89,7 @@ def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
         yield f"{' '.join(keys):<{KEY_WIDTH - 1}} {does}"
 
 
-def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> str:
+def help_text(owners: Sequence[type[DOMNode]], scene: Scene, width: int) -> str:
     """Return the keys of these classes, the scene, the glossary, and the methods.
 
     `width`: columns of the screen; from 80 on keys stand in two columns.
@@ -104,11 +102,7 @@ def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> st
             pairs = zip_longest(lines[:half], lines[half:], fillvalue="")
             lines = [f"{left:<{COLUMN_WIDTH}}{right}".rstrip() for left, right in pairs]
         parts.append("\n".join(filter(None, [owner.BINDING_GROUP_TITLE, *lines, owner.HELP])))
-    scene = source.scene
-    now = ""
-    if source.stepping.h != scene.h:
-        now = f"h = {step_text(source)}"
-    return "\n\n".join([*parts, scene_card(scene, now), glossary(), *map(method_card, scene.cast)])
+    return "\n\n".join([*parts, scene_card(scene), glossary(), *map(method_card, scene.cast)])
 
 
 # Forms
@@ -255,24 +249,19 @@ class CastForm(Form[Scene]):
             kind = "not symplectic"
         return Text(f"{name} order {method.order:<2} {forces:<16} {kind}")
 
+    async def action_take(self) -> None:
+        await self.query_one(Choices).run_action("select")
+
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        self._toggle(event.option_index)
-
-    def action_take(self) -> None:
-        if (index := self.query_one(OptionList).highlighted) is not None:
-            self._toggle(index)
-
-    def _toggle(self, index: int) -> None:
-        method = self._methods[index]
+        method = self._methods[event.option_index]
         if method in self.cast:
             self.cast = tuple(each for each in self.cast if each is not method)
         elif len(self.cast) < MAX_METHODS:
             self.cast = (*self.cast, method)
         else:
             self.notify(f"No more than {MAX_METHODS} methods fit: leave one out first.")
-        listed = self.query_one(OptionList)
         for at, each in enumerate(self._methods):
-            listed.replace_option_prompt_at_index(at, self._line(each))
+            event.option_list.replace_option_prompt_at_index(at, self._line(each))
 
     def action_start(self) -> None:
         if self.cast:

@@ -73,7 +73,7 @@ class LabScreen(SizedScreen[None]):
     BLANK = True  # covered by its children
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     BINDING_GROUP_TITLE = "Lab"
-    HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
+    HELP = "Drag the pendulum: throw it. Click a key, an event, a row, a pane; the wheel zooms."
     BINDINGS: ClassVar[list[BindingType]] = KEYS
 
     shown: var[Shown] = var(Shown())
@@ -562,15 +562,14 @@ class LabScreen(SizedScreen[None]):
         owners: list[type[Widget]] = [*dict.fromkeys(panes), type(self)]
         # the keys of the view in front come first
         owners.sort(key=lambda each: VIEWS[self.view].title != each.BINDING_GROUP_TITLE)
-        self._show_text("Help", [help_text(owners, self.source, self.app.size.width)])
+        self._show_text("Help", [help_text(owners, self.source.scene, self.app.size.width)])
 
     def action_events(self) -> None:
         self._show_text("Events", numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
         titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
-        panes = [Content.from_markup(title).plain for title in titles]
-        on_screen = "; ".join(filter(None, [VIEWS[self.view].title, *panes]))
+        on_screen = "; ".join(Content.from_markup(title).plain for title in titles if title)
         self._show_text("In words", [*description(self.source), f"On screen: {on_screen}."])
 
     def action_screenshot(self) -> None:

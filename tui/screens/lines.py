@@ -3,7 +3,6 @@
 import math
 import re
 import textwrap
-from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -11,8 +10,7 @@ from typing import Any, NamedTuple
 from rich.cells import cell_len
 from rich.style import Style
 from textual import events
-from textual.app import App
-from textual.binding import ActiveBinding, Binding
+from textual.binding import Binding
 from textual.screen import Screen, ScreenResultType
 
 from pendu_tui.engine.methods import Cast, Method
@@ -22,6 +20,7 @@ from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, WARN, Ink, 
 from pendu_tui.tui.playback.lesson import ASTRAY
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.keys import ALWAYS
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.insight import insight, painted
@@ -57,7 +56,7 @@ class StatusLine(Pane):
 
 
 def status_row(source: Source, shown: Shown, width: int, stands_still: bool = False) -> Row:
-    badge = f" {source.kind} "
+    badge = f" {source.kind}"
     scene = source.scene
     parts = [
         *_time(source, shown, stands_still),
@@ -91,7 +90,7 @@ def _time(source: Source, shown: Shown, stands_still: bool) -> Iterator[Segment]
         yield Segment(12, "backwards")
     else:
         yield Segment(12, "running")
-    speed = speed_text(playhead.speed)
+    speed = f"{factor(playhead.speed)}×"
     yield Segment(7, speed)
     if 0.01 <= (share := source.pace) < 0.99:
         yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", QUIET)
@@ -129,15 +128,6 @@ def _recording(source: Source) -> Iterator[Segment]:
         yield Segment(1, status.name, QUIET)
 
 
-def speed_text(speed: float) -> str:
-    """Return "1×", "1/8×", "1024×" or "-2×"."""
-    if speed < 0:
-        return f"-{speed_text(-speed)}"
-    if speed < 1:
-        return f"1/{factor(1 / speed)}×"
-    return f"{factor(speed)}×"
-
-
 def limit_warning(zs: Mapping[Method, float]) -> str:
     """Return "unstable: e, s v (z > 2), r (z > 2.83)", or "" below all limits.
 
@@ -169,12 +159,10 @@ class InsightLine(Pane):
             text = f"Not recording: {status.failed}"
             ink = WARN
         rows = []
-        if watch and height > 1:
+        if watch != text and height > 1:
             rows = text_rows(watch, TEXT, self.cast, width, 1)
-            height -= 1
-        if text != watch or not rows:
-            rows += text_rows(text, ink, self.cast, width, height)
-        return Picture(rows)
+            height -= len(rows)
+        return Picture([*rows, *text_rows(text, ink, self.cast, width, height)])
 
 
 def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = None) -> list[Row]:
@@ -206,7 +194,7 @@ class LessonPanel(Pane):
             forward = f"{' '.join(map(str, numbers))} answer  enter the truth"
         elif lesson.stage == "watching" and lesson.shot.moment is not None:
             forward = "enter to the moment"
-        title = f" {lesson.title} "
+        title = f" {lesson.title}"
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):
             keys = keys.rpartition("  ")[0]
@@ -266,16 +254,15 @@ def bar(position: float, length: float, ticks: Sequence[float], width: int) -> R
 
 
 def facts(source: Source, room: int) -> str:
-    """Return position and length, and what fits of loop, run, step and event.
+    """Return position and length, and what fits of loop, run and step.
 
     Numbers are as wide as the largest, so that the bar stays in place.
     """
     position = source.playhead.position
     length = seconds(source.length)
     text = f"{seconds(position):>{max(len(length), len('59.99 s'))}} of {length}"
-    ticks = source.ticks
-    numbers = {**source.counts, "event": (bisect_right(ticks, position + 1e-6), len(ticks))}
-    parts = [f"{name} {at:>{len(str(last))}}/{last}" for name, (at, last) in numbers.items()]
+    counts = source.counts
+    parts = [f"{name} {at:>{len(str(last))}}/{last}" for name, (at, last) in counts.items()]
     if source.looping:
         parts.insert(0, "loop")
     for part in parts:
@@ -291,9 +278,6 @@ def key_text(binding: Binding) -> str:
 class KeyLine(CellWidget):
     """The keys that can be used now; a click presses one."""
 
-    ORDER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Live", "Back", "Tour", "Undo")
-    """The order of the hints; "" stands for those of the focused pane."""
-
     _keys: Sequence[str] = ()
     """For each column, the key that a click presses."""
 
@@ -304,27 +288,22 @@ class KeyLine(CellWidget):
         if self.drawable and self.screen.is_current:
             self.show(Picture([self._row()]))
 
-    def _needed(self) -> list[ActiveBinding]:
-        by_action: dict[str, ActiveBinding] = {}
-        for each in self.screen.active_bindings.values():
-            if each.binding.show and each.enabled:
-                by_action.setdefault(each.binding.action, each)
-
-        def place(each: ActiveBinding) -> int:
-            hint = ""
-            if isinstance(each.node, (Screen, App)):
-                hint = each.binding.description
-            return self.ORDER.index(hint) if hint in self.ORDER else len(self.ORDER)
-
-        return sorted(by_action.values(), key=place)
+    def _needed(self) -> list[Binding]:
+        own: dict[str, Binding] = {}
+        panes: dict[str, Binding] = {}
+        for node, binding, enabled, _ in self.screen.active_bindings.values():
+            if binding.show and enabled:
+                bindings = own if node is self.screen else panes
+                bindings[binding.action] = binding
+        listed = [*own.values()]
+        return [*listed[:ALWAYS], *panes.values(), *listed[ALWAYS:]]
 
     def _row(self) -> Row:
         """Return what fits; grouped keys share a hint."""
         row: list[tuple[str, int]] = []
         columns: list[str] = []
-        grouped = groupby(self._needed(), key=lambda each: each.binding.group or each.binding)
-        for _, members in grouped:
-            bindings = [each.binding for each in members]
+        for _, members in groupby(self._needed(), key=lambda each: each.group or each):
+            bindings = [*members]
             text = "".join(f" {key_text(each)}" for each in bindings)
             hint = f"{bindings[0].description} "
             if len(columns) + len(text) + 1 + len(hint) > self.room.width:

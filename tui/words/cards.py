@@ -78,8 +78,7 @@ def method_card(method: Method) -> str:
     return _card(f"{method.letter}  {method.label}", lines)
 
 
-def scene_card(scene: Scene, now: str = "") -> str:
-    """Return a scene's card; `now` is the current step if it differs."""
+def scene_card(scene: Scene) -> str:
     exact = scene.exact()
     reference = None
     if exact.accuracy and scene == SCENES.get(scene.name):
@@ -93,7 +92,6 @@ def scene_card(scene: Scene, now: str = "") -> str:
         f"{scene.w0:.4g} 1/s",
         **{name: f"{value:.5g} {NUMBERS[name].unit}" for name, value in scene.parameters.items()},
         "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
-        "now": now,
         "motion": motion_text(scene, exact),
         "compared with": reference,
     }
