@@ -1,4 +1,4 @@
-"""The loops take the phases of a method until its numbers overflow."""
+"""Loops take the phases of a method until its numbers overflow, with the same bits compiled."""
 
 import math
 from dataclasses import replace
@@ -8,15 +8,17 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import GENERAL
-from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET
+from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.run import loops as loops_module
+from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, TieredLoops, available, compiled
+from tests.models import EQUATIONS
 
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
     "model",
-    [kind(9.81) for kind in MODELS.values() if not kind.without_force],
+    [model for model in EQUATIONS if not model.without_force],
     ids=lambda model: model.key,
 )
 angles = st.floats(-10, 10)
@@ -41,14 +43,17 @@ OVERFLOWING = replace(GENERAL[0], key="overflowing", phases=overflowing)
 def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h, n):
     # the linear oscillator overflows after some 60 evaluations
     n = math.ceil(n / method.force_evaluations)
-    phase, path = (theta, omega), []
+    phase = (theta, omega)
+    path = []
     for _ in range(n):
-        path.append(phase := method.step(model.force(), phase, h))
-    assume(all(map(math.isfinite, path[-1])))  # a large implicit step may have no solution
+        phase = method.step(model.force(), phase, h)
+        path.append(phase)
+    assume(all(map(math.isfinite, phase)))  # a large implicit step may have no solution
     energies = [model.energy()(point) for point in path]
-    assert PlainLoops(method, model).propagate((theta, omega), h, n) == path[-1]
-    expected = (n, path[-1], energies[-1], min(energies), max(energies))
-    assert PlainLoops(method, model).advance((theta, omega), h, n, math.inf) == expected
+    loops = PlainLoops(method, model)
+    assert loops.propagate((theta, omega), h, n) == phase
+    expected = (n, phase, energies[-1], min(energies), max(energies))
+    assert loops.advance((theta, omega), h, n, math.inf) == expected
 
 
 @given(theta=st.floats(1.01, 1e6), n=st.integers(1, 60))
@@ -77,3 +82,84 @@ def test_it_stops_before_the_step_whose_energy_reaches_the_limit(method):
     assert high < highest
     assert done == 0 or energy(phase) == value
     assert energy(loops.propagate(phase, 0.05, 1)) == highest
+
+
+@needs_numba
+@each_method
+def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
+    fast = compiled(method, PENDULUM)
+    slow = PlainLoops(method, PENDULUM)
+    assert fast is not slow
+    start = ((2.5, 0.3), 0.05, 5000, math.inf)
+    assert fast.advance(*start) == slow.advance(*start)
+
+    resource = pytest.importorskip("resource", reason="no count of page faults")
+
+    def faults(runs):
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+        for _ in range(runs):
+            fast.propagate((1.0, 0.0), 0.01, 2)
+        return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+    faults(1000)
+    assert faults(20_000) < 200  # pages; a list of BM4's in each run would fill 1000
+
+
+@needs_numba
+@each_model
+@pytest.mark.parametrize("method", [VELOCITY_VERLET, RK4, OVERFLOWING], ids=lambda each: each.key)
+@pytest.mark.parametrize("h", [0.001, -0.02, 3.0])
+def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
+    start = ((math.radians(179.9), -0.2), h, 500)
+    fast = compiled(method, model)
+    slow = PlainLoops(method, model)
+    found = fast.advance(*start, 1e9)
+    assert repr(found) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
+    if found[0] == 500:
+        assert fast.propagate(*start) == slow.propagate(*start)
+
+
+@needs_numba
+@pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [2, 4]), (3, [1, 2, 4])])
+def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
+    ahead, compiled_steps, monkeypatch
+):
+    monkeypatch.setattr(loops_module, "COMPILED_FROM", 3)
+    used = []
+
+    def fast(method, model):
+        loops = compiled(method, model)
+
+        def propagate(*start):
+            used.append(start[-1])
+            return loops.propagate(*start)
+
+        return CompiledLoops(propagate=propagate, advance=loops.advance)
+
+    loops = TieredLoops(RK4, PENDULUM, fast, ahead)
+    plain = PlainLoops(RK4, PENDULUM)
+    for n in (1, 2, 4):
+        start = ((2.0, 0.0), 0.05, n)
+        assert loops.propagate(*start) == plain.propagate(*start)
+        assert loops.advance(*start, math.inf) == plain.advance(*start, math.inf)
+    assert used == compiled_steps
+
+
+@needs_numba
+def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
+    class OtherSine:
+        """Numba where one sine in two thousand is a bit off."""
+
+        @staticmethod
+        def njit(function):
+            def sine(x):
+                right = function(x)
+                return math.nextafter(right, 2.0) if round(1000 * x) % 2000 == 7 else right
+
+            return sine
+
+    monkeypatch.setattr(loops_module, "_same_sine", loops_module._same_sine.__wrapped__)
+    monkeypatch.setattr(loops_module, "_compiled", loops_module._compiled.__wrapped__)
+    assert not isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)
+    monkeypatch.setattr(loops_module, "import_module", lambda name: OtherSine)
+    assert isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)

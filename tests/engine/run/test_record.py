@@ -159,6 +159,11 @@ def test_each_level_has_a_case_on_both_sides(name):
         assert judge_record(T, 1000 + make(value)).verdict == (word or "undecided")
 
 
+def test_the_share_is_what_the_slope_adds_up_to_over_the_width_of_the_band():
+    found = judge_record(T, 1000 + SINE + T / 50)
+    assert found.share == pytest.approx(2 / (2 * math.sqrt(2)), rel=0.005)
+
+
 def test_a_wave_of_some_cycles_leaves_no_trend_behind():
     for cycles in (2.1, 2.3, 2.6, 3.4):
         assert told(np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE) == "bounded"
