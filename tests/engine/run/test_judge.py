@@ -139,6 +139,9 @@ def test_a_damped_energy_is_judged_only_where_it_is_above_rounding() -> None:
     assert found == ["grows", "loses", "undecided", "grows"]
 
 
+BAND = 0.5 - 0.5 * np.cos(math.tau * np.arange(6000) / 16)
+
+
 def judge_of(errors) -> Judge:
     """Return a judge of made-up errors, 16 steps a period."""
     points = [LookPoint(step, error, error, error) for step, error in enumerate(errors)]
@@ -179,11 +182,15 @@ def test_the_largest_errors_that_a_lockstep_gives_leave_no_nan() -> None:
     assert judgement.uncertainty is None or math.isfinite(judgement.uncertainty)
 
 
+def test_a_run_with_a_certain_trend_is_not_bounded_however_small_the_trend() -> None:
+    trend = 2e-6 * np.arange(6000)  # to a hundredth of the band
+    assert [told(BAND + each)[0] for each in (0, trend)] == ["bounded", "undecided"]
+
+
 def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length() -> None:
-    steps = np.arange(6000)
-    band = 0.5 - 0.5 * np.cos(math.tau * steps / 16)
-    noise = noise_of(200, seed=1, count=6000) * (steps > 0)
-    found = [judge_of(band + size * noise).judgement for size in (0.06, 0.07)]
+    noise = noise_of(200, seed=1, count=6000)
+    noise[0] = 0
+    found = [judge_of(BAND + size * noise).judgement for size in (0.06, 0.07)]
     shares = [each.bound * each.share / each.slope for each in found]
     assert 0.09 < shares[0] < 0.1 < shares[1] < 0.11
     assert [each.verdict for each in found] == ["bounded", "undecided"]
