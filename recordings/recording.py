@@ -13,7 +13,7 @@ from typing import BinaryIO, NamedTuple, Self
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
@@ -58,6 +58,16 @@ class Run:
     def inputs(self) -> int:
         """The number of actions of a user."""
         return sum(event.kind not in NOT_INPUTS for _, event in self.events)
+
+    @property
+    def changes(self) -> list[SteppingChange]:
+        """The changes of its stepping, the start first."""
+        changes = [SteppingChange(0, 0.0, Stepping(self.scene.h, cast=self.scene.cast))]
+        for _, event in self.events:
+            if event.h is not None:
+                stepping = Stepping(event.h, event.equal_cost, self.scene.cast)
+                changes.append(SteppingChange(event.step, event.t, stepping))
+        return changes
 
     @property
     def milestones(self) -> list[Milestone]:

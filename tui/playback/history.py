@@ -16,7 +16,6 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
-    from pendu_tui.recordings.recording import Run
     from pendu_tui.tui.playback.rows import Floats, Ghost, Records, Rows, Window
 
 TRAIL = 300  # rows, ten seconds
@@ -34,16 +33,6 @@ class Row(NamedTuple):
     states: Sequence[Sequence[float]]  # of the methods and the exact motion: theta, omega
     low: list[list[float]]  # of each quantity and method, since the row before
     high: list[list[float]]
-
-
-def changes_of(run: "Run") -> list[SteppingChange]:
-    cast = run.scene.cast
-    changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=cast))]
-    for _, event in run.events:
-        if event.h is not None:
-            stepping = Stepping(event.h, event.equal_cost, cast)
-            changes.append(SteppingChange(event.step, event.t, stepping))
-    return changes
 
 
 class History:

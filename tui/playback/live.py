@@ -49,7 +49,6 @@ class Live(Source):
         self._recorded = 0.0  # s, the recording clock, which stops while the lab is paused
         self._clock = clock
         self._clocked = 0.0  # s, that of the last message
-        self._noticed_step = 0  # milestones up to here have been recorded
         self._runs = 1
         run = RewindableRun(scene, 1, compiled_in_background)
         if history is not None:
@@ -82,12 +81,11 @@ class Live(Source):
 
     def tick(self, now: float) -> Sample:
         """Follow the clock as far as the frame's budget allows, and drop the rest of the time."""
-        seen = self.playhead.seen
         before = self.playhead.position
-        self.playhead.follow(now)
-        if self.playhead.paused or seen is None:
+        played = self.playhead.follow(now)
+        if not played:
             return self.sample
-        self._recorded += max(now - seen, 0.0)
+        self._recorded += played
         began = self._clock()
         # stop at t = 0 exactly, to show how far each method is from its start
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
@@ -98,12 +96,10 @@ class Live(Source):
             self._forward(min(left, chunk))
             if self.failure:
                 break
-        due = self.playhead.position - before
         if left > 0:
             self.playhead.position = self._run.x
-        if due:
-            share = (self.playhead.position - before) / due
-            self.pace += (share - self.pace) * (1 - math.exp(seen - now))  # averaged over a second
+        share = (self.playhead.position - before) / (played * self.playhead.speed)
+        self.pace += (share - self.pace) * (1 - math.exp(-played))  # averaged over a second
         return self._take_sample(is_row=False)
 
     def _forward(self, steps: int) -> None:
@@ -293,7 +289,7 @@ class Live(Source):
         for step, t, stepping in self._run.changes[1:]:
             change = Event("set_h", run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
             self._note(change)
-        self._noticed_step = -1
+        self._noticed_step = -1  # milestones up to here have been recorded
         self._note_milestones()
 
     def _note_milestones(self) -> None:

@@ -12,7 +12,7 @@ from pendu_tui.engine.run.stepping import SteppingChange, change_before
 from pendu_tui.engine.run.verdicts import FAILED, Judgement
 from pendu_tui.recordings.events import Event, check_present
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.playback.history import History, changes_of
+from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, Source
 
@@ -182,7 +182,7 @@ class Replay(Source):
         assert isinstance(sample, Sample)
         if jump or sample.run != self.run.number:
             run = self.run = self.recording.run_of(sample.run)
-            self.history = History(run.scene, changes_of(run))
+            self.history = History(run.scene, run.changes)
             for _ in self._read(self.history, max(run.begin, clock - 1.0), clock, sample.step):
                 pass
             self.knows_past = False
@@ -200,7 +200,7 @@ class Replay(Source):
 
     def _past(self) -> Iterator[None]:
         """Read the last minute, and of longer runs the first seconds of equal stretches before."""
-        history = History(self.run.scene, changes_of(self.run))
+        history = History(self.run.scene, self.run.changes)
         second = self.run.begin
         last_minute = max(second, self.recording.sample(self._place).clock - 60.0)
         stretch = max(1.0, (last_minute - second) / MAX_STRETCHES)

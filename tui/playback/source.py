@@ -28,11 +28,14 @@ class Playhead:
     paused: bool = False
     seen: float | None = None  # s, the last clock reading
 
-    def follow(self, now: float) -> None:
-        """Follow a clock to `now` [s]; ignore a clock that goes back."""
+    def follow(self, now: float) -> float:
+        """Follow a clock to `now` [s]; return the time [s] played, 0 if the clock went back."""
+        played = 0.0
         if self.seen is not None and not self.paused:
-            self.position += max(0.0, now - self.seen) * self.speed
+            played = max(0.0, now - self.seen)
         self.seen = now
+        self.position += played * self.speed
+        return played
 
 
 class RecordingStatus(NamedTuple):
