@@ -7,7 +7,7 @@ missing optional ones are None; anything else unexpected raises RecordingError.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from typing import Annotated, Any, Literal, NamedTuple, get_args
 
@@ -117,11 +117,12 @@ EVENT = (
 """The kind of an event, and the fields of all kinds."""
 
 
-def struct_of(fields: Sequence[Field]) -> type[msgspec.Struct]:
-    """Return the type of a kind of message, in which missing optional fields are None."""
+def decoder_of(fields: Sequence[Field]) -> Callable[[bytes], Any]:
+    """Return a decoder of a kind of message, in which missing optional fields are None."""
     members = [field.member for field in fields]
     # gc: a message holds no circle, and is gone before a collection
-    return msgspec.defstruct("Message", members, kw_only=True, omit_defaults=True, gc=False)
+    message = msgspec.defstruct("Message", members, kw_only=True, gc=False)
+    return msgspec.json.Decoder(message).decode
 
 
 def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
@@ -145,14 +146,10 @@ def sample_schema(model: str) -> dict[str, Any]:
     return schema_of(title, (*MOMENT, *READING, *EXTRA[model]))
 
 
-_Event = struct_of((*MOMENT, *EVENT))
-_SAMPLES = {model: struct_of((*MOMENT, *READING, *extra)) for model, extra in EXTRA.items()}
 _TEXTS = [field.name for field in EVENT if field.type == "string"]
 _REQUIRED = {"set_h": "h", "speed": "speed"}
-_encode = msgspec.json.Encoder().encode
-_decode_event = msgspec.json.Decoder(_Event).decode
-_decoders = {model: msgspec.json.Decoder(struct).decode for model, struct in _SAMPLES.items()}
-_EXTRA_NAMES = {model: [field.name for field in extra] for model, extra in EXTRA.items()}
+_decode_event = decoder_of((*MOMENT, *EVENT))
+_decoders = {model: decoder_of((*MOMENT, *READING, *extra)) for model, extra in EXTRA.items()}
 _values_of_reading = attrgetter(*(field.name for field in READING))
 
 
@@ -171,12 +168,11 @@ def encode_readings(sample: Sample) -> list[bytes]:
     """
     messages = []
     for reading in sample.readings:
-        fields = {"run": sample.run, "step": sample.step, "t": sample.t, **reading._asdict()}
-        del fields["extra"]
+        fields = {"run": sample.run, "step": sample.step, "t": sample.t, **values_of(reading)}
         for name in EXTREMES:
             if fields[name] == fields[ENERGY_ERROR.name]:
                 del fields[name]
-        messages.append(_dumps(fields | dict(reading.extra)))
+        messages.append(_dumps(fields))
     return messages
 
 
@@ -188,10 +184,11 @@ def decode_readings(messages: Sequence[bytes], model: str = DEFAULT_MODEL) -> Sa
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
         raise _refused(error) from error
     readings = tuple(map(_reading, decoded))
-    if names := _EXTRA_NAMES[model]:
-        extras = ({name: getattr(message, name) for name in names} for message in decoded)
-        pairs = zip(readings, extras, strict=True)
-        readings = tuple(reading._replace(extra=extra) for reading, extra in pairs)
+    if extra := EXTRA[model]:
+        readings = tuple(
+            reading._replace(extra={own.name: getattr(message, own.name) for own in extra})
+            for reading, message in zip(readings, decoded, strict=True)
+        )
     first = decoded[0]
     return Sample(first.run, first.step, first.t, readings)
 
@@ -257,7 +254,7 @@ def _dumps(fields: dict[str, Any]) -> bytes:
     for name, value in present.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"{name} is {value}, which JSON cannot hold")  # msgspec writes null
-    return _encode(present)
+    return msgspec.json.encode(present)
 
 
 def _refused(error: Exception) -> RecordingError:

@@ -92,16 +92,15 @@ class Recorder:
         """
         data = encode_event(event)
         if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
-            self._end()
+            self.close()
             raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:
             self._begin(event.scene)
-        self._add([(EVENTS, data)], clock)
         if event.kind in ("pause", "resume"):
             self._paused = event.kind == "pause"
-        self._flush_if_due(urgent=self._paused)
+        self._add([(EVENTS, data)], clock)
 
     def sample(self, sample: Sample, clock: float) -> None:
         """Write a sample, unless it or a later one of its run is the last one written.
@@ -113,10 +112,10 @@ class Recorder:
             sample = without_extremes(sample)
         elif sample.step <= last.step:
             return
-        self._add(list(zip(self._topics, encode_readings(sample), strict=True)), clock)
+        messages = zip(self._topics, encode_readings(sample), strict=True)
+        self._add(list(messages), clock, urgent=last is None)
         self.samples += 1
         self._last = sample
-        self._flush_if_due(urgent=self._paused or last is None)
 
     def note_gap(self) -> None:
         """Note that samples of the run are missing here."""
@@ -137,21 +136,19 @@ class Recorder:
         Without a start, no file is left.  If the name was taken meanwhile, `path` becomes the next
         free one, and NameTakenError is raised.
         """
-        if not self._file.closed:
-            self._end()
+        if self._file.closed:
+            return
+        try:
+            if self._channels:
+                self._finish()
+        finally:
+            self.abandon()
 
     def keep_older(self) -> None:
         """Do not replace an older file, because this recording is not whole: choose a free name."""
         if self._overwrite and os.path.lexists(self.path):
             self.path = free_path(self.path)
         self._overwrite = False
-
-    def _end(self) -> None:
-        try:
-            if self._channels:
-                self._finish()
-        finally:
-            self.abandon()
 
     def _finish(self) -> None:
         if (last := self._last) is not None:
@@ -215,7 +212,9 @@ class Recorder:
             number = self._writer.register_channel(topic, "json", self._schemas[title], metadata)
             self._channels[topic] = number
 
-    def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
+    def _add(
+        self, messages: Sequence[tuple[str, bytes]], clock: float, urgent: bool = False
+    ) -> None:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
@@ -227,14 +226,12 @@ class Recorder:
                 self._writer.add_message(channel, log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
+        if urgent or self._paused or self._unflushed > MAX_CHUNK:
+            self.flush()
 
     def _publish_time(self, log_time: int) -> int:
         """Return a time [ns] that is the same when the same run is recorded again."""
         return log_time
-
-    def _flush_if_due(self, urgent: bool) -> None:
-        if urgent or self._unflushed > MAX_CHUNK:
-            self.flush()
 
 
 class LiveRecorder(Recorder):
