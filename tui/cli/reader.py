@@ -43,7 +43,7 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?:[eEdD][-+]?\d+)?)")  # twice as fast as NUMBER
+_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)")  # twice as fast as NUMBER
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
@@ -297,6 +297,8 @@ class _Text:
     def _remember(self, line: str, prints: Mapping[str, tuple[int, str]]) -> None:
         """Remember what lines of this shape hold: these prints, at their places in the line."""
         starts = [match.start() for match in _NUMBERS.finditer(line)]
+        if None in map(number, _NUMBERS.findall(line)):  # as in a version, 1.2.3
+            return
         holds = {}
         for name, (start, text) in prints.items():
             place = self._prints[-1].places.get(name)
@@ -531,7 +533,7 @@ def _ways(text: str, cells: str = "") -> list[list[str]]:
 def _split(text: str, delimiter: str | None) -> list[str]:
     """Return the fields between delimiters, None for blanks; what is in quotes is one field."""
     if '"' not in text:
-        return text.strip(" \r\n").split(delimiter)
+        return text.split(delimiter)
     with suppress(csv.Error, ValueError):
         (fields,) = csv.reader(
             [text.strip(" \r\n")], delimiter=delimiter or " ", skipinitialspace=True

@@ -46,6 +46,12 @@ def test_a_level_trend_is_one_row_and_none_is_not_drawn():
     assert rows_of(chart(slope=None, deviation=None), TREND) == []
 
 
+def test_the_band_is_two_deviations_to_each_side_of_the_trend():
+    text = chart(errors=0.0 * ERRORS, slope=0.0, deviation=5e-4).text
+    assert " 0.001┤" in text
+    assert "-0.001┤" in text
+
+
 def test_a_column_spans_the_lowest_to_the_highest_error_in_it():
     spike = ERRORS.copy()
     spike[2001] = 0.05
