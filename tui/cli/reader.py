@@ -43,7 +43,9 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)")  # twice as fast as NUMBER
+_NUMBERS = re.compile(
+    r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)"
+)  # twice as fast as NUMBER
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together

@@ -236,23 +236,22 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
 def _finish(series: Series, options: argparse.Namespace) -> None:
     """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
     series.finish(options.start, options.end)
-    rows = len(series.times)
-    if series.skipped["time_not_later"] > rows:
+    if series.skipped["time_not_later"] > series.rows:
         raise unreadable(
             "most rows are not later than the row before, so this table seems to hold several "
             "methods; judge one of them, for example filtered with grep."
         )
-    if rows == 0:
-        why = (
-            f"no row has a usable time and energy; skipped: {', '.join(_skipped(series.skipped))}."
-        )
+    if series.rows == 0:
+        why = f"no row has a usable time and energy{_skipped(series.skipped)}."
         if series.failed_at is not None:
             why += f" Use --from with a later time than {series.failed_at:g}."
         raise unreadable(why)
 
 
-def _skipped(skipped: dict[str, int]) -> list[str]:
-    return [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
+def _skipped(skipped: Mapping[str, int]) -> str:
+    """Return a clause on the rows that are skipped, "" if there are none."""
+    each = [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
+    return f"; skipped: {', '.join(each)}" if each else ""
 
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
@@ -281,9 +280,9 @@ def _goes_as(power: float | None, uncertainty: float | None = None) -> str:
     """Return a sentence's end on the power of h with which something goes."""
     if power is None:
         return "no clear power of h"
-    text = f"goes as h^{power:.2f}"
-    if uncertainty is not None:
-        text += f" ± {uncertainty:.2f}"
+    text = (
+        f"goes as h^{power:.2f}" if uncertainty is None else f"goes as {Order(power, uncertainty)}"
+    )
     if power < -2 * (uncertainty or 0):
         text += "; are the steps in the order of the files?"
     return text
@@ -349,16 +348,16 @@ def _chart(fields: Mapping[str, Any], rows_below: int) -> "list[Text]":
     from pendu_tui.tui.drawing.record_chart import record_chart
 
     series = fields["series"]
-    size = fields["scale"]
+    judged = fields["judged"]
     width, height = shutil.get_terminal_size()
+    scale = f"{judged.scale:.6g}{_spaced(fields['energy_unit'])}"
     chart = record_chart(
         series.times,
-        (series.energies - series.energies[0]) / size,
+        (series.energies - series.energies[0]) / judged.scale,
         (width, min(max(height - rows_below - 1, MIN_CHART), MAX_CHART)),
-        slope=fields["trend"],
-        deviation=fields["fluctuation"] and fields["fluctuation"] / size,
-        title=f"energy error relative to {size:.6g}{_spaced(fields['energy_unit'])}; "
-        "dotted: trend, ± 2 sd",
+        slope=judged.slope,
+        deviation=judged.fluctuation,
+        title=f"energy error relative to {scale}; dotted: trend, ± 2 sd",
         unit=fields["time_unit"],
     )
     return drawn(chart, PALETTES["dark"])
@@ -393,10 +392,7 @@ def _title(fields: dict[str, Any]) -> str:
     text = f"{name}: {counted(fields['samples'], 'sample')} from {span}"
     if fields["tables"] > 1:
         text += f", table {fields['table']} of {fields['tables']}"
-    skipped = _skipped(fields["skipped"])
-    if skipped:
-        text += f"; skipped: {', '.join(skipped)}"
-    return text
+    return text + _skipped(fields["skipped"])
 
 
 def _line(name: str, text: str) -> str:
