@@ -14,10 +14,12 @@ import pytest
 
 from tests.tui.command_line import PENDU, ROOT
 
-WHY = "needs a pseudo-terminal"
-fcntl = pytest.importorskip("fcntl", reason=WHY)
-pty = pytest.importorskip("pty", reason=WHY)
-termios = pytest.importorskip("termios", reason=WHY)
+try:
+    import fcntl
+    import pty
+    import termios
+except ImportError:
+    pty = None
 
 SIZES = ("COLUMNS", "LINES")
 PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
@@ -35,6 +37,8 @@ class PtyLab:
         folder: Path = ROOT,
         **environment: str,
     ) -> None:
+        if pty is None:
+            pytest.skip("needs a pseudo-terminal")
         self.rate = rate
         columns, rows = size
         self.began = time.monotonic()

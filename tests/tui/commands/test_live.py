@@ -1,5 +1,7 @@
 """`pendu-tui live` before there is a screen."""
 
+import pytest
+
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.files import DiskError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
@@ -10,6 +12,7 @@ from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 
 
+@pytest.mark.slow
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
     library = {"PENDU_RECORDINGS": str(tmp_path)}
     with PtyLab(**library) as one, PtyLab(**library) as other:

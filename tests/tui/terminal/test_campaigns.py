@@ -12,6 +12,7 @@ from pendu_tui.recordings.verification import verify
 from tests.tui.pty_lab import PtyLab
 
 pytestmark = pytest.mark.slow
+pytest.importorskip("pty", reason="needs a pseudo-terminal")
 
 MAX_END_TIME = 10.0  # s from a signal to the end
 ENDS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)

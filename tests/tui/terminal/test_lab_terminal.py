@@ -17,6 +17,7 @@ from tests.tui.command_line import PENDU, ROOT, pendu
 from tests.tui.pty_lab import PtyLab
 
 pytestmark = pytest.mark.slow
+pytest.importorskip("pty", reason="needs a pseudo-terminal")
 
 RECORDING = "REC 0 s"
 
