@@ -48,20 +48,20 @@ def mine(force, phase, h):
 """
 
 
-def refusal(source, key="mine"):
+def refusal(source):
     with pytest.raises(OwnMethodError) as refused:
-        load(source, key)
+        load(source)
     text = str(refused.value)
     assert text.startswith("mine.py")
     assert text.endswith(".")
     assert text.isprintable()
+    assert len(text) < 400
     return text
 
 
 def test_verlet_written_again_is_measured_to_be_verlet():
     mine, verlet = load(VERLET), VELOCITY_VERLET
     assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
-    assert pickle.loads(pickle.dumps(mine)) is mine
     assert mine.order == 2
     assert mine.measured.order == pytest.approx(2, abs=0.01)
     assert mine.linear_limit == pytest.approx(2, abs=1e-9)
@@ -131,6 +131,7 @@ WRONG = {
     "numbers that are none": (
         euler(yields="Odd(), 1.0", above="class Odd:\n    def __float__(self): raise OSError"), "mine yields (<own_method.O"
     ),
+    "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
@@ -157,12 +158,6 @@ def test_a_wrong_method_gets_one_sentence_that_says_where(wrong):
 @given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
 def test_any_text_gets_a_sentence(text, around):
     assert refusal(around.replace("{}", text))
-
-
-def test_the_sentence_about_a_wrong_method_is_short():
-    shown = "class Odd:\n    def __repr__(self): raise ValueError\n"
-    assert "yields <Odd instance" in refusal(shown + euler(yields="Odd()"))
-    assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n\\x1b')"))) < 400
 
 
 def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
