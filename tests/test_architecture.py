@@ -94,8 +94,3 @@ def test_few_ask_which_system_or_which_model_it_is(asks, allowed):
     ]
     assert places
     assert [place for place in places if not place.startswith(tuple(allowed))] == []
-
-
-def test_a_folder_has_at_most_eighteen_files():
-    for folder in {path.parent for path in MODULES}:
-        assert sum(path.is_file() for path in folder.iterdir()) <= 18, folder

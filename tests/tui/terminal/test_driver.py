@@ -41,7 +41,7 @@ def test_half_blocks_change_only_braille_and_in_ascii_frames_and_words_are_read_
     assert written("╭─ 57.3° 2× ▀█", "half") == "╭─ 57.3° 2× ▀█"
     frame = ["╭─ h² ─╮", "│ 2×  …│", "╰──────╯"]
     assert [written(line, "ascii") for line in frame] == ["+- h2 -+", "| 2x  .|", "+------+"]
-    assert written("Störmer, 2√2, 57°, µs", "ascii") == "Stormer, 2V2, 57o, us"
+    assert written("Störmer, 2√2, ±57°, ½ µs ⣀⡀⠁", "ascii") == "Stormer, 2V2, ~57o, _ us ..'"
 
 
 @given(st.text(st.characters(exclude_categories=("Cc", "Cs"))), st.sampled_from(CHARACTER_SETS))

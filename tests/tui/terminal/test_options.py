@@ -2,8 +2,12 @@
 
 import pytest
 
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     TerminalOptions,
@@ -47,6 +51,12 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     assert colours({"TERM": term}) == number
     assert colours({"TERM": term, "COLORTERM": "truecolor"}) == 1 << 24
+
+
+def test_the_screen_has_the_frames_that_were_asked_for():
+    screen = LabScreen(Live(DEFAULT_SCENE))
+    PenduApp(screen, chosen("--fps 5"))
+    assert screen.fps == 5
 
 
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
