@@ -25,7 +25,6 @@ LIMITS = {
     "median_wait": 8.1,  # periods
     "wrong_runs": 0,  # of 400 methods, at five lengths
     "contradictions": 0,  # between `run` and the same energies alone
-    "early_trends": 0,  # in symplectic runs of 10 and 30 s
     "million_lines": 2.0,  # s
 }
 SECONDS = 120.0  # of each scene
@@ -146,20 +145,6 @@ def exclude(of_run: Judgement, alone: Judgement) -> bool:
     return abs(of_run.slope) > alone.bound + 3 * of_run.uncertainty
 
 
-def early_trends() -> int:
-    """Return how many ordinary symplectic runs of 10 and 30 s have a trend."""
-    cast = tuple(method for method in GENERAL if method.symplectic)
-    trends = 0
-    for theta in np.linspace(0.2, 2.9, 16):
-        for z in (0.03, 0.08, 0.16, 0.3):
-            for seconds in (10.0, 30.0):
-                scene = Scene(theta=float(theta), h=z / Scene().w0, cast=cast)
-                lockstep = Lockstep(scene, judged=True)
-                lockstep.advance(round(seconds / scene.h))
-                trends += sum(judgement.trend is not None for judgement in lockstep.judgements)
-    return trends
-
-
 def million_lines() -> float:
     """Return the seconds of `judge` for 10⁶ lines."""
     energies = 1 + 1e-3 * np.random.default_rng(3).standard_normal(10**6)
@@ -181,6 +166,5 @@ def measure(share: float) -> dict[str, Any]:
         **runs(share),
         "contradictions": len(contradicting),
         "contradicting": contradicting,
-        "early_trends": early_trends(),
         "million_lines": million_lines(),
     }

