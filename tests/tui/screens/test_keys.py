@@ -40,16 +40,6 @@ async def test_keys_pause_step_change_h_reverse_time_and_restart():
         assert (theatre.source.stepping.h, theatre.source.sample.step) == (0.02, 0)
 
 
-async def test_p_goes_to_the_next_scene_and_capital_p_to_any():
-    async with lab() as theatre:
-        names = list(SCENES)
-        await theatre.press("-", "r")  # which makes it a scene of its own
-        for keys, index in (("p", 1), ("p", 2), (("P", *"mean", "enter"), -1), ("p", 0)):
-            await theatre.press(*keys)
-            await theatre.pilot.pause()
-            assert theatre.source.scene == SCENES[names[index]]
-
-
 async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_misses_its_start_by():
     async with lab() as theatre:
         await theatre.run(1)
@@ -76,10 +66,11 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
             return source.stepping.h, source.playhead.speed, source.scene, theatre.stage.shown
 
         before = [settings()]
-        for keys in ("+", ">", ("P", *"mean", "enter"), "y"):
+        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "y"):
             await theatre.press(*keys)
             await theatre.pilot.pause()
             before.append(settings())
+        assert before[3][2] == SCENES["gentle"]
         assert settings()[1:3] == (SCENES["mean-field"].speed, SCENES["mean-field"])
         for earlier in reversed(before[:-1]):
             await theatre.press("u")
@@ -197,7 +188,7 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
 
 async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
-    titles = {"f2": "Lab", "f3": "Phase space", "f4": "Accuracy", "f5": "Stability"}
+    titles = {"f2": "Lab", "f3": "Phase space", "f5": "Stability"}
     async with lab() as theatre:
         for view, title in titles.items():
             await theatre.press(view, "question_mark")

@@ -33,10 +33,11 @@ ESC, FIND = "\x1b", "\x10"
 MOVES = [f"\x1b[{key}" for key in ("A", "B", "C", "D", "H", "F", "5~", "6~")]
 VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
 KEYS = [*"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t", *MOVES, *VIEWS]
-CALMING = "<<00++rp   "  # else the lab would often be paused, or take long to verify
+KEYS += "<<00++rp   "  # else the lab would often be paused, or take long to verify
+KEYS += [*string.ascii_lowercase, *string.digits, "\x7f", "?", "i", "d", FIND, FIND, "\r", "\r"]
+KEYS.remove("q")
 GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"
-KINDS = {"key": 45, "calm": 6, "text": 12, "click": 12, "drag": 4, "wheel": 2, "over": 6}
-KINDS |= {"enter": 4, "paste": 3, "size": 6}
+KINDS = {"key": 75, "click": 12, "drag": 4, "wheel": 2, "paste": 3, "size": 6}
 EPISODE = 60  # presses until dialogs are closed
 LOOK = 0.004  # s by which the work clock advances when it is read, so that a frame's budget ends
 STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next
@@ -56,10 +57,6 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
         if done % EPISODE == 0:
             yield from (ESC, ESC)
         match chance.choices([*KINDS], KINDS.values())[0]:
-            case "calm":
-                yield chance.choice(CALMING)
-            case "text":
-                yield chance.choice(string.ascii_lowercase + string.digits + "-\x7f. ")
             case "click":
                 down = mouse(0, "M")
                 yield down + down[:-1] + "m"
@@ -68,10 +65,6 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
                 yield mouse(button, "M") + mouse(button + 32, "M") + mouse(button, "m")
             case "wheel":
                 yield mouse(chance.choice((64, 65)), "M")
-            case "over":
-                yield chance.choice(("?", "i", "d", "E", FIND))
-            case "enter":
-                yield "\r"
             case "paste":
                 garbage = "".join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))
                 yield f"\x1b[200~{garbage}\x1b[201~"

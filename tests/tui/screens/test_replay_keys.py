@@ -12,7 +12,7 @@ from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.screens.launch import start_recording
 from pendu_tui.tui.screens.lines import SeekBar, StatusLine
 from pendu_tui.tui.views.lab import EventList
-from tests.tui.harness import eventful, lab, player, recorded
+from tests.tui.harness import eventful, player, recorded
 
 
 @pytest.fixture
@@ -54,21 +54,6 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
         await theatre.press("end", "space")
         await theatre.run(1)
         assert replay.playhead.position == pytest.approx(1)
-
-
-async def test_the_lab_has_the_same_bar_and_the_same_keys_on_it():
-    async with lab() as theatre:
-        await theatre.run(4)
-        end = theatre.source.sample
-        bar = theatre.stage.query_one(SeekBar)
-        await theatre.press("left")
-        assert theatre.source.sample.t == pytest.approx(3.0, abs=0.06)
-        await theatre.pilot.click(SeekBar, offset=(1 + bar._columns // 2, 0))
-        assert theatre.source.sample.t == pytest.approx(2.0, abs=4 / bar._columns + 0.06)
-        await theatre.run(1)
-        assert theatre.source.sample.t == pytest.approx(3.0, abs=0.2)
-        await theatre.press("end")
-        assert theatre.source.sample == end
 
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
