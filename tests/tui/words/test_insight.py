@@ -113,7 +113,9 @@ def test_a_forecast_comes_true_in_a_long_run(name, h):
 
 def test_there_is_no_forecast_where_it_would_be_a_guess(judged):
     slope = judged.judgements[RK4].slope
-    assert forecast(changed(judged, RK4, uncertainty=-slope / 10.1), RK4)
+    error = -judged.sample.readings[VERLET].max_energy_error / 2
+    wait, _ = forecast(changed(judged, RK4, error, uncertainty=-slope / 10.1), RK4)
+    assert wait == pytest.approx(error / slope)
     assert forecast(changed(judged, RK4, uncertainty=-slope / 9.9), RK4) is None
     assert forecast(changed(judged, RK4, verdict="grows"), RK4) is None
     assert forecast(changed(judged, RK4, error=-0.3), RK4) is None  # beyond all bands
