@@ -10,8 +10,6 @@ from collections.abc import Iterable
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numpy as np
-
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.cells import CellWidget
@@ -65,10 +63,11 @@ def observe() -> None:
         points(canvas, dots, ink)
         note(canvas, dots, ink)
 
-    def with_scatter(canvas: Canvas, x: Any, y: Any, ink: Any) -> None:
-        scatter(canvas, x, y, ink)
-        for right, down, each in zip(x, y, np.broadcast_to(ink, x.shape).tolist(), strict=True):
-            note(canvas, [(right, down)], each)
+    def with_scatter(canvas: Canvas, x: Any, y: Any, *inks: int) -> None:
+        scatter(canvas, x, y, *inks)
+        for place, ink in enumerate(inks):
+            right = x.reshape(-1, len(inks))[:, place]
+            note(canvas, zip(right, y.reshape(-1, len(inks))[:, place], strict=True), ink)
 
     def with_dots(canvas: Canvas, some: Iterable[tuple[int, int]], ink: int) -> None:
         dots = [*some]

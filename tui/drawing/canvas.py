@@ -34,6 +34,7 @@ _BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _FLAT = {0x09: 0x01, 0x12: 0x02, 0x24: 0x04, 0xC0: 0x40}
 """Both dots of a row of dots, and the left one of them."""
+_DOTTED = bytes(_FLAT.get(dots, dots) for dots in range(256))
 STEPS = 16
 """Steps of the share of columns in which an ink is shown: finer ones flicker."""
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
@@ -49,16 +50,7 @@ class Canvas:
         self.width = 2 * columns  # dots
         self.height = 4 * rows
         self._layers: dict[int, bytearray] = {}  # the dots of each cell, by ink
-        self._ground = bytes(columns * rows), bytes(columns * rows)  # dots and inks, below all
         self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
-
-    def settled(self) -> Self:
-        """Return a copy as one ground, below all that is drawn on it: a quick one to show."""
-        copied = self.copy()
-        dots, inks = self._shown()
-        copied._ground = bytes(dots), bytes(inks)
-        copied._layers = {}
-        return copied
 
     def copy(self) -> Self:
         copied = copy.copy(self)
@@ -100,16 +92,22 @@ class Canvas:
         for cell, bit in dots:
             layer[cell] |= bit
 
-    def scatter(self, x: "Numbers", y: "Numbers", ink: int) -> None:
-        """Set the dots of arrays x and y; for many dots faster than `points`."""
+    def scatter(self, x: "Numbers", y: "Numbers", *inks: int) -> None:
+        """Set the dots of arrays x and y, whose last axis are the inks if there are several.
+
+        For many dots it is faster than `points`.
+        """
         import numpy as np
 
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
-        i = x[inside].astype(np.intp)
-        j = y[inside].astype(np.intp)
-        cells = (j >> 2) * self.columns + (i >> 1)
-        dots = np.frombuffer(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
-        np.bitwise_or.at(np.frombuffer(self._layer(ink), np.uint8), cells, dots)
+        i = np.where(inside, x, 0).astype(np.intp)
+        j = np.where(inside, y, 0).astype(np.intp)
+        cells = ((j >> 2) * self.columns + (i >> 1)).reshape(-1, len(inks))
+        bits = np.frombuffer(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
+        dots = np.where(inside, bits, 0).reshape(-1, len(inks))
+        for place, ink in enumerate(inks):
+            layer = np.frombuffer(self._layer(ink), np.uint8)
+            np.bitwise_or.at(layer, cells[:, place], dots[:, place])
 
     def line(
         self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False
@@ -196,11 +194,22 @@ class Canvas:
             first = row * self.columns + column
             is_free = all(self.is_free(column + at, row) for at in range(len(text)))
             end = first + len(text)
-            layers = self._ground[0], *self._layers.values()
-            if is_free and not any(any(layer[first:end]) for layer in layers):
+            if is_free and not any(any(layer[first:end]) for layer in self._layers.values()):
                 self.label(column, row, text, ink)
                 return True
         return False
+
+    def label_near(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> None:
+        """Write a letter at the first of these cells that is free, but not on other methods."""
+        found: list[tuple[int, int]] = []
+        for place in places:
+            if self.is_free(*place):
+                found.append(place)
+                if not any(0 <= each < FAINT and each != ink for each in self.inks_at(*place)):
+                    found = [place]
+                    break
+        for place in found[:1]:
+            self.label(*place, text, ink)
 
     def inks_at(self, column: int, row: int, columns: int = 1) -> set[int]:
         """Return the inks that have dots in some cells of a row, shown or not."""
@@ -224,41 +233,59 @@ class Canvas:
     def _shown(self) -> tuple[bytearray, bytearray]:
         """Return the dots that are shown and their ink above NOBODY, by cell."""
         inks = sorted(ink for ink in self._layers if ink >= 0)
-        ranks = [[ink for ink in inks if ink < FAINT], [ink for ink in inks if ink >= FAINT]]
+        methods = [ink for ink in inks if ink < FAINT]
+        ranks = [methods, inks[len(methods) :]]
         ranks += [[ink] for ink in reversed(self._layers) if ink < 0]
         dots = 0
         colours = 0
         taken = 0
-        disputed: list[tuple[list[int], int]] = []
+        disputed = 0
         for rank in ranks:
-            seen = 0
-            shared = 0
-            layers = [(ink, _number(self._layers[ink].translate(_FULL))) for ink in rank]
-            for _, cells in layers:
-                shared |= seen & cells
-                seen |= cells
-            for ink, cells in layers:
-                alone = cells & ~(shared | taken)
-                dots |= alone & _number(self._layers[ink])
-                colours |= alone & _filled(len(self._layers[ink]), ink)
-            if shared := shared & ~taken:
-                disputed.append(([ink for ink, cells in layers if cells & shared], shared))
-            taken |= seen
-        dots |= _number(self._ground[0]) & ~taken
-        colours |= _number(self._ground[1]) & ~taken
+            owned, shared = self._turns(rank, ~taken)
+            taken |= sum(owned.values())
+            if rank is methods:
+                disputed = shared
+                owned = {ink: cells & ~shared for ink, cells in owned.items()}
+            for ink, cells in owned.items():
+                layer = self._layers[ink]
+                dots |= cells & ~shared & _number(layer)
+                colours |= cells & _filled(len(layer), ink)
+                if shared:
+                    dots |= cells & shared & _number(layer.translate(_DOTTED))
         size = self.columns * self.rows
         all_dots = bytearray(dots.to_bytes(size, "little"))
         all_colours = bytearray(colours.to_bytes(size, "little"))
-        for rank, shared in disputed:
-            self._take_turns(rank, shared.to_bytes(size, "little"), all_dots, all_colours)
+        if disputed:
+            self._share(methods, disputed.to_bytes(size, "little"), all_dots, all_colours)
         return all_dots, all_colours
 
-    def _take_turns(
-        self, rank: Sequence[int], shared: bytes, dots: bytearray, colours: bytearray
-    ) -> None:
-        """Give each shared cell to one of its inks, column by column from the left.
+    def _turns(self, inks: Sequence[int], free: int) -> tuple[dict[int, int], int]:
+        """Return the free cells that each ink gets, and those for which there are several.
 
-        Inks without a cell in the column come first, and of these the one that has a cell in the
+        They are numbers with a full byte for a cell.  Inks of one cell take turns along the row.
+        """
+        owned: dict[int, int] = {}
+        once = 0
+        shared = 0
+        for ink in inks:
+            cells = _number(self._layers[ink].translate(_FULL)) & free
+            won = cells
+            if common := cells & once:
+                half = _every(2, self.columns, self.rows) & ~shared
+                third = _every(3, self.columns, self.rows) & shared
+                won &= ~common | half | third
+                owned = {other: its & ~won for other, its in owned.items()}
+                shared |= common
+            owned[ink] = won
+            once |= cells
+        return owned, shared
+
+    def _share(
+        self, inks: Sequence[int], shared: bytes, dots: bytearray, colours: bytearray
+    ) -> None:
+        """Give each shared cell to one of its methods, column by column from the left.
+
+        Methods without a cell in the column come first, and of these the one that has a cell in the
         smallest share of its columns.  In steps of shares: what is added at the end of a chart
         changes few turns.
 
@@ -266,10 +293,9 @@ class Canvas:
         look like the steps of one line.
         """
         columns = self.columns
-        layers = {ink: self._layers[ink] for ink in rank}
-        shown = {ink: self._columns_of(colours.translate(_only(ink))) for ink in rank}
-
+        layers = {ink: self._layers[ink] for ink in inks}
         room = {ink: columns - self._columns_of(layer).count(0) for ink, layer in layers.items()}
+        shown = {ink: self._columns_of(colours.translate(_only(ink))) for ink in inks}
 
         def share(ink: int) -> int:
             return STEPS * (columns - shown[ink].count(0)) // room[ink]
@@ -277,18 +303,18 @@ class Canvas:
         cells = [divmod(found.start(), columns)[::-1] for found in _FULL_CELLS.finditer(shared)]
         for column, row in sorted(cells):
             cell = row * columns + column
-            inks = [ink for ink, layer in layers.items() if layer[cell]]
-            turn = (column + 3 * row // 5) % len(inks)
-            ink = inks[turn]
-            unseen = [each for each in inks[turn:] + inks[:turn] if not shown[each][column]]
+            present = {ink: layer[cell] for ink, layer in layers.items() if layer[cell]}
+            turns = [*present]
+            turn = (column + 3 * row // 5) % len(turns)
+            ink = turns[turn]
+            unseen = [each for each in turns[turn:] + turns[:turn] if not shown[each][column]]
             if unseen:
                 ink = min(unseen, key=share)
             shown[ink][column] = True
-            own_dots = layers[ink][cell]
             colours[cell] = ink - NOBODY
-            if own_dots in _FLAT and len({layers[other][cell] for other in inks}) > 1:
-                own_dots = _FLAT[own_dots]
-            dots[cell] = own_dots
+            dots[cell] = present[ink]
+            if len({*present.values()}) > 1:
+                dots[cell] = _DOTTED[present[ink]]
 
     def _columns_of(self, cells: bytes | bytearray) -> bytearray:
         """Return a byte for each column, 0 where all its cells are."""
@@ -312,6 +338,13 @@ def _disc(radius: float, hollow: bool) -> list[tuple[int, int]]:
 
 _FULL = bytes([0, *[255] * 255])
 _FULL_CELLS = re.compile(rb"[^\0]")
+
+
+@lru_cache(maxsize=16)
+def _every(number: int, columns: int, rows: int) -> int:
+    """Return a layer of each second or third cell of a row, at other columns in the next ones."""
+    turns = ((column + 3 * row // 5) % number for row in range(rows) for column in range(columns))
+    return _number(bytes([255 * (not turn) for turn in turns]))
 
 
 @lru_cache(maxsize=256)

@@ -4,15 +4,16 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.picture import FRAME, TEXT, Picture
 
 Floats = NDArray[np.float64]
+Value = TypeVar("Value", float, Floats)
 Ticks = list[tuple[float, str]]
 
 
@@ -24,10 +25,9 @@ class Axis:
     high: float
     labels: dict[float, str]
 
-    def share(self, values: ArrayLike) -> Floats:
-        """Return the positions of values along the axis, from 0 to 1, clipped."""
-        shares = (np.asarray(values, np.float64) - self.low) / (self.high - self.low)
-        return np.clip(shares, 0.0, 1.0)
+    def share(self, value: Value) -> Value:
+        """Return the position of a value, or of an array of them, from 0 to 1 on the axis."""
+        return (value - self.low) / (self.high - self.low)
 
     @property
     def label_width(self) -> int:
@@ -169,16 +169,13 @@ def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
     """Return positions and labels of about `most` angles, in pi or, below pi/4 apart, in rad."""
     share = (high - low) / math.pi / most
     if share <= 0.1:
-        turns = (-1, 0, 1) if wrap else (0,)
-        step = nice((high - low) / most)
-        ticks: Ticks = []
-        for turn in turns:
-            begin = max(low - turn * math.tau, -math.pi if wrap else -math.inf)
-            end = min(high - turn * math.tau, math.pi if wrap else math.inf)
-            ticks += [
-                (value + turn * math.tau, compact(value)) for value in _multiples(begin, end, step)
-            ]
-        return ticks
+        turns = (-math.tau, 0.0, math.tau) if wrap else (0.0,)
+        return [
+            (value + turn, label)
+            for turn in turns
+            for value, label in number_ticks(low - turn, high - turn, most)
+            if not wrap or abs(value) <= math.pi
+        ]
     step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share), nice(share))
     values = _multiples(low / math.pi, high / math.pi, step)
     return [(value * math.pi, in_pi(value, wrap)) for value in values]
@@ -222,38 +219,34 @@ class End(NamedTuple):
     rows: Floats  # (2, columns): the highest and lowest of the line in the field's columns
 
 
-@dataclass(frozen=True, slots=True)
 class Frame:
     """A canvas with two axes; `margin` rows are free above the field and below the labels."""
 
-    canvas: Canvas
-    x_axis: Axis
-    y_axis: Axis
-    margin: int = 0
+    def __init__(self, canvas: Canvas, x_axis: Axis, y_axis: Axis, margin: int = 0) -> None:
+        self.canvas = canvas
+        self.x_axis = x_axis
+        self.y_axis = y_axis
+        self.margin = margin
+        self.left = y_axis.label_width + 1
+        self.columns = columns_beside(y_axis.label_width, canvas.columns)
+        self.rows = canvas.rows - 2 - 2 * margin
 
-    @property
-    def left(self) -> int:
-        return self.y_axis.label_width + 1
+    def right(self, x: Floats) -> Floats:
+        """Return distances from the left edge of the field, in characters, at most its width."""
+        return self.columns * np.clip(self.x_axis.share(x), 0.0, 1.0)
 
-    @property
-    def columns(self) -> int:
-        return columns_beside(self.y_axis.label_width, self.canvas.columns)
+    def up(self, y: Floats) -> Floats:
+        """Return distances from the lower edge of the field, in characters, at most its height."""
+        return self.rows * np.clip(self.y_axis.share(y), 0.0, 1.0)
 
-    @property
-    def rows(self) -> int:
-        return self.canvas.rows - 2 - 2 * self.margin
-
-    def right(self, x: ArrayLike) -> Floats:
-        """Return distances from the left edge of the field, in characters."""
-        return self.columns * self.x_axis.share(x)
-
-    def up(self, y: ArrayLike) -> Floats:
-        """Return distances from the lower edge of the field, in characters."""
-        return self.rows * self.y_axis.share(y)
+    def column(self, x: float) -> int:
+        """Return the column of a value on the canvas."""
+        return self.left + min(max(int(self.columns * self.x_axis.share(x)), 0), self.columns - 1)
 
     def row(self, y: float) -> int:
         """Return the row of a value on the canvas."""
-        return self.margin + max(self.rows - 1 - int(self.up(y)), 0)
+        up = min(max(int(self.rows * self.y_axis.share(y)), 0), self.rows - 1)
+        return self.margin + self.rows - 1 - up
 
     def draw_axes(self) -> None:
         canvas = self.canvas
@@ -263,12 +256,11 @@ class Frame:
             canvas.label(left - 1, row, "│", FRAME)
         canvas.label(left - 1, bottom, "└".ljust(self.columns + ROOM + 1, "─"), FRAME)
         for value, text in self.y_axis.labels.items():
-            row = self.row(value)
-            canvas.label(0, row, text.rjust(left - 1), TEXT)
-            canvas.label(left - 1, row, "┤", FRAME)
+            canvas.label(0, self.row(value), text.rjust(left - 1), TEXT)
+            canvas.label(left - 1, self.row(value), "┤", FRAME)
         free = 0  # the first column after the previous label
         for value, text in self.x_axis.labels.items():
-            column = left + min(int(self.right(value)), self.columns - 1)
+            column = self.column(value)
             begin = min(column - (len(text) - 1) // 2, canvas.columns - len(text))
             if begin >= free:
                 canvas.label(column, bottom, "┬", FRAME)

@@ -46,8 +46,6 @@ class Series:
 class LogLog(Frame):
     """Two logarithmic axes that fit some series, with a line of words above and one below."""
 
-    __slots__ = ()
-
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> "LogLog":
         points = np.concatenate(
@@ -73,7 +71,7 @@ class LogLog(Frame):
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return the column and row of a point."""
-        return self.left + int(self.right(math.log10(x))), self.row(math.log10(y))
+        return self.column(math.log10(x)), self.row(math.log10(y))
 
 
 def loglog_chart(

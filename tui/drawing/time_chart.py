@@ -147,7 +147,9 @@ def time_chart(
     sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
     if shown.log:
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, height - 2)
-    plot = _Plot(Canvas(width, height), x_axis, y_axis, log=shown.log)
+    plot = _Plot(Canvas(width, height), x_axis, y_axis)
+    if shown.log:
+        plot.limit = math.log10(LARGEST)
     plot.draw_marks(changes, levels, shown.has_log_time)
     for run, (low, high) in zip(runs, sides, strict=True):
         plot.draw_curves(run, low, high)
@@ -182,11 +184,10 @@ def _runs(
     return runs
 
 
-@dataclass(frozen=True, slots=True)
 class _Plot(Frame):
-    """The axes of a chart over time."""
+    """The axes of a chart over time, whose values are logarithms if `limit` is one."""
 
-    log: bool = False
+    limit = LARGEST
 
     def draw_marks(
         self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
@@ -197,12 +198,12 @@ class _Plot(Frame):
         for x, text in changes:
             value = math.log10(max(x, FLOOR)) if log_time else x
             if self.x_axis.low < value < self.x_axis.high:
-                at = 2 * (self.left + float(self.right(value)))
+                at = 2 * (self.left + self.columns * self.x_axis.share(value))
                 canvas.line(at, 0, at, 4 * self.rows, FRAME, dotted=True)
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
                 canvas.label(begin, self.rows - 1, text, QUIET)
         for text, level in levels.items():
-            down = 4 * self.rows * (1 - float(self.y_axis.share(level)))
+            down = 4 * self.rows * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
             end = 2 * (self.left + self.columns)
             canvas.line(2 * self.left, down, end, down, EXACT, dotted=True)
             row = min(max(int(down) // 4 - 1, 0), self.rows - 1)
@@ -219,14 +220,13 @@ class _Plot(Frame):
             self.canvas.path(2 * (self.left + x) + 1.5, down, ink)
 
     def _beyond(self, low: Floats, high: Floats) -> Mask:
-        limit = math.log10(LARGEST) if self.log else LARGEST
-        return (high > limit) | (low < -LARGEST)
+        return (high > self.limit) | (low < -LARGEST)
 
     def _gone(self, low: Floats, high: Floats) -> Mask:
         """Return the columns in which a curve was off the chart in the column before, too."""
-        beyond = self._beyond(low, high)
-        gone = beyond & np.roll(beyond, 1, axis=0)
-        gone[0] = False
+        gone = self._beyond(low, high)
+        gone[1:] &= gone[:-1].copy()
+        gone[:1] = False
         return gone
 
     def draw_crossings(self, high: Floats, times: Floats, repeats: float, rows: int) -> None:
@@ -258,7 +258,7 @@ class _Plot(Frame):
         """Write what a curve has come to where it left the chart."""
         row = 0
         arrow = "↑"
-        if value < 0 and not self.log:
+        if value < 0 and self.limit == LARGEST:
             row = self.rows - 1
             arrow = "↓"
         number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""

@@ -201,19 +201,20 @@ class History:
         largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
         return largest, window.high[THETA_ERROR.name][count - 1].tolist()
 
-    @property
-    def trails(self) -> "Floats":
-        """Theta [rad] and omega [rad/s] at the last 300 samples, oldest first.
+    def trails(self, length: int = TRAIL) -> "Floats":
+        """Return theta [rad] and omega [rad/s] at the last samples, oldest first.
 
         Its shape is (samples, methods + 1, 2); the exact motion is last.
         """
         assert self._current is not None
-        return self._filled.recent_until(self._current)["states"][-TRAIL:]
+        return self._filled.recent_until(self._current, length)["states"][-length:]
 
-    def thetas(self, index: int, length: int) -> list[float]:
-        if self._rows is None:
-            return [row.states[index][0] for row in self._waiting[-length:]]
-        return self.trails[-length:, index, 0].tolist()  # type: ignore[no-any-return]
+    def thetas(self, length: int) -> list[Sequence[float]]:
+        """Return the last angles [rad] of each method, oldest first; needs no NumPy at first."""
+        if self._rows is not None:
+            return self.trails(length)[:, :, 0].T.tolist()  # type: ignore[no-any-return]
+        rows = [[theta for theta, _ in row.states] for row in self._waiting[-length:]]
+        return [*zip(*rows, strict=True)]
 
     def ghost(self) -> "Ghost":
         """Return this run to lay under another one."""

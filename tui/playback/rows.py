@@ -106,14 +106,17 @@ class Rows:
         wide = _up_to(current[0], self._wide)
         return np.concatenate([wide, self.recent_until(current)])
 
-    def recent_until(self, current: tuple[Any, ...]) -> Records:
-        """Return the last rows, and the current sample if it is none of them."""
+    def recent_until(self, current: tuple[Any, ...], most: int | None = None) -> Records:
+        """Return the last rows, perhaps `most`, and the current sample if it is none of them."""
         step = current[0]
-        rows = _up_to(step, self._recent[: self._count])
+        rows = _up_to(step, self._recent[: self._count])[-(most or 0) :]
         last = rows[-1:] if len(rows) else _up_to(step, self._wide)[-1:]
         if step in last["step"]:
             return rows
-        return np.append(rows, np.array([current], rows.dtype))
+        until = np.empty(len(rows) + 1, rows.dtype)
+        until[:-1] = rows
+        until[-1] = current
+        return until
 
 
 def _up_to(step: int, rows: Records) -> Records:

@@ -107,7 +107,7 @@ class LabScreen(SizedScreen[None]):
         self.scenes = Lesson("Scene", SCENES.values())
         self.scenes.look_up(source.scene.name)
         self._before_lesson: tuple[State, str]
-        self._frames = 0
+        self._beat = 0  # sixtieths of a second
         self._is_late = False  # whether the next frame must show everything
         self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
         self._changing = asyncio.Lock()
@@ -185,11 +185,11 @@ class LabScreen(SizedScreen[None]):
             self._pause_where_due(self.source, before)
         if is_writing(self.app):
             return
-        self._frames += 1
-        # text, which people read, changes five times a second
-        turn = self._frames % max(self.fps // 5, 1) == 0
-        self._follow(sample, read=turn or self._is_late)
-        self._is_late = False
+        self._beat += 60 // self.fps
+        if self._is_late:
+            self.show_now()
+        elif sample != before or self._beat % Pane.EVERY == 0:
+            self._follow(sample, self._beat)
 
     def _pause_where_due(self, live: Live, before: Sample) -> None:
         """Pause at the moment of a page, and where reversed time is back at 0."""
@@ -208,14 +208,14 @@ class LabScreen(SizedScreen[None]):
         if not self._is_late:
             self._follow(self.source.sample)
 
-    def _follow(self, sample: Sample, read: bool = True) -> None:
+    def _follow(self, sample: Sample, beat: int = 0) -> None:
+        """Show a sample in what is due at a beat, or everywhere."""
         if (theta := self.shown.held) is not None:
             held = [each._replace(theta=theta, omega=0.0) for each in sample.readings]
             sample = sample._replace(readings=tuple(held))
-        self._view_in_front.follow(sample, self.shown, read)
-        if read:
-            for line in self._lines:
-                line.follow(sample, self.shown)
+        self._view_in_front.follow(sample, self.shown, beat)
+        for line in self._lines:
+            line.follow(sample, self.shown, beat)
 
     def warn(self, text: str) -> None:
         self.notify(text, severity="warning", timeout=15)

@@ -146,6 +146,8 @@ def limit_warning(zs: Mapping[Method, float]) -> str:
 class InsightLine(Pane):
     """What to watch in the scene and what to notice, or why there is no recording."""
 
+    EVERY = 30
+
     def picture(self, source: Source, sample: Sample) -> Picture:
         width, height = self.room
         status = source.recording_status

@@ -112,6 +112,7 @@ def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
 
 
 class TimeChart(Pane):
+    EVERY = 20  # its newest column grows slowly
     NEEDS_NUMPY = True
 
     def __init__(self, ahead: int = 0) -> None:

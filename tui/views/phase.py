@@ -29,10 +29,8 @@ from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
 if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
     from pendu_tui.engine.studies.section import Points
-    from pendu_tui.tui.drawing.canvas import Canvas
-    from pendu_tui.tui.views.portrait import Portrait, Section
+    from pendu_tui.tui.views.portrait import Section
 
-TRAIL_SECONDS = 0.09  # of the clock, for which trails stay as they are: three frames
 DOTS = 4  # an arrow key moves the crosshair so far
 
 
@@ -45,7 +43,7 @@ class PhasePane(Chooser[State]):
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "screen.switch('ring')", "Ring", tooltip="ring of neighbours"),
     ]
-    EVERY = 2  # in the lab it is small
+    EVERY = 6  # in the lab it is small
     NEEDS_NUMPY = True
 
     def __init__(self) -> None:
@@ -54,8 +52,6 @@ class PhasePane(Chooser[State]):
         self.ring: Neighbourhood | None = None
         self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
-        self._ground = Memo(self._drawn_ground)
-        self._ground_t = 0.0  # s, simulated
 
     @property
     def settled(self) -> bool:
@@ -104,21 +100,8 @@ class PhasePane(Chooser[State]):
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
-        seconds = abs(sample.t - self._ground_t) / abs(source.playhead.speed)
-        if seconds >= TRAIL_SECONDS or source.playhead.paused:
-            self._ground.forget()
-        state = source.scene, self.cursor, self.aim, self.shown, sample.run
-        plot = phase_picture(portrait, points, self._ground(portrait, *state))
+        plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
-
-    def _drawn_ground(self, portrait: "Portrait", *_: object) -> "Canvas":
-        """Draw the trails, and what else stays the same for some frames."""
-        from pendu_tui.tui.views.portrait import method_points, phase_ground
-
-        assert self.sample is not None
-        self._ground_t = self.sample.t
-        points = method_points(self.source, self.sample, self.shown, self.ring)
-        return phase_ground(portrait, points, self.cursor, self.aim, self.shown.line)
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         scene = source.scene
@@ -210,7 +193,7 @@ class SectionPane(PhasePane):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("x", "section", "Map", tooltip="a method's own map")
     ]
-    EVERY = 1
+    EVERY = 4
 
     shows_section: var[bool] = var(False)
 

@@ -91,21 +91,21 @@ class PhasePoint(NamedTuple):
     omega: float  # rad/s
     ink: int
     letter: str
-    trail: Points | None = None
+    trail: Points = (np.zeros(0), np.zeros(0))
     chords: int = 0  # how many of the trail's last points are joined
     ring: Points | None = None
 
 
 # a diverging method may be too far out to count in dots
 @np.errstate(over="ignore", invalid="ignore")
-def phase_ground(
+def phase_picture(
     portrait: Portrait,
     points: Sequence[PhasePoint],
     crosshair: State | None = None,
     orbit: State | None = None,
     line: Line | None = None,
-) -> Canvas:
-    """Draw trails, and a crosshair, an orbit or a line if given."""
+) -> Picture:
+    """Draw trails, rings and points, and a crosshair, an orbit or a line if given."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
     if line is not None and line.quantity == "omega":
@@ -117,24 +117,15 @@ def phase_ground(
         draw_crosshair(canvas, viewport, crosshair)
     if orbit is not None:
         canvas.scatter(*portrait.orbit(*orbit), EXACT)
+    trailing = [point for point in points if len(point.trail[0])]
+    if trailing:
+        theta, omega = np.stack([point.trail for point in trailing], axis=-1)
+        thick = BLOCK if len(theta) <= SPARSE else BLOCK[:1]
+        draw_dots(canvas, viewport, (theta, omega), thick, *(faint(each.ink) for each in trailing))
     for point in points:
-        if point.trail is not None:
-            thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
-            draw_dots(canvas, viewport, point.trail, faint(point.ink), thick)
-        if point.trail is not None and point.chords:
+        if point.chords:
             joined = [each[-point.chords :] for each in point.trail]
             canvas.path(*on_screen(viewport, *joined), faint(point.ink))
-    return canvas.settled()
-
-
-@np.errstate(over="ignore", invalid="ignore")
-def phase_picture(
-    portrait: Portrait, points: Sequence[PhasePoint], ground: Canvas | None = None
-) -> Picture:
-    """Draw rings and points, on a ground with their trails."""
-    viewport = portrait.viewport
-    canvas = (ground or phase_ground(portrait, points)).copy()
-    for point in points:
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*on_screen(viewport, *closed), point.ink)
@@ -144,12 +135,12 @@ def phase_picture(
 
 
 def draw_dots(
-    canvas: Canvas, viewport: Viewport, points: Points, ink: int, dots: Sequence[tuple[int, int]]
+    canvas: Canvas, viewport: Viewport, points: Points, dots: Sequence[tuple[int, int]], *inks: int
 ) -> None:
     x = viewport.x(points[0])
     y = viewport.y(points[1])
     for right, down in dots:
-        canvas.scatter(x + right, y + down, ink)
+        canvas.scatter(x + right, y + down, *inks)
 
 
 def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
@@ -189,10 +180,7 @@ def _write_letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None
     near = [(column + right, row + down) for right, down in BESIDE]
     if not (0 <= x < canvas.width and 0 <= y < canvas.height):
         near.insert(0, (column, row))
-    free = [place for place in near if canvas.is_free(*place)]
-    blank = [place for place in free if not any(0 <= i < FAINT for i in canvas.inks_at(*place))]
-    for place in (blank or free)[:1]:
-        canvas.label(*place, point.letter, point.ink)
+    canvas.label_near(near, point.letter, point.ink)
 
 
 def method_points(
@@ -206,7 +194,7 @@ def method_points(
     exact = source.exact.at(sample.t)
     if shown.exact and math.isfinite(exact.theta):
         points.append(PhasePoint(*exact, EXACT, "x"))
-    trails = source.history.trails
+    trails = source.history.trails()
     cast = source.scene.cast
     own = source.stepping.own
     colours = inks(cast)
@@ -395,7 +383,7 @@ class Section:
         canvas = self._ground.copy()
         viewport = self._viewport
         if self._method.symplectic:
-            draw_dots(canvas, viewport, orbit, self._ink, BLOCK[:3])
+            draw_dots(canvas, viewport, orbit, BLOCK[:3], self._ink)
         else:  # a spiral of 300 steps
             canvas.path(*on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
         if crosshair is not None:

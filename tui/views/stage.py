@@ -6,7 +6,7 @@ method that lags is seen off the ray of the others.
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import chain, islice, pairwise
+from itertools import pairwise
 from math import asin, atan2, ceil, copysign, cos, hypot, isfinite, nan, pi, remainder, sin, tau
 from typing import NamedTuple, TypeVar
 
@@ -123,7 +123,7 @@ def _backdrop(columns: int, rows: int, places: Lanes, angle: float) -> Canvas:
         right = arc(places.ring(radius), 0.0, angle)[2::4]
         left = [(2 * places.x - x, y) for x, y in right]
         canvas.points([*left, *right], FRAME)
-    return canvas.settled()
+    return canvas
 
 
 def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> Picture:
@@ -138,8 +138,8 @@ def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> P
         canvas.line(*pivot, *places.point(rod, look.exact), EXACT, dotted=True)
     for bob, radius in zip(bobs, places.radii, strict=True):
         _draw(canvas, places, radius, bob, look)
-    ends = map(places.place, bobs, places.radii)
-    _write(canvas, places.bob, [*zip(bobs, ends, strict=True)])
+    for bob, radius in zip(bobs, places.radii, strict=True):
+        canvas.label_near(_wanted(canvas, places, bob, radius), bob.letter, bob.ink)
     canvas.disc(*pivot, places.bob / 2, FRAME)
     return canvas.picture()
 
@@ -186,34 +186,14 @@ _AROUND = sorted(
 """Cells around one, the nearest first."""
 
 
-def _write(canvas: Canvas, size: float, bobs: Sequence[tuple[Bob, Dot]]) -> None:
-    """Write the letters of bobs of this size, each in a cell of its own.
-
-    The best cell touches no other letter and lies on no other bob.
-    """
-
-    def is_clear(cell: tuple[int, int], own: Bob) -> bool:
-        column, row = cell
-        beside = [at for at in (column - 1, column + 1) if 0 <= at < canvas.columns]
-        if not all(canvas.is_free(at, row) for at in beside):
-            return False
-        others = (at for bob, at in bobs if bob is not own)
-        return all(hypot(2 * column + 1 - x, 4 * row + 2 - y) > size + 1 for x, y in others)
-
-    for bob, (right, down) in bobs:
-        x = min(max(right, 0.0), canvas.width - 1.0)
-        y = min(max(down, 0.0), canvas.height - 1.0)
-        free = (cell for cell in _wanted(bob, x, y, size) if canvas.is_free(*cell))
-        clear = (cell for cell in free if is_clear(cell, bob))
-        any_free = (cell for cell in _wanted(bob, x, y, size) if canvas.is_free(*cell))
-        for cell in islice(chain(clear, any_free), 1):
-            canvas.label(*cell, bob.letter, bob.ink)
-
-
-def _wanted(bob: Bob, x: float, y: float, size: float) -> Iterator[tuple[int, int]]:
+def _wanted(canvas: Canvas, places: Lanes, bob: Bob, radius: float) -> Iterator[tuple[int, int]]:
     """Yield cells for a letter: in a large bob, else ahead of it, behind, and all around."""
+    right, down = places.place(bob, radius)
+    x = min(max(right, 0.0), canvas.width - 1.0)
+    y = min(max(down, 0.0), canvas.height - 1.0)
     column = int(x) // 2
     row = int(y) // 4
+    size = places.bob
     if size >= LETTERED:
         yield column, row
     for far in (size + 2, -size - 2):
@@ -298,6 +278,7 @@ class Stage(Pane):
         ghosts = {}
         if source.ghost is not None and not held:
             ghosts = source.ghost.rods(sample.t)
+        trails = source.history.thetas(TRAIL)
         bobs = []
         for place in self.places:
             method = scene.cast[place]
@@ -306,7 +287,7 @@ class Stage(Pane):
             if not held:
                 trail = []
                 if model.rigid:
-                    trail = [*source.history.thetas(place, TRAIL), reading.theta]
+                    trail = [*trails[place], reading.theta]
                 bob = bob._replace(
                     ahead=copysign(1.0, reading.omega),
                     trail=[lens(theta) for theta in trail],

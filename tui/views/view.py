@@ -86,7 +86,6 @@ class View(Box):
         self.sample = source.sample
         self._panes: list[Pane] = []
         self._is_painted = False
-        self._frames = 0
 
     def enter(self, source: Source) -> None:
         """Show another source."""
@@ -107,17 +106,13 @@ class View(Box):
         self._is_painted = True
         self.follow(self.sample, self.shown)
 
-    def follow(self, sample: Sample, shown: Shown, read: bool = True) -> None:
-        """Show a sample in the moving panes or, with `read`, in all of them."""
-        if not read and sample == self.sample:
-            return
+    def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
+        """Show a sample in the panes whose turn it is."""
         self.sample = sample
         self.shown = shown
-        self._frames += 1
         for pane in self._panes:
-            is_due = read or (pane.EVERY and self._frames % pane.EVERY == 0)
-            if is_due and (self._is_painted or not pane.NEEDS_NUMPY):
-                pane.follow(sample, shown)
+            if self._is_painted or not pane.NEEDS_NUMPY:
+                pane.follow(sample, shown, beat)
 
     def zoom(self, factor: float) -> None:
         """Zoom the chart over time, if the view has one."""
@@ -128,8 +123,8 @@ class View(Box):
 
 
 class Pane(CellWidget):
-    EVERY: ClassVar[int] = 0
-    """It is drawn with every so many frames; 0: five times a second."""
+    EVERY: ClassVar[int] = 12
+    """It is drawn every so many sixtieths of a second; people read text five times a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
     """Whether to draw after the first paint only: importing NumPy would double its time."""
 
@@ -141,10 +136,12 @@ class Pane(CellWidget):
     """Why the picture cannot be computed, in a sentence."""
     _titles = ("", "")
 
-    def follow(self, sample: Sample, shown: Shown) -> None:
-        self.sample = sample
-        self.shown = shown
-        self.draw()
+    def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
+        """Show a sample if it is this pane's turn, as it always is at beat 0."""
+        if beat % self.EVERY == 0:
+            self.sample = sample
+            self.shown = shown
+            self.draw()
 
     @property
     def cast(self) -> Cast:

@@ -90,7 +90,7 @@ def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count
     assert np.all(np.diff(known) > 0)
     if capacity > count:
         assert known == list(range(step + 1))
-        assert history.thetas(0, 3) == known[-3:]
+        assert [*history.thetas(3)[0]] == known[-3:]
     history.add(sample(count - 1, count - 1))
     assert errors(history) == whole
 
@@ -113,7 +113,7 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     history.add(sample(10))  # again
     history.add(sample(13, 13, low=-99), is_row=False)
     assert history.window().low["energy_error"][:, 0].tolist() == [0, -9, 13]
-    assert len(history.trails) == 3
+    assert len(history.trails()) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]
 
@@ -147,12 +147,12 @@ def test_rows_have_the_readings_energies_variables_and_theta_errors(name):
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     history = filled(20)
-    theta, omega = history.trails[-3:, 2].T
+    theta, omega = history.trails()[-3:, 2].T
     assert (theta.tolist(), omega.tolist()) == ([17, 18, 19], [-17, -18, -19])
     exact = [history.exact.at(0.1 * step) for step in (18, 19)]
-    assert history.trails[-2:, -1].tolist() == [list(state) for state in exact]
-    assert len(history.trails) == 20
-    assert len(filled(400, capacity=512).trails) == 300  # ten seconds
+    assert history.trails()[-2:, -1].tolist() == [list(state) for state in exact]
+    assert len(history.trails()) == 20
+    assert len(filled(400, capacity=512).trails()) == 300  # ten seconds
 
 
 def largest(history: History, quantity: str = "shadow_error") -> np.ndarray:

@@ -256,7 +256,7 @@ def test_a_frame_takes_as_much_after_four_hours_as_after_half_an_hour():
     def frames() -> None:
         for _ in range(512):  # whole rounds of merging old rows of the history
             lab.run(1 / FPS)
-            _ = lab.live.history.trails
+            _ = lab.live.history.trails()
         lab.live.history.window(20.0)
         lab.live.history.window()
         _ = lab.live.judgements, lab.live.milestones

@@ -118,12 +118,12 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
         played.run(1 / FPS)
     jumped.replay.seek(origin)
     jumped.replay.seek(played.replay.playhead.position)
-    assert len(jumped.replay.history.trails) > 9  # before the rest of the past
+    assert len(jumped.replay.history.trails()) > 9  # before the rest of the past
     jumped.replay.pause(True)
     jumped.run(0.1)
     assert jumped.verdicts == played.verdicts
     one, other = played.replay.history, jumped.replay.history
-    np.testing.assert_array_equal(one.trails[-15:], other.trails[-15:])
+    np.testing.assert_array_equal(one.trails()[-15:], other.trails()[-15:])
     assert_same(one, other)
 
 

@@ -12,7 +12,6 @@ from pendu_tui.tui.views.portrait import (
     SPARSE,
     PhasePoint,
     Portrait,
-    phase_ground,
     phase_picture,
 )
 from pendu_tui.tui.views.viewport import Viewport
@@ -80,7 +79,7 @@ def test_a_ring_is_closed_and_over_the_top_it_does_not_cross_the_picture():
 def test_the_crosshair_meets_at_its_state_and_the_orbit_passes_there():
     state = SMALL.at_cell(30, 4)
     plain = cells(PLAIN)
-    picture = phase_picture(PORTRAIT, [], phase_ground(PORTRAIT, [], crosshair=state, orbit=state))
+    picture = phase_picture(PORTRAIT, [], crosshair=state, orbit=state)
     assert (30, 4) in places(picture, EXACT)
     changed = [place for place, cell in cells(picture).items() if plain.get(place) != cell]
     assert sum(column == 30 for _, column in changed) > SMALL.rows / 2

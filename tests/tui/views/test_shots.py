@@ -11,28 +11,28 @@ from pendu_tui.tui.drawing.picture import FAINT, inks
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.portrait import Portrait, method_points, phase_ground, phase_picture
+from pendu_tui.tui.views.portrait import Portrait, method_points, phase_picture
 from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import cells
 from tests.tui.drawn import places as cells_in
 
-CHARTS = {"120x40": (68, 16), "80x24": (50, 14)}
-PORTRAITS = {"120x40": (118, 28), "80x24": (78, 15)}
+CHART = (50, 14)  # columns and rows at 80×24
+PORTRAIT = (78, 15)
 
 
 class Seen:
     """The pictures of a scene so many seconds of the clock after its start."""
 
-    def __init__(self, name, seconds, size):
+    def __init__(self, name, seconds):
         self.scene = scene = SCENES[name]
         self.live = Live(scene, scene.speed, clock=lambda: 0.0)
         for third in range(round(3 * seconds) + 1):
             self.live.tick(third / 3)
         shown = self.shown = Shown().through(scene)
         window = self.live.history.window(shown.seconds)
-        self.plot = time_chart(window, scene.cast, shown, *CHARTS[size])
+        self.plot = time_chart(window, scene.cast, shown, *CHART)
         self.chart = self.plot.picture
-        self.bottom = CHARTS[size][1] - 3
+        self.bottom = CHART[1] - 3
 
     def heights(self, letter):
         """The rows from the lower edge of the chart that a curve is in, column by column."""
@@ -124,31 +124,29 @@ def test_every_scene_has_a_promise_that_is_seen():
     assert max(seconds for seconds, *_ in PROMISES.values()) <= 20
 
 
-@pytest.mark.parametrize("size", CHARTS)
 @pytest.mark.parametrize("name", PROMISES)
-def test_the_promise_of_a_scene_is_visible_in_its_shot(name, size):
+def test_the_promise_of_a_scene_is_visible_in_its_shot(name):
     seconds, what, letters, least = PROMISES[name]
-    seen = Seen(name, seconds, size)
+    seen = Seen(name, seconds)
     assert getattr(seen, what)(*letters) >= least
     if what == "apart":
         # four learned methods are two lines: half of the columns each, and less where all meet
         assert min(seen.shares(letters)) >= (0.45 if name == "learned" else 0.5)
 
 
-@pytest.mark.parametrize("size", PORTRAITS)
 @pytest.mark.parametrize(
     "name", ["chaos-fenced", pytest.param("chaos-loose", marks=pytest.mark.slow)]
 )
-def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name, size):
-    seen = Seen(name, 20, size)
+def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name):
+    seen = Seen(name, 20)
     scene = seen.scene
     shown = seen.shown
     assert scene.shot.view == "phase"
-    viewport = Viewport.portrait(*PORTRAITS[size], scene, math.pi, shown.line.value)
+    viewport = Viewport.portrait(*PORTRAIT, scene, math.pi, shown.line.value)
     points = method_points(seen.live, seen.live.sample, shown, None)
     assert [point.letter for point in points] == ["s", "v"]
     portrait = Portrait.of(viewport, scene.equations)
-    picture = phase_picture(portrait, points, phase_ground(portrait, points, line=shown.line))
+    picture = phase_picture(portrait, points, line=shown.line)
     top, bottom = (at for at, text in enumerate(picture.text.splitlines()) if "pi/h" in text)
     own = {inks(scene.cast)[place] for place in shown.places(scene.cast)}
     rows = [row for (row, _), (_, ink) in cells(picture).items() if ink >= 0 and ink % FAINT in own]
