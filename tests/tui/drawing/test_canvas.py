@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, NOBODY, TEXT, Picture, faint
+from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, TEXT, Picture, faint
 from tests.tui.drawn import cells
 
 DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit
@@ -101,14 +101,6 @@ def test_two_lines_keep_half_of_their_columns_however_they_run(one, other):
     assert len(set(others)) >= COLUMNS / 2
 
 
-def test_a_line_is_whole_where_it_crosses_a_broad_band():
-    canvas = Canvas(COLUMNS, ROWS)
-    canvas.points([(i, j) for i in range(2 * COLUMNS) for j in range(4 * ROWS)], 0)
-    canvas.line(0, 2, 2 * COLUMNS, 22, 1)
-    columns = {column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 1}
-    assert columns == {*range(COLUMNS)}
-
-
 @pytest.mark.parametrize(
     ("heights", "text"),
     [((1, 1), "⠒⠒⠒⠒⠒⠒"), ((0, 3), "⠁⡀⠁⡀⠁⡀"), ((0, 1, 3), "⠁⠂⡀⠁⠂⡀")],
@@ -129,12 +121,6 @@ def test_of_other_inks_the_one_drawn_first_lies_below():
     canvas.points([(0, 1)], FRAME)
     assert canvas.picture().rows == ((("⢀", TEXT), ("⠁", FRAME)),)
     assert canvas.inks_at(0, 0) == {FRAME, TEXT}
-
-
-def test_a_row_has_as_few_spans_as_possible():
-    canvas = Canvas(6, 2)
-    canvas.points([(0, 0), (2, 0), (6, 0)], 2)
-    assert canvas.picture().rows == ((("⠁⠁ ⠁  ", 2),), (("      ", NOBODY),))
 
 
 def test_a_line_has_one_dot_in_each_column_of_dots_or_row_where_it_is_steep():
@@ -194,13 +180,6 @@ def test_a_disc_is_round_because_dots_are_square(hollow, text):
     assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=hollow), 6, 3).text == text
 
 
-@given(ANY, ANY)
-def test_a_disc_is_clipped_to_the_canvas(x, y):
-    inside = dots(drawn(lambda canvas: canvas.disc(x, y, 2.5, 0)))
-    assert all(np.hypot(i + 0.5 - x, j + 0.5 - y) < 2.5 + np.sqrt(0.5) for i, j in inside)
-    assert inside or not (0 <= x <= 2 * COLUMNS and 0 <= y <= 4 * ROWS)
-
-
 def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
     canvas = Canvas(6, 1)
     canvas.label(3, 0, "label", 1)
@@ -215,12 +194,6 @@ def test_what_is_drawn_on_a_copy_is_not_on_the_original():
     other.points([(0, 0)], 0)
     other.label(1, 0, "x", 0)
     assert canvas.picture() == Canvas(2, 1).picture()
-
-
-def test_a_text_is_wrapped_and_centred():
-    picture = Picture.of_text("A chart needs 20×5 characters.", 12, 5, TEXT)
-    assert picture.text == "\n  A chart\n needs 20×5\ncharacters.\n"
-    assert len(Picture.of_text("too long for this", 3, 2, TEXT).rows) == 2
 
 
 def test_pictures_are_compared_row_by_row():

@@ -14,7 +14,6 @@ from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, TEXT
 from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
-from tests.tui.drawing.test_canvas import dots_of
 from tests.tui.drawn import cells, inks, size
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
@@ -122,28 +121,6 @@ def test_speed_against_accuracy():
         "                               force evaluations"
     )
     assert inks(picture) == {0, 3, EXACT, FRAME, TEXT}
-
-
-def test_plotext_draws_the_lines_of_a_loglog_chart_each_in_its_own_ink(monkeypatch):
-    x = np.logspace(0, 3, 5)
-    crossing = [Series(0, "e", x, x / 1000), Series(3, "r", x, 1 / x)]
-
-    def drawn(*series):
-        return cells(loglog_chart(series, 48, 14, x_label="", y_label=""))
-
-    both = drawn(*crossing)
-    for one in crossing:
-        alone = drawn(one)  # on the same axes
-        mine = {place for place, (sign, ink) in both.items() if ink == one.ink and sign > "⠀"}
-        assert len(mine) > 10
-        for place in mine:
-            assert dots_of(both[place][0], *place) <= dots_of(alone[place][0], *place)
-    monkeypatch.setattr("pendu_tui.tui.drawing.loglog.plotted", lambda *_: [])
-    assert not [sign for sign, _ in drawn(*crossing).values() if "⠀" < sign <= "⣿"]
-
-
-def test_after_a_reversal_the_axis_is_labelled_as_time_run():
-    assert "20 s run" in plot(window([1, 2], [1, 2], turned=True), seconds=20).picture.text
 
 
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])

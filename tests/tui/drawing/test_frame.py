@@ -1,4 +1,3 @@
-import math
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +10,6 @@ from pendu_tui.tui.drawing.frame import (
     linear_axis,
     log_axis,
     log_time_axis,
-    log_x_axis,
     time_axis,
 )
 from pendu_tui.tui.drawing.time_chart import per_column, time_span
@@ -86,15 +84,6 @@ def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns
     units = [label.partition(" ")[2] for label in labels]
     assert set(units[:-1]) <= {""}
     assert set(units[-1:]) <= {"s", "min", "h"}
-
-
-@given(st.floats(-300, 300), st.floats(0, 600), st.integers(9, 200))
-def test_a_horizontal_logarithmic_axis_covers_its_range_with_few_labels(low, size, columns):
-    axis = log_x_axis(low, low + size, columns)
-    assert axis.low <= low
-    assert low + size <= axis.high
-    assert len(axis.labels) <= columns / 8 + 1
-    assert all(place == math.floor(place) for place in axis.labels)
 
 
 @st.composite

@@ -5,7 +5,6 @@ from contextlib import asynccontextmanager
 import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
-from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder
 from pendu_tui.tui.playback.live import Live
@@ -68,22 +67,6 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
         assert words(pane).endswith(front_words(cheapest, "evaluations"))
 
 
-async def test_the_current_h_is_marked_and_described_if_it_is_on_the_chart():
-    async with accuracy_view() as (pilot, pane, live):
-        assert pane.text.count("@") == 4
-        assert words(pane).startswith(
-            "Velocity Verlet at h 0.05 s (z 0.157, 40.1 steps a small swing): energy error 5.7e-03"
-            " for 101 force evaluations; current h"
-        )
-        await pilot.press("tab")
-        await complete(pilot, pane)
-        assert words(pane).startswith("RK4 at h 0.05 s (z 0.157, ")
-        for h in (20.0, 1e-7):
-            live.change(Stepping(h))
-            await until(pilot, lambda: pane.settled and "@" not in pane.text)
-            assert "the current h is not on this chart" in words(pane)
-
-
 async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_its_own_points():
     async with accuracy_view() as (pilot, pane, live):
         before = dict(pane.points)
@@ -133,13 +116,6 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         assert pane.pointer is None  # far from any point
 
 
-async def test_e_charts_the_other_error():
-    async with accuracy_view() as (pilot, pane, _live):
-        for chart in ("theta error", "energy error"):
-            await pilot.press("e")
-            await until(pilot, lambda chart=chart: chart in str(pane.border_title))
-
-
 async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("asterisk")
@@ -153,19 +129,3 @@ async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
         await complete(pilot, pane)
         assert live.stepping.h == 5.0 / RUNGS[0]
         assert pane.cast == USUAL_CAST
-
-
-async def test_in_the_smallest_terminal_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
-    async with accuracy_view(size=(60, 16)) as (pilot, pane, _live):
-        for key, rung in (("left", RUNGS[0]), ("right", RUNGS[-1])):
-            await pilot.press(*[key] * 9)
-            assert pane.cursor.steps == rung
-        await pilot.press("down", "down")
-        assert pane.index == 0
-        await pilot.press("up")
-        assert pane.index == 3
-        lines = pane.text.splitlines()
-        assert len(lines) <= pane.size.height
-        assert max(map(len, lines)) <= pane.size.width
-        await pilot.press("escape")
-        assert pane.cursor is None

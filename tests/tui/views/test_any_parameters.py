@@ -4,14 +4,12 @@ import math
 import re
 from itertools import product
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.cli.scene import scene_text
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.shown import Shown, quantities
@@ -20,7 +18,6 @@ from pendu_tui.tui.views.error_table import table
 from pendu_tui.tui.words.insight import insight, lasting
 from pendu_tui.tui.words.plain_text import description
 from tests.truths import LIMITS
-from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
 
 
@@ -69,16 +66,3 @@ def test_any_numbers_of_any_model_can_be_shown(model, data):
     lab = Lab(scene, speed=scene.h / 0.05)
     lab.run(0.25)
     assert not re.search(r"\b(nan|inf)\b", on_screen(lab.live))
-
-
-@pytest.mark.parametrize("model", MODELS)
-@settings(max_examples=6)
-@given(data=st.data())
-def test_any_numbers_of_any_model_run_and_their_json_has_no_nan(model, data, tmp_path_factory):
-    scene = data.draw(scenes(model))
-    file = tmp_path_factory.mktemp("scene") / "any.toml"
-    file.write_text(scene_text(scene), encoding="utf-8")
-    outcome = pendu("run", "--scene", file, "--time", 5 * scene.h, "--json")
-    assert outcome.code == 0
-    assert outcome.json["scene"]["model"] == model
-    assert np.isfinite([row["energy"] for row in outcome.json["methods"]]).all()

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 
-from pendu_tui.recordings.system import kill
 from pendu_tui.tui.views.background import computed
 
 pytestmark = pytest.mark.slow
@@ -76,13 +75,6 @@ async def test_it_starts_where_stderr_has_no_file_number_and_is_deaf_to_ctrl_c(m
         assert process != os.getpid()
         os.kill(process, signal.SIGINT)
         assert [await anext(found) for _ in range(3)] == [process] * 3
-
-
-async def test_a_computation_that_fails_or_is_killed_is_an_error_here():
-    async with aclosing(computed(forever)) as found:
-        kill(await anext(found), 9)
-        with pytest.raises(Exception, match="was ended"):
-            await anext(found)
 
 
 READER = """

@@ -4,7 +4,6 @@ import re
 
 import pytest
 
-from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.views import VIEWS
@@ -53,15 +52,6 @@ async def test_a_view_that_a_scene_cannot_have_says_why_until_there_is_a_pendulu
         assert "Maps and studies are for" not in theatre.text(pane)
 
 
-async def test_its_own_map_is_left_out_with_a_word():
-    async with lab(STIFF) as theatre:
-        await theatre.press(key_of("phase"), "x")
-        await theatre.run(0.2)
-        assert not theatre.stage.query_one(SectionPane).shows_section
-        (notice,) = theatre.app._notifications
-        assert notice.message == STIFF.why_not_mapped
-
-
 @pytest.mark.parametrize("view", ["phase", "accuracy"])
 async def test_in_a_replay_a_place_is_chosen_that_a_live_run_goes_on_with_and_u_leads_back(view):
     async with player(resolve("drift")) as theatre:
@@ -76,12 +66,3 @@ async def test_in_a_replay_a_place_is_chosen_that_a_live_run_goes_on_with_and_u_
         assert (live.scene.theta, live.scene.h, live.stepping.h) != (1.0, 0.05, 0.05)
         await theatre.press("u")
         assert theatre.source is replay
-
-
-async def test_a_pane_that_is_drawn_before_the_first_sample_of_a_larger_cast_waits_for_it():
-    async with lab(SCENES["gentle"].with_cast(USUAL_CAST[:1])) as theatre:
-        theatre.source.start(SCENES["gentle"])
-        for pane in theatre.stage.query(Pane):
-            pane.draw()  # where a pane fails, so does the test
-        await theatre.run(0.5)
-        assert "RK4" in words(theatre)

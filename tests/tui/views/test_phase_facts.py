@@ -4,13 +4,12 @@ import math
 
 import pytest
 
-from pendu_tui.engine.models.model import State
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.views.phase import area_text
-from pendu_tui.tui.views.portrait import place_text, ring_text
+from pendu_tui.tui.views.portrait import ring_text
 
 
 def followed(live, steps=200):
@@ -18,11 +17,6 @@ def followed(live, steps=200):
     ring = Neighbours(0.1)
     ring.follow(live.scene, live.sample.run, live.sample.step, live.changes, steps)
     return ring
-
-
-def test_multiples_of_pi_are_called_so():
-    text = "theta pi  omega 0  E/Es 1 - 3.7e-33  libration"
-    assert place_text(Scene().equations, State(math.pi, 0.0), 46) == text
 
 
 @pytest.mark.parametrize(

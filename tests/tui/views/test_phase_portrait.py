@@ -43,14 +43,6 @@ def test_the_three_regimes_are_named_where_they_are(scene, size):
                 assert (scene.equations.level(*state) > 0) == (text.strip() == "libration")
 
 
-@pytest.mark.parametrize("size", [(4, 2), (10, 3), (20, 6), (46, 15), (78, 17)])
-def test_words_do_not_overlap_nor_leave_the_picture(size):
-    words = Portrait.of(Viewport.portrait(*size, DRIFT), MODEL).words
-    cells = [(row, column + at) for column, row, text, _ in words for at in range(len(text))]
-    assert len(cells) == len(set(cells))
-    assert all(0 <= row < size[1] and 0 <= column < size[0] for row, column in cells)
-
-
 @pytest.mark.parametrize(
     ("theta", "omega"), [(1.0, 0.0), (0.3, -2.0), (3.1, 0.0), (0.0, 8.0), (2.0, -9.0), (3.1, 0.5)]
 )

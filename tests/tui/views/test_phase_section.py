@@ -5,15 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from pendu_tui.engine.methods import USUAL_CAST, VELOCITY_VERLET
+from pendu_tui.engine.methods import VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.studies.section import iterate, orbit, pieces
+from pendu_tui.engine.studies.section import iterate, orbit
 from pendu_tui.tui.drawing.picture import FRAME, faint
 from pendu_tui.tui.views.phase import SectionPane
-from pendu_tui.tui.views.portrait import Section, starts
+from pendu_tui.tui.views.portrait import Section
 from pendu_tui.tui.views.viewport import Viewport
-from tests.tui import drawn
 from tests.tui.drawn import places
 from tests.tui.harness import lab, until
 
@@ -61,17 +60,6 @@ def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
     assert not places(section(SCENES["linear"].equations).picture(REST, START), FRAME)
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("method", USUAL_CAST, ids=lambda method: method.key)
-@pytest.mark.parametrize("size", [(1, 1), (60, 5), (200, 60)])
-def test_it_fits_every_size_and_method(method, size):
-    viewport = Viewport.portrait(*size, SCENE)
-    drawing = Section(viewport, MODEL, method, MINE)
-    drawing.add(iterate(method, MODEL, 50.0, starts(viewport, 20), 300))
-    picture = drawing.picture(orbit(method, MODEL, 50.0, START, 300), START, State(0.5, 0.5))
-    assert drawn.size(picture) == size
-
-
 @pytest.fixture(autouse=True)
 def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pendu_tui.tui.views.phase.STARTS", 40)
@@ -99,18 +87,6 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         assert "E/Es" in pane.text
 
 
-@pytest.mark.other_process
-async def test_the_section_is_the_engines():
-    async with lab(SCENE, size=(100, 30)) as theatre:
-        pane = await section_of(theatre, "x")
-        drawing = Section(pane.viewport, MODEL, VELOCITY_VERLET, MINE)
-        for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(pane.viewport, 40), 2000):
-            drawing.add(piece)
-        expected = drawing.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 2000), START).text
-        shown = pane.text.splitlines()[:-1]
-        assert [line.rstrip() for line in shown] == expected.splitlines()
-
-
 async def test_another_step_method_or_start_redraws_it_in_a_paused_lab_too():
     async with lab(SCENE, size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x", "space")
@@ -123,13 +99,3 @@ async def test_another_step_method_or_start_redraws_it_in_a_paused_lab_too():
         before = pane.text
         await theatre.press("i", "2", "enter")
         await until(theatre.pilot, lambda: pane.text != before)
-
-
-async def test_words_follow_the_crosshair_and_the_pointer():
-    async with lab(Scene(theta=0.5, h=0.1), size=(100, 30)) as theatre:
-        pane = await section_of(theatre, "o", "x", "up")
-        where = f"{pane.cursor.theta:g}, {pane.cursor.omega:g}: Regular: "
-        assert pane.text.splitlines()[-1].startswith(where)
-        await theatre.press("escape")
-        await theatre.pilot.hover(pane, offset=(50, 2))
-        assert "over the top" in pane.text.splitlines()[-1]

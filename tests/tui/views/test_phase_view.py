@@ -1,6 +1,5 @@
 """Phase space under mouse and keyboard, in the lab and over the whole screen."""
 
-import math
 import re
 from contextlib import asynccontextmanager
 
@@ -10,7 +9,6 @@ from textual import events
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.views.phase import DOTS, AreaTable, PhasePane
-from pendu_tui.tui.views.viewport import MIN_SPAN
 from tests.tui.harness import lab, until
 
 DRIFT = SCENES["drift"]
@@ -112,15 +110,6 @@ async def test_the_wheel_zooms_around_the_pointer():
         assert pane.viewport == before
 
 
-async def test_z_zooms_in_to_a_thousandth_of_a_radian_at_the_unstable_point():
-    async with phase_view(Scene(theta=math.pi)) as (theatre, pane):
-        await theatre.press("up", "down")
-        for _ in range(30):
-            pane.action_zoom(0.5)
-        assert pane.viewport.theta_span == pytest.approx(MIN_SPAN)
-        assert abs(abs(pane.cursor.theta) - math.pi) < 1e-15  # no dot away from it, at any zoom
-
-
 async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
     async with phase_view(Scene(omega=9e8)) as (theatre, pane):
         await theatre.pilot.click(pane, offset=(20, 1))
@@ -172,15 +161,3 @@ async def test_no_start_is_too_much_for_it(scene):
         text = pane.text + theatre.text(AreaTable)
         assert "libration" in text or "rotation" in text
         assert not re.search("nan|inf", text)
-
-
-async def test_nothing_is_computed_for_phase_space_that_is_not_shown():
-    async with phase_view(keys="g", size=(80, 24)) as (theatre, pane):
-        await theatre.run(1)
-        await theatre.press("f2")
-        step, text = pane.neighbours.step, pane.text
-        await theatre.run(2)
-        assert (pane.neighbours.step, pane.text) == (step, text)
-        await theatre.press("f3")
-        await theatre.run(0.1)
-        assert pane.neighbours.step == theatre.source.sample.step

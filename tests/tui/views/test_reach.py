@@ -6,7 +6,7 @@ import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.views.viewport import amplitude, reach
+from pendu_tui.tui.views.viewport import reach
 from tests.tui.harness import Lab
 
 
@@ -44,8 +44,3 @@ def test_the_frame_leaves_out_a_method_beyond_its_limit():
     lab.run(20)
     found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
     assert found.frame < 0.12 < found.widest
-
-
-@pytest.mark.parametrize(("theta", "omega", "size"), [(0.1, 0.0, 0.1), (0.0, 8.0, math.pi)])
-def test_the_amplitude_of_a_swing_is_where_it_rests_and_pi_where_it_turns(theta, omega, size):
-    assert amplitude(SCENES["drift"].equations, theta, omega) == pytest.approx(size)

@@ -90,11 +90,3 @@ async def test_the_axis_is_that_of_the_scenes_pendulum_and_one_that_spins_is_not
         live.start(SCENES["spin"])
         await until(pilot, lambda: "@" not in pane.text)
         assert pane.here(VERLET) is None
-
-
-async def test_it_fits_the_smallest_terminal():
-    async with stability_view(size=(60, 16)) as (pilot, pane, _):
-        await pilot.press("right", "up")
-        lines = pane.text.splitlines()
-        assert len(lines) <= pane.size.height
-        assert max(map(len, lines)) <= pane.size.width

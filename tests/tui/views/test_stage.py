@@ -14,7 +14,7 @@ from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, arc, lanes, stage_picture
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, places, size
-from tests.tui.harness import lab, player, recorded
+from tests.tui.harness import lab
 
 LETTERS = "esvrmp"
 ANGLES = st.floats(-1e9, 1e9)
@@ -54,10 +54,6 @@ def test_each_letter_stands_once_on_the_stage_wherever_the_bobs_are(
     assert size(drawn) == (columns, rows)
 
 
-def test_even_where_letters_must_touch_none_is_left_out():
-    assert letters(picture(3, 2, *[1.0] * 6)) == sorted(LETTERS)
-
-
 @pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22), (73, 38)])
 @pytest.mark.parametrize("count", range(2, MAX_METHODS + 1))
 def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pane, count):
@@ -70,13 +66,6 @@ def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pa
             x, y = found.point(found.radii[0], theta)
             assert found.bob - 1e-9 <= x <= 2 * pane[0] - found.bob + 1e-9
             assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
-
-
-@pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22)])
-def test_a_narrow_swing_has_longer_lanes_and_its_pivot_above_the_middle(pane):
-    narrow, wide = (lanes(*pane, 4, widest, rigid=True) for widest in (1.1, math.pi))
-    assert narrow.radii[0] > wide.radii[0]
-    assert narrow.y < wide.y == 2 * pane[1]
 
 
 @given(st.integers(1, 10_000).map(lambda number: number * 0.6180339887))  # never between two dots
@@ -170,7 +159,7 @@ async def test_small_swings_are_enlarged_though_explicit_euler_leaves_and_o_show
         assert next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3)) != rk4
 
 
-@pytest.mark.parametrize("name", ["drift", "gentle", "crossover", "stiff-limit", "learned"])
+@pytest.mark.parametrize("name", ["drift", "stiff-limit", "learned"])
 async def test_each_shown_method_has_its_letter_on_the_stage_of_the_smallest_screen(name):
     async with lab(SCENES[name], size=SMALLEST) as theatre:
         for _ in range(4):
@@ -248,12 +237,3 @@ async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_al
             await theatre.pilot.click(stage, offset=on_lane(theatre, 0)[1])
             await theatre.run(0.1)
             assert not theatre.stage.shown.hidden
-
-
-async def test_a_bob_of_a_recording_is_thrown_into_a_live_run(tmp_path):
-    async with player(recorded(tmp_path / "a.mcap", 2.0)) as theatre:
-        await grabbed(theatre, (20, 4))
-        await theatre.pilot.pause()
-        assert theatre.source.kind == "LIVE"
-        assert theatre.source.scene.theta != 1.0
-        assert theatre.source.sample.step == 0

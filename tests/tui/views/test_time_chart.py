@@ -14,14 +14,14 @@ from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
-from pendu_tui.tui.views.lab import TimeChart, modified_energy_of, title
+from pendu_tui.tui.views.lab import TimeChart, title
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_history import run
 
 WHOLE = SCENES["drift"]
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", ["drift", "spin", "damped", "stiff-slow"])
 def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narrowest_chart(name):
     scene = SCENES[name]
     exact, model = scene.exact(), scene.equations
@@ -33,22 +33,6 @@ def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narr
         assert len(text) + 6 <= 52  # pendulums have 28 of 80 columns; corners, lines, spaces
         assert (cycles.get(exact.regime, "?") in text) == bool(log and exact.period)
         assert any(unit in text for unit in units.get(quantity, ratios))
-
-
-def test_a_chart_goes_through_what_a_scene_has_and_no_more():
-    spring, drift = SCENES["stiff-slow"], SCENES["drift"]
-    assert quantities(spring) == ("energy_error", "spring_energy", "theta_error", "energy")
-    assert quantities(drift) == ("energy_error", "theta_error", "shadow_error", "energy")
-    shown = Shown(quantity=Shown().quantity_ahead(1, spring))
-    assert shown.quantity == "spring_energy"
-    assert shown.quantity_ahead(3, spring) == Shown().quantity
-    assert shown.quantity_ahead(0, drift) == "energy_error"  # what it lacks is not shown
-
-
-def test_the_chart_names_the_methods_that_have_a_modified_energy_unless_all_have_one():
-    assert modified_energy_of(WHOLE.cast) == "shadow energy is known for s and v only"
-    assert modified_energy_of(WHOLE.cast[1:3]) == ""
-    assert modified_energy_of(WHOLE.cast[3:]) == "shadow energy is known for none only"
 
 
 def chart(seconds=100.0, shown=None, **options):
@@ -141,8 +125,7 @@ def charted(fps, scene, path=None, *, changes=False, returns=False):
     return time_chart(live.history.window(), scene.cast, Shown(), 60, 16).picture
 
 
-@pytest.mark.parametrize("h", [0.05, 0.01])
-@pytest.mark.parametrize("changes", [False, True])
+@pytest.mark.parametrize(("h", "changes"), [(0.05, True), (0.01, False)])
 def test_a_chart_depends_on_the_run_and_not_on_the_frames_or_on_going_back(h, changes):
     scene = WHOLE.altered(h=h)
     expected = charted(60, scene, changes=changes)

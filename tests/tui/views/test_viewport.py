@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.viewport import MIN_SPAN, Viewport, rounded
+from pendu_tui.tui.views.viewport import MIN_SPAN, Viewport
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))
@@ -56,11 +56,3 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     assert after.theta_at(x) == pytest.approx(before.theta_at(x), abs=1e-11)
     assert after.omega_at(y) == pytest.approx(before.omega_at(y), abs=1e-11)
     assert before.zoomed(1e-9, x, y).theta_span == pytest.approx(MIN_SPAN)
-
-
-@given(st.floats(-1e3, 1e3), st.floats(1e-9, 1))
-def test_a_round_number_is_near_enough_and_has_no_more_decimals_than_it_needs(value, unit):
-    near = rounded(value, unit)
-    assert abs(near - value) <= unit / 2 + 1e-12
-    assert str(near) != "-0.0"
-    assert len(f"{near:.12f}".rstrip("0").partition(".")[2]) <= -math.log10(unit) + 1
