@@ -128,7 +128,6 @@ def _recover(options: argparse.Namespace) -> Report:
     if options.output is None:
         raise UserError("name the file to write: -o OUT.")
     path = resolve(options.file)
-    files.check_target(options.output, options.force)
     if options.output.exists() and path.samefile(options.output):
         raise UserError(f"{path} is read by this command; choose another name to write.")
     result = recover(path, options.output, options.force)
