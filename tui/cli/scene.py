@@ -101,11 +101,11 @@ _SCENE = {
 _SHOT = get_type_hints(Shot)
 
 
-class _FieldError(Exception):
+class _FieldError(InputError):
     """An error in a field of a file; `names` are the path to it."""
 
     def __init__(self, why: object, *names: str) -> None:
-        super().__init__(why)
+        super().__init__(str(why))
         self.names = names
 
     def line(self, text: str, start: int) -> str:
@@ -119,12 +119,12 @@ class _FieldError(Exception):
 
 
 @contextmanager
-def _at(*names: str) -> Iterator[None]:
-    """Give an InputError the path to its field."""
+def _at(name: str) -> Iterator[None]:
+    """Put the name of a field before the path of an InputError."""
     try:
         yield
     except InputError as error:
-        raise _FieldError(error, *names) from None
+        raise _FieldError(error, name, *getattr(error, "names", ())) from None
 
 
 @cache
@@ -162,13 +162,8 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the text of a TOML file and its values."""
     import tomllib  # takes 6 ms, of 450 to the first pendulum
 
-    most = 100_000  # bytes
     try:
-        with path.open("rb") as file:
-            raw = file.read(most + 1)
-        text = raw[:most].decode("utf-8-sig")
-        if len(raw) > most:
-            raise ValueError(f"it is longer than {most} bytes")
+        text = path.read_text(encoding="utf-8-sig")
         return text, tomllib.loads(text)
     except OSError as error:
         why = f"cannot read {path}: {error.strerror}."
@@ -181,8 +176,7 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
     """Return the scene of a table; the user's own methods are in the folder."""
     found = _values("scene", given, _SCENE)
     base = Scene()
-    if "from" in found:
-        listed = found.pop("from")
+    if listed := found.pop("from", ""):
         with _at("from"):
             check_name("scene", listed, SCENES)
         base = SCENES[listed]
@@ -194,18 +188,18 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
             found["cast"] = _cast(found.pop("methods"), folder)
     elif model != base.model:
         found["cast"] = _cast_for(model)
-    texts: dict[str, Any] = {
-        name: found.pop(name) for name in ("name", "watch", "speed") if name in found
-    }
-    shot = found.pop("shot", None)
+    texts = {name: found.pop(name) for name in ("name", "watch", "speed", "shot") if name in found}
     try:
         scene = base.altered(**found)
-        if shot is not None:
-            texts["shot"] = _shot(shot, scene)
-        return replace(scene, **{"name": scene.name, **texts})
+        speed = texts.get("speed", scene.speed)
+        scene = replace(scene, name=scene.name, speed=speed)
     except InputError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise _FieldError(error, *named[:1]) from None
+    if "shot" in texts:
+        with _at("shot"):
+            texts["shot"] = _shot(texts["shot"], scene)
+    return replace(scene, **texts)
 
 
 def _cast_for(model: str) -> Cast:
@@ -215,47 +209,43 @@ def _cast_for(model: str) -> Cast:
 
 
 def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
-    shot = Shot(**_values("shot", given, _SHOT, "shot"))
-    with _at("shot", "view"):
+    shot = Shot(**_values("shot", given, _SHOT))
+    with _at("view"):
         check_name("view", shot.view, ["lab", "phase", "stability", "accuracy"])
-    with _at("shot", "quantity"):
+    with _at("quantity"):
         check_name("quantity", shot.quantity, [each.name for each in scene.equations.charted()])
-    with _at("shot", "front"):
+    with _at("front"):
         for key in shot.front:
             check_name("method", key, [method.key for method in scene.cast])
     if shot.moment is None and (shot.question or shot.returns):
         why = "it needs a moment; use for example moment = 12.5."
-        raise _FieldError(why, "shot", "question" if shot.question else "returns")
+        raise _FieldError(why, "question" if shot.question else "returns")
     count = len(shot.answers)
     if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
         raise _FieldError(
             f"a question has two to {MAX_ANSWERS} answers, and the number of the right one; use "
             'for example answers = ["Verlet.", "RK4."] and right = 1.',
-            "shot",
             "question",
         )
     return shot
 
 
-def _values(
-    what: str, given: Mapping[str, Any], types: Mapping[str, Any], *above: str
-) -> dict[str, Any]:
-    """Return the values of the fields of a scene or shot; `above` is its path."""
+def _values(what: str, given: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of the fields of a scene or shot."""
     import msgspec
 
     found: dict[str, Any] = {}
     for name, value in given.items():
-        with _at(*above, name):
+        with _at(name):
             check_name(f"field of a {what}", name, types)
-        try:
-            if name in _READERS:
-                value = _READERS[name](str(value))
-            found[name] = _printable(msgspec.convert(value, types[name]))
-        except msgspec.ValidationError as error:
-            why = f"{name}: {error}; use for example {_example(name)}"
-            raise _FieldError(why, *above, name) from None
-        except ValueError as error:  # of a reader
-            raise _FieldError(f"{name}: {error}", *above, name) from None
+            try:
+                if name in _READERS:
+                    value = _READERS[name](str(value))
+                found[name] = _printable(msgspec.convert(value, types[name]))
+            except msgspec.ValidationError as error:
+                raise InputError(f"{name}: {error}; use for example {_example(name)}") from None
+            except ValueError as error:  # of a reader
+                raise InputError(f"{name}: {error}") from None
     return found
 
 
