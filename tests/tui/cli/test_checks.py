@@ -117,11 +117,13 @@ words = st.sampled_from([*KEYS, "energy", "verdict", *SIGNS, "'", ".", "and", "o
 
 @given(st.text() | st.lists(words).map("".join))
 def test_any_text_is_a_gate_or_one_printable_sentence(text):
+    sentence = ""
     try:
         assert callable(parse(text))
     except UserError as error:
-        assert str(error).isprintable()
-        assert len(str(error)) < 800  # at most 60 quoted characters, ten each when escaped
+        sentence = str(error)
+    assert sentence.isprintable()
+    assert len(sentence) < 800  # at most 60 quoted characters, ten each when escaped
 
 
 def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
