@@ -20,27 +20,10 @@ COMMANDS = (
     "judge energies.csv --time 1 --energy 2",
     "stability --theta-values 1 --z-values 0.1:2:4 --steps 20 --workers 2",
 )
-NAMES = [
-    "pickle",
-    "numpy",
-    "multiprocessing",
-    "json",
-    "random",
-    "signal",
-    "textual",
-    "rich",
-    "mcap",
-    "zstandard",
-    "plotext",
-    "platformdirs",
-    "shtab",
-    "numba",
-    "sitecustomize",
-    "usercustomize",
-    "tui",
-    "engine",
-    "recordings",
-]
+NAMES = (
+    "pickle numpy multiprocessing json random signal textual rich mcap zstandard plotext "
+    "platformdirs shtab numba sitecustomize usercustomize tui engine recordings"
+)
 
 
 @pytest.fixture
@@ -50,7 +33,7 @@ def hostile(tmp_path: Path) -> Path:
     folder.mkdir()
     shutil.copy(GOLDEN / "drift.mcap", folder)
     (folder / "energies.csv").write_text("".join(f"{n},1\n" for n in range(100)))
-    for name in NAMES:
+    for name in NAMES.split():
         code = f"open({str(tmp_path / 'ran')!r}, 'a').write({name!r})\n"
         (folder / f"{name}.py").write_text(code)
         (folder / name).mkdir()

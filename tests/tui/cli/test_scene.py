@@ -98,6 +98,7 @@ def test_methods_of_ones_own_lie_beside_the_file(tmp_path, mine):
 
 
 LECTURE = """
+h = 0.2
 [[scene]]
 name = "kept"
 theta = "120deg"
@@ -125,7 +126,8 @@ def test_a_listed_scene_gives_what_a_page_does_not_name(mine):
 def test_a_shot_names_what_differs_and_several_scenes_are_a_lesson(mine):
     mine.write_text(LECTURE, encoding="utf-8")
     first, second = read_scenes(mine).values()
-    assert (first.name, second.name) == ("kept", "mine-2")
+    assert (first.name, first.h) == ("kept", 0.2)
+    assert (second.name, second.h) == ("mine-2", 0.1)
     assert first.shot == Shot()
     assert second.shot.line == Line("energy_error", 0.01, "1 %")
     assert (second.shot.view, second.shot.front) == ("phase", ("rk4",))

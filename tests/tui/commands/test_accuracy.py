@@ -24,6 +24,7 @@ def test_the_table_has_a_row_for_each_step_and_the_orders():
 def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tmp_path):
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     points = answer["points"]
+    assert [points[0]["valid"], points[-1]["valid"]] == [False, True]
     assert [point["method"] for point in points] == [m.key for m in USUAL_CAST] * 4
     assert [order["claimed"] for order in answer["orders"]] == [m.order for m in USUAL_CAST]
     advice = answer["recommendation"]
@@ -56,6 +57,7 @@ def test_a_target_that_no_method_reaches_is_reported():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["--h-values", "0.2:0.1:1001"], ["not a list"]),
         (["--h-values", "0.1"], ["not a list of step sizes", "0.2:0.001:10"]),
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
         (["--time", "1e9"], ["take hours"]),

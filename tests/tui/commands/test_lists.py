@@ -31,9 +31,13 @@ def test_scenes_as_json_hold_everything_that_determines_a_run():
 
 
 def test_methods_lists_every_method_its_claims_and_what_is_measured():
+    answer = pendu("methods", "--json").json
+    assert answer["compiled"] == available()
     *lines, names = pendu("methods").out.splitlines()
     assert "Single Verlet (verlet_float32)" in names  # as the lab calls it
-    for method in METHODS:
+    for method, row in zip(METHODS, answer["methods"], strict=True):
+        assert (row["key"], row["order"]) == (method.key, method.order)
+        assert any(row[name] is not None for name in MEASURED) == method.general
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
         texts = {None: "-", 0.0: "none", math.inf: "any"}
@@ -81,11 +85,3 @@ def test_the_gate_of_a_right_method_passes():
 @pytest.mark.parametrize("expression", ["verdict == grows", "symplectic < 1", "symplectic == no_"])
 def test_a_gate_that_cannot_be_is_refused(expression):
     assert pendu("methods", "--fail-if", expression).refused(2, "--fail-if")
-
-
-def test_methods_as_json_have_what_is_measured_of_the_general_ones():
-    answer = pendu("methods", "--json").json
-    assert answer["compiled"] == available()
-    for row, method in zip(answer["methods"], METHODS, strict=True):
-        assert (row["key"], row["order"]) == (method.key, method.order)
-        assert any(row[name] is not None for name in MEASURED) == method.general
