@@ -39,7 +39,6 @@ def folder(tmp_path, monkeypatch):
     "command",
     [
         ("verify", f"whole{EVIL}.mcap", f"cut{EVIL}.mcap"),
-        ("verify", f"absent{EVIL}.mcap"),
         ("recordings",),
         ("recordings", "show", f"cut{EVIL}.mcap"),
         ("recordings", "recover", f"cut{EVIL}.mcap", "-o", f"new{EVIL}.mcap"),
@@ -49,7 +48,6 @@ def folder(tmp_path, monkeypatch):
         ("run", "--time", "1", "--record", f"run{EVIL}.mcap"),
         ("run", "--time", "1", "--scene", f"bad{EVIL}.toml"),
         ("run", "--time", "1", "--scene", f"wrong{EVIL}.toml"),
-        ("run", "--time", "1", "--method", f"mine{EVIL}.py:mine"),
         ("run", "--time", "1", "--method", f"mine{EVIL}.py:absent{EVIL}"),
         ("judge", f"log{EVIL}.csv", "--time", f"t{EVIL}", "--energy", f"E{EVIL}"),
         ("judge", f"log{EVIL}.csv", "--time", f"x{EVIL}", "--energy", "1"),
