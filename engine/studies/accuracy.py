@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
-from itertools import groupby
+from itertools import groupby, product
 from statistics import fmean, linear_regression
 from typing import Literal, NamedTuple
 
@@ -113,11 +113,10 @@ class Study:
         self.time = time
         self.loops = cache(loops)  # so that the steps of all its runs count
         self.exact = scene.exact()
-        self.energy_scale = scene.equations.reference(scene.theta, scene.omega).scale
-        self._energy_floor, self._theta_floor = rounding_floor(scene, time)
+        energy, theta = rounding_floor(scene, time)
+        self._floors = (theta, energy, theta)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
-        self.thetas = [self.exact.at(t).theta for t in times]  # rad
-        width = min(math.pi, max(map(abs, self.thetas)))
+        width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
         self.sizes = {"theta": width, "energy": 1.0, "final": width}
         """The sizes of the swing itself: an error as large says nothing."""
 
@@ -133,53 +132,13 @@ class Study:
         if not diverged:
             refines = partial(self._refines, method, steps, comparisons, errors)
             flaws = self.flaws(errors, steps, refines)
-            if method.varies:
-                counted = self._evaluations(method, steps)
+            if method.varies:  # extrapolated from the first 2000
+                model = self.scene.equations
+                start = model.start(self.scene.theta, self.scene.omega)
+                first = min(steps, 2000)
+                count = count_evaluations(method, model, start, self.time / steps, first)
+                counted = round(count * steps / first)
         return Point(method, self.time, self.scene.w0, steps, *errors, flaws=flaws, counted=counted)
-
-    def _refines(
-        self, method: Method, steps: int, comparisons: int, errors: Sequence[float]
-    ) -> list[bool]:
-        """Return which errors fall with h, from a quarter of the steps on.
-
-        Doubling the steps must reduce an error by at least half of what the order promises.
-        """
-        half, _ = self._errors(method, max(1, steps // 2), comparisons)
-        quarter, _ = self._errors(method, max(1, steps // 4), comparisons)
-        factor = 2 ** (method.order - 1)
-        ladder = zip(quarter, half, errors, strict=True)
-        return [fine * factor <= mid and mid * factor <= coarse for coarse, mid, fine in ladder]
-
-    def flaws(
-        self,
-        errors: Sequence[float],
-        roundings: int,
-        refines: Callable[[], Sequence[bool]] = lambda: (False, False, False),
-    ) -> Flaws:
-        """Return what is wrong with the errors in theta, energy and final theta of a run.
-
-        An error below the floor of so many roundings is rounding unless it falls with h.  Only then
-        `refines` is called, for that is slow.
-        """
-        floors = (self._theta_floor, self._energy_floor, self._theta_floor)
-        root = math.sqrt(roundings)
-        flaws: list[Flaw | None] = [None, None, None]
-        below = [error <= floor * root for error, floor in zip(errors, floors, strict=True)]
-        if any(below):
-            for kind, refined in enumerate(refines()):
-                if below[kind] and not refined:
-                    flaws[kind] = "rounding"
-        for kind, size in enumerate(self.sizes.values()):
-            if errors[kind] >= size:
-                flaws[kind] = "lost"
-        return Flaws(*flaws)
-
-    def _evaluations(self, method: Method, steps: int) -> int:
-        """Return the force evaluations of so many steps, extrapolated from the first 2000."""
-        start = self.scene.equations.start(self.scene.theta, self.scene.omega)
-        first = min(steps, 2000)
-        count = count_evaluations(method, self.scene.equations, start, self.time / steps, first)
-        return round(count * steps / first)
 
     def _errors(
         self, method: Method, steps: int, comparisons: int
@@ -197,15 +156,42 @@ class Study:
             theta_error = max(theta_error, final_error)
         return (theta_error, reading.max_energy_error, final_error), reading.diverged_at is not None
 
+    def _refines(
+        self, method: Method, steps: int, comparisons: int, errors: Sequence[float]
+    ) -> list[bool]:
+        """Return which errors fall with h, from a quarter of the steps on.
+
+        Doubling the steps must reduce an error by at least half of what the order promises.
+        """
+        half, _ = self._errors(method, max(1, steps // 2), comparisons)
+        quarter, _ = self._errors(method, max(1, steps // 4), comparisons)
+        factor = 2 ** (method.order - 1)
+        ladder = zip(quarter, half, errors, strict=True)
+        return [fine * factor <= mid and mid * factor <= coarse for coarse, mid, fine in ladder]
+
+    def flaws(
+        self, errors: Sequence[float], steps: int, refines: Callable[[], Sequence[bool]]
+    ) -> Flaws:
+        """Return what is wrong with the errors in theta, energy and final theta of a run.
+
+        An error below the floor of so many roundings is rounding unless it falls with h.  Only then
+        `refines` is called, for that is slow.
+        """
+        flaws: list[Flaw | None] = [None, None, None]
+        floors = [floor * math.sqrt(steps) for floor in self._floors]
+        below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
+        if any(below):
+            for kind, refined in enumerate(refines()):
+                if below[kind] and not refined:
+                    flaws[kind] = "rounding"
+        for kind, size in enumerate(self.sizes.values()):
+            if errors[kind] >= size:
+                flaws[kind] = "lost"
+        return Flaws(*flaws)
+
     def may_be_rounding(self, point: Point) -> bool:
         """Whether a point's error in theta lies below the rounding floor."""
-        return point.theta_error <= self._theta_floor * math.sqrt(point.steps)
-
-    def points(self, ladder: Sequence[int]) -> Iterator[Point]:
-        """Yield a point for every number of steps and every method."""
-        for steps in ladder:
-            for method in self.scene.cast:
-                yield self.run(method, steps)
+        return point.theta_error <= self._floors[0] * math.sqrt(point.steps)
 
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
@@ -258,7 +244,9 @@ def compilable(cast: Cast) -> bool:
 
 def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
     """Yield a point for every number of steps and every method; for another process."""
-    return Study(scene, time, TieredLoops).points(rungs)
+    study = Study(scene, time, TieredLoops)
+    for steps, method in product(rungs, scene.cast):
+        yield study.run(method, steps)
 
 
 def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, int]) -> Point:
@@ -283,25 +271,22 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
     """
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
-    runs = {
-        method: [study.run(method, steps, ORDER_STEPS[0]) for steps in usable]
-        for method in scene.cast
-    }
-    return [
-        Order(method, _slope([point for point in points if not study.may_be_rounding(point)]))
-        for method, points in runs.items()
-    ]
+    return [Order(method, _order(study, method, usable)) for method in scene.cast]
 
 
-def _slope(points: Sequence[Point]) -> float | None:
+def _order(study: Study, method: Method, ladder: Sequence[int]) -> float | None:
     """Return the least-squares slope of log theta error over log h, of the four smallest h."""
-    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-4:]
+    points = [study.run(method, steps, ORDER_STEPS[0]) for steps in ladder]
+    fitted = [
+        (math.log(point.h), math.log(point.theta_error))
+        for point in points
+        if not study.may_be_rounding(point)
+        and point.flaws.theta is None
+        and point.theta_error < FITTED_BELOW
+    ][-4:]
     if len(fitted) < 3:
         return None
-    line = linear_regression(
-        [math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted]
-    )
-    return line.slope
+    return linear_regression(*zip(*fitted, strict=True)).slope
 
 
 Cost = Literal["evaluations", "seconds"]
@@ -338,42 +323,31 @@ def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest
         target = 10.0**-decade
         if any(_reaches(line[0], kind, target) for line in lines.values()):
             continue
-        costs = {
-            method: known
-            for method, line in lines.items()
-            if (known := cost_at(line, kind, cost, target))
-        }
-        if costs:
-            best = min(costs, key=lambda method: costs[method])
+        costs = {method: cost_at(line, kind, cost, target) for method, line in lines.items()}
+        known = {method: found for method, found in costs.items() if found}
+        if known:
+            best = min(known, key=lambda method: known[method])
             own = cost_at(lines[best], kind, "evaluations", target)
             rk4 = cost_at(lines.get(RK4, ()), kind, "evaluations", target)
-            cheapest.append(Cheapest(target, best, costs[best], own and rk4 and rk4 / own))
+            cheapest.append(Cheapest(target, best, known[best], own and rk4 and rk4 / own))
     return cheapest
 
 
 def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -> float | None:
-    """Return the interpolated cost at which the error falls to `target`, or None."""
-    coarser: Point | None = None
-    for finer in sorted(line, key=lambda point: point.steps):
-        if _reaches(finer, kind, target):
-            return _interpolated(coarser, finer, kind, cost, target)
-        coarser = finer
-    return None
+    """Return the interpolated cost at which the error falls to `target`, or None.
 
-
-def _interpolated(
-    coarser: Point | None, finer: Point, kind: ErrorKind, cost: Cost, target: float
-) -> float | None:
-    """Return the cost between two runs of which only the finer reaches the target."""
-    high = cost_of(finer, cost)
-    below = finer.error(kind)
-    if not high:
+    `line` are the points of a method, from coarse to fine.
+    """
+    reached = (place for place, point in enumerate(line) if _reaches(point, kind, target))
+    first = next(reached, None)
+    if first is None or not (high := cost_of(line[first], cost)):
         return None
-    if coarser is None or not below:
+    below = line[first].error(kind)
+    if not first or not below:
         return high
-    low = cost_of(coarser, cost)
-    above = coarser.error(kind)
-    if not low or not (math.isfinite(above) and above > target):
+    low = cost_of(line[first - 1], cost)
+    above = line[first - 1].error(kind)
+    if not low or not target < above < math.inf:
         return high
     share = math.log(above / target) / math.log(above / below)
     return float(low * (high / low) ** share)
