@@ -14,27 +14,23 @@ from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import energy_ratio, lasting, short_name
-from pendu_tui.tui.words.numbers import about, seconds, start, two_digits
+from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
 
 READING = 6.0  # s, to read a sentence, or to find an answer
 
 
-def description(source: Source, only: Cast | None = None) -> list[str]:
-    """Describe the run, its methods (or `only` these), and the recording."""
+def description(source: Source, hidden: Collection[str] = ()) -> list[str]:
+    """Describe the run, its methods (without those with `hidden` keys), and the recording."""
     scene = source.scene
-    playhead = source.playhead
     kind = "The lab" if source.kind == "LIVE" else "The replay"
-    state = f"runs at {playhead.speed:.4g} times real time and is"
-    if playhead.paused:
+    state = f"runs at {factor(source.playhead.speed)}× speed and is"
+    if source.playhead.paused:
         state = "is paused"
-    elif playhead.speed == 1:
-        state = "runs in real time and is"
     at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
-    motion = ""
+    began = start(scene.theta, scene.omega)
     if source.exact.period is not None:
         cycle = "turn" if source.exact.regime == "rotation" else "swing"
-        motion = f"; one {cycle} takes {about(source.exact.period)}"
-    began = f"{start(scene.theta, scene.omega)}{motion}"
+        began += f"; one {cycle} takes {about(source.exact.period)}"
     lines = [
         f"{kind} {state} at {at}.",
         f"The pendulum is {scene.length:.4g} m long and started at {began}.",
@@ -45,7 +41,7 @@ def description(source: Source, only: Cast | None = None) -> list[str]:
     if source.ghost:
         lines.append(f"Under it, {source.ghost.label}.")
     for index, method in enumerate(scene.cast):
-        if only is None or method in only:
+        if method.key not in hidden:
             lines.append(method_sentence(source, index))
     return [*lines, _recording(source)]
 
@@ -99,9 +95,13 @@ def tell(
 
     `only` restricts them to these methods.  A lesson goes on by itself, after time to read it.
     """
+
+    def hidden() -> set[str]:
+        return {each.key for each in source.scene.cast if only is not None and each not in only}
+
     if lesson is not None and isinstance(source, Live):
         lesson.begin(source, 0)
-    for text in description(source, only):
+    for text in description(source, hidden()):
         emit(text)
     source.tick(clock())
     known = set(event_lines(source))
@@ -111,8 +111,8 @@ def tell(
         source.tick(clock())
         if source.failure:
             raise UserError(source.failure)
-        for line in event_lines(source):
-            if line not in known and (only is None or line.method is None or line.method in only):
+        for line in event_lines(source, hidden()):
+            if line not in known:
                 known.add(line)
                 emit(f"{seconds(line.t)}: {line.text}.")
         if lesson is not None and isinstance(source, Live):

@@ -30,8 +30,8 @@ def recorded_whole(folder: Path) -> Path:
 @pytest.mark.parametrize(
     ("number", "arguments", "first"),
     [
-        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8 times"),
-        (signal.SIGTERM, ("tour",), "The lab runs in real time"),
+        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8×"),
+        (signal.SIGTERM, ("tour",), "The lab runs at 1× speed"),
     ],
 )
 def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first):
@@ -60,6 +60,6 @@ def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):
     with started(tmp_path, "replay", "drift", "--plain", "--speed", "20") as process:
         out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
-    assert out.startswith("The replay runs at 20 times real time")
+    assert out.startswith("The replay runs at 20× speed")
     assert "Explicit Euler over the top" in out
     assert not list(tmp_path.iterdir())
