@@ -113,12 +113,9 @@ def test_a_judged_series_prints_as_the_command_does():
     assert [line.split("  ")[0] for line in lines] == ["verdict", "trend", "bound", "energy error"]
     assert lines[0].endswith("bounded")
     assert "nan" not in str(judge(TIMES, [*WAVE[:-1], math.nan]))
-    assert "end at 1999" in str(judge(TIMES, [*WAVE[:-1], math.nan]))
-
-
-def test_the_trend_is_printed_in_percent_of_the_band():
     half_the_band = WAVE + TIMES / len(TIMES)  # rises by 1, in a band from -1 to 1
     assert "+50 % of its band" in str(judge(TIMES, half_the_band))
+    assert "end at 1999" in str(judge(TIMES, [*WAVE[:-1], math.nan]))
 
 
 def test_an_energy_that_never_changes_is_bounded_on_every_scale():

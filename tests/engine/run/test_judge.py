@@ -109,21 +109,14 @@ def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict() -> None:
     assert words(lockstep) == ["loses", "grows"]
 
 
-@pytest.mark.parametrize("h", [0.02, 0.1])
-def test_judging_may_begin_anywhere_in_a_swing(h: float) -> None:
+@pytest.mark.parametrize("h", [0.02, 0.1, -0.05])
+def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h: float) -> None:
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
     for steps in (5, 13, 29, 47):
         lockstep = moved(SCENES["large-swing"], [steps])
         lockstep.set_stepping(Stepping(h))
-        lockstep.advance(round(120 / h))
+        lockstep.advance(round(120 / abs(h)))
         assert words(lockstep) == BELOW_THE_LIMITS
-
-
-def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
-    lockstep = moved(DRIFT, [0])
-    lockstep.set_stepping(Stepping(-DRIFT.h))
-    lockstep.advance(2000)
-    assert words(lockstep) == BELOW_THE_LIMITS
 
 
 @pytest.mark.parametrize(
