@@ -49,6 +49,7 @@ _NUMBERS = re.compile(
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
+_COMMENTS = "#@!%;"
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
     r"\s{2,}",  # names may contain single blanks
@@ -250,6 +251,7 @@ class _Text:
             self._sheets
             and len(fields := _split(line, self._delimiter)) == self._width
             and line.startswith(self._opening)
+            and line.lstrip()[:1] not in _COMMENTS
         ):
             sheet = self._sheets[-1]
             if values := _values(fields, sheet.kept, self._delimiter is not None):
@@ -306,10 +308,10 @@ class _Text:
             place = self._prints[-1].places.get(name)
             if place is None or _NUMBERS.search(name):  # another name may have this shape
                 return
-            if start in starts:
-                holds[place] = 2 * starts.index(start) + 1
-            elif _IS_FAILED.fullmatch(text):
+            if _IS_FAILED.fullmatch(text):
                 holds[place] = -1
+            elif start in starts:
+                holds[place] = 2 * starts.index(start) + 1
             else:
                 return
         shape = _NUMBERS.sub("\0", line)
@@ -372,7 +374,7 @@ class _Text:
     def _words_or_row(self, line: str) -> bool:
         """Read a row, or words that may be a head.  Return whether it is neither."""
         text = line.strip()
-        bare = text.lstrip("#@!%; \t")
+        bare = text.lstrip(_COMMENTS + " \t")
         if text.startswith("@") or not re.search(r"[\w*]", text):
             return True  # what else xmgrace is told, or a rule
         is_comment = bare != text and number(text.split()[0]) is None
@@ -394,6 +396,8 @@ class _Text:
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
         text = text.strip()
+        if self._delimiter and len(fields := _split(text, self._delimiter)) == self._width:
+            return fields, self._delimiter
         bare = re.sub(r'"[^"]*"', "", text)
         for sign in [sign for sign in _DELIMITERS if sign in bare]:
             fields = _split(text, sign)

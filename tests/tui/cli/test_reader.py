@@ -134,6 +134,8 @@ def array(*unnamed: object, **named: object) -> bytes:
         "| t | E |\n|---|---|\n" + rows("| {t} | {e} |"),
         "t,E\n" + rows('"{t}","{e}",'),
         "t E\n" + rows("{t} {e}\nwriting restart\nwrote file {n} at step {s}"),
+        "t,E\n" + rows("{t},{e}") + "45,2 3\n",
+        "id t E\n" + rows("{n} {t} {e}") + "# 46 5\n",
     ],
 )
 def test_documents_arrays_and_compressed_files_are_tables(data):
@@ -172,8 +174,9 @@ def test_energies_that_are_only_rarer_have_not_failed(text, failed_at, skipped):
     assert series.skipped["without_numbers"] == skipped
 
 
-def test_printed_values_after_the_first_nan_are_nan_too():
-    (series,) = tables(rows("t = {t}, E = nan") + rows("t = 1{n:02}, E = {e}"), start=40.0)
+@pytest.mark.parametrize("nan", ["nan", "1.#QNAN"])
+def test_printed_values_after_the_first_nan_are_nan_too(nan):
+    (series,) = tables(rows(f"t = {{t}}, E = {nan}") + rows("t = 1{n:02}, E = {e}"), start=40.0)
     assert series.failed_at == 40.0
 
 
