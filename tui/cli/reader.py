@@ -328,10 +328,8 @@ class _Text:
                 self._passed += max(self._width - 1, 0)
                 self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
                 self._shapes.clear()
-            case {"end": _}:
-                self._is_over = True
-            case {"again": _}:
-                self._is_over = False
+            case {"end": _} | {"again": _}:
+                self._is_over = "end" in groups
             case _ if self._is_over:
                 pass
             case {"value": _}:
@@ -412,8 +410,11 @@ class _Text:
         """Add a row to its table, which may begin here.  Return whether it is a row."""
         numbers = [number(each) for each in fields]
         is_like = len(fields) == self._width and opening == self._opening
+        rest = numbers[bool(opening) :]
+        is_bare = delimiter and not self._heads  # rows that were cut out of a table
+        is_sure = None not in rest or (is_bare and len(rest) > rest.count(None) + 1)
         is_new = self._heads or self._begins or not is_like
-        if is_new and self._begin(fields, numbers, opening, delimiter):
+        if is_new and self._begin(fields, numbers, is_like, bool(is_sure)):
             self._delimiter = delimiter
             self._width = len(fields)
             self._opening = opening
@@ -427,24 +428,16 @@ class _Text:
         return is_like
 
     def _begin(
-        self,
-        fields: list[str],
-        numbers: list[float | None],
-        opening: str,
-        delimiter: str | None,
+        self, fields: list[str], numbers: list[float | None], is_like: bool, is_sure: bool
     ) -> bool:
         """Look for the head of this row.  Return whether a table begins, or goes on below it."""
         before = self._sheets[-1] if self._sheets else None
         names = self._head(fields, numbers)
         if names is None:
-            is_like = len(fields) == self._width and opening == self._opening
             names = self._labelled(len(fields))
-            rest = numbers[bool(opening) :]
-            is_bare = delimiter and not self._heads  # rows that were cut out of a table
-            is_row = None not in rest or self._worth([""] * len(fields), numbers) > 0
-            is_row |= bool(is_bare) and len(rest) > rest.count(None) + 1
+            is_sure = is_sure or self._worth([""] * len(fields), numbers) > 0
             is_below = before and not self._begins and (is_like or any(before.names))
-            if is_below or not is_row:
+            if is_below or not is_sure:
                 for line, ways in self._heads.items():
                     if is_like and not self._begins and not any(map(self._worth, ways)):
                         self._remember(line, {})  # it never will be a head

@@ -96,20 +96,21 @@ def find(names: Sequence[str], text: str) -> Group | None:
     Case and unit of a name do not count, if it is not there to the letter.
     """
     for parts in ([text], text.split("+")):
-        found = [_place(names, part.strip()) for part in parts]
-        if None not in found:
-            return tuple(place for place in found if place is not None)
+        places = [_place(names, part.strip()) for part in parts]
+        if -1 not in places:
+            return tuple(places)
     return None
 
 
-def _place(names: Sequence[str], text: str) -> int | None:
+def _place(names: Sequence[str], text: str) -> int:
+    """Return the column of a name or a number, -1 without it."""
     if text.isdecimal() and 0 < int(text) <= len(names):
         return int(text) - 1
     for way in (str.strip, str.casefold, _bare):
         for place, name in enumerate(names):
             if name and way(name.strip()) == way(text):
                 return place
-    return None
+    return -1
 
 
 def _bare(name: str) -> str:
@@ -124,17 +125,15 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         if place not in excluded and len(sample) > 2 and (np.diff(sample) > 0).all()
     ]
     for known in ("time", "step"):
-        places = [
+        found = [
             place
             for place, name in enumerate(names)
             if role(name)[0] == known
             # T is a temperature, unless it increases
             and (_bare(name) != "t" or name[0] == "t" or place in rising)
         ]
-        if places:
-            return (
-                min(places, key=lambda place: (_bare(names[place]) not in ("t", "time"), place)),
-            )
+        if found:
+            return (min(found, key=lambda place: _bare(names[place]) not in ("t", "time")),)
     if not rising:
         return ()
     steps = np.diff(samples[rising[0]])

@@ -61,7 +61,6 @@ def columns(series: Series) -> str | None:
         ("T,energy", "{t},{e}", "T, energy"),  # it increases
         ("T,t,E", "300,{t},{e}", "t, E"),
         ("t,E,total,conserved", "{t},{k},{k},{e}", "t, conserved"),
-        ("t,KE,PE", "{t},{k},{p}", "t, KE+PE"),
         ("t,KE (eV),PE (eV)", "{t},{k},{p}", "t, KE+PE eV"),
         ("t,E,dE/E", "{t},{e},{k}", "t, E"),
         ("t,E,p", "{t},{e},word", "t, E"),
@@ -74,7 +73,6 @@ def columns(series: Series) -> str | None:
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
         ("  t     E", "{n:<4} {t} {e}", "t, E"),  # pandas
         ("Time Etot", "{t} {e} {k}", None),
-        ("Time Etot", "{n} {s} {t} {e}", None),
         ("", "{e}", "row, column 1"),
         ("", "{t} {e}", "column 1, column 2"),
         ("", "{k} {p}", None),
