@@ -14,7 +14,7 @@ import numpy as np
 
 from pendu_tui.engine.methods import GENERAL, Method
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import compiled
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
@@ -111,7 +111,8 @@ def _contradictions(scene: Scene) -> Iterator[tuple[Any, ...]]:
 
 def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement, Judgement]]:
     """Yield each method with the judgements of its run and of the run's energies alone."""
-    lockstep = Lockstep(scene, loops=compiled, judged=True)
+    loops = compiled if available() else PlainLoops
+    lockstep = Lockstep(scene, loops=loops, judged=True)
     steps = round(seconds / scene.h)
     every = max(1, steps // SAMPLES)
     samples = [lockstep.sample()]
