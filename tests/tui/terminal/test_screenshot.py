@@ -1,5 +1,3 @@
-"""Where the screen is saved."""
-
 from pendu_tui.recordings import files
 from tests.tui.harness import lab
 
