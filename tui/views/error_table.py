@@ -21,7 +21,7 @@ from pendu_tui.engine.quantities import (
 )
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.stepping import change_before
-from pendu_tui.engine.run.verdicts import FAILED, GROWS, VERDICTS, Judgement
+from pendu_tui.engine.run.verdicts import FAILED, VERDICTS, Judgement
 from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN, Picture, Row, inks, mark
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
@@ -29,7 +29,6 @@ from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.numbers import angle, decimal, scientific
 
 WIDE = 120  # columns, from which heads are written in full, in every scene
-LARGE = 1.0  # an error that grows to the size of the energy itself
 
 
 class TableLine(NamedTuple):
@@ -195,11 +194,10 @@ def _aligned(text: str, width: int, column: Column) -> str:
 
 
 def _ink(column: Column, line: TableLine) -> int:
-    """Return the ink of a cell: red is for failures, and for errors as large as the energy."""
+    """Return the ink of a cell: red is for failures."""
     if column is VERDICT and not line.held:
-        is_red = line.verdict == GROWS and line.largest >= LARGE
         inks = {"good": GOOD, "warn": WARN, "quiet": QUIET, "text": TEXT}
-        return WARN if is_red else inks[VERDICTS[line.verdict].ink]
+        return inks[VERDICTS[line.verdict].ink]
     if line.reading.diverged_at is not None:
         return QUIET
     return TEXT
