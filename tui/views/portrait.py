@@ -277,7 +277,7 @@ def axes(viewport: Viewport) -> list[Word]:
     low = viewport.omega_at(4.0 * bottom)
     high = viewport.omega_at(0.0)
     words: list[Word] = [
-        (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
+        (0, math.floor(viewport.y(omega) / 4), f"{label} "[:columns], TEXT)
         for omega, label in number_ticks(low, high, max(bottom // 2, 1))
     ]
     # pi may be at the very edge
