@@ -91,16 +91,6 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         assert shown.theta_error == expected.theta_error
 
 
-async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_drawn():
-    async with accuracy_view() as (pilot, pane, _live):
-        await pilot.press("f2", "e", "f4", "1")
-        await until(pilot, lambda: is_complete(pane) and "theta error" in str(pane.border_title))
-        assert "theta error" in pane.text
-        chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
-        assert "v" in chart
-        assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
-
-
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
     async with accuracy_view() as (pilot, pane, live):
         point = pane.points["rk4", RUNGS[2]]

@@ -44,15 +44,6 @@ def test_a_wide_table_has_units_more_digits_and_the_rest_of_an_angle_beyond_a_tu
     assert last.split() == ["4", "r", "RK4", *numbers.split()]
 
 
-@pytest.mark.parametrize("width", [80, 120])
-def test_every_scene_has_the_same_heads_but_for_its_own_quantities(width):
-    known = rows(lab(), width)[0].split()
-    for name in ("gentle", "crossover", "halving", "precision", "learned"):
-        heads = rows(after(SCENES[name], 1), width)[0].split()
-        assert heads == known[: len(heads)]
-        assert len(known) - len(heads) <= 1  # longer names leave less room
-
-
 def test_red_is_for_failures_alone_and_signs_stand_for_colours():
     def verdicts(live):
         shown = table(live, live.sample, Shown(), 80)[1:]

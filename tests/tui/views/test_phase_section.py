@@ -85,17 +85,3 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         await theatre.press("x")
         assert str(pane.border_title).startswith("Phase space")
         assert "E/Es" in pane.text
-
-
-async def test_another_step_method_or_start_redraws_it_in_a_paused_lab_too():
-    async with lab(SCENE, size=(100, 30)) as theatre:
-        pane = await section_of(theatre, "x", "space")
-        for keys, title in ((["plus"], "h 0.5 s"), (["tab"], "RK4: h 0.5 s"), (["u"], "h 0.348")):
-            before = pane.text
-            await theatre.press(*keys)
-            assert title in str(pane.border_title)
-            await until(theatre.pilot, lambda: pane.settled)
-            assert pane.text != before
-        before = pane.text
-        await theatre.press("i", "2", "enter")
-        await until(theatre.pilot, lambda: pane.text != before)

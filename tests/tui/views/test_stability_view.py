@@ -11,7 +11,7 @@ from pendu_tui.engine.studies.stability import UNKNOWN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.stability import StabilityPane
-from tests.tui.harness import until, view_of
+from tests.tui.harness import view_of
 
 VERLET = 2  # in USUAL_CAST
 
@@ -80,13 +80,3 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
         await pilot.press("2", "3", "4")
         await pilot.pause(0.3)
         assert "4 r" not in pane.text
-
-
-async def test_the_axis_is_that_of_the_scenes_pendulum_and_one_that_spins_is_not_on_the_map():
-    async with stability_view() as (pilot, pane, live):
-        live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
-        await until(pilot, lambda: "  4 h" in pane.text)
-        assert "0.8 h" not in pane.text
-        live.start(SCENES["spin"])
-        await until(pilot, lambda: "@" not in pane.text)
-        assert pane.here(VERLET) is None

@@ -2,7 +2,6 @@
 
 from itertools import product
 
-import numpy as np
 import pytest
 from textual.events import MouseScrollUp
 
@@ -15,7 +14,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
 from pendu_tui.tui.views.lab import TimeChart, title
-from tests.tui.harness import FPS, lab, player, recorded
+from tests.tui.harness import lab
 from tests.tui.playback.test_history import run
 
 WHOLE = SCENES["drift"]
@@ -90,20 +89,6 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert theatre.stage.shown == Shown().through(WHOLE)
         await theatre.press("w", "z", "w")
         assert theatre.stage.shown == Shown().through(WHOLE)._replace(seconds=20.0)
-
-
-async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_is_known(tmp_path):
-    async with player(recorded(tmp_path / "long.mcap", 100.0)) as theatre:
-        chart = theatre.stage.query_one(TimeChart)
-        theatre.stage.action_seek(90.0)
-        assert "reading" in str(chart.border_subtitle)
-        for _ in range(60):
-            theatre.now += 1 / FPS
-            theatre.stage.frame()
-            await theatre.pilot.pause(0)
-            await theatre.settled()
-        assert "quantity" in str(chart.border_subtitle)
-        assert (~np.isnan(chart.plot.values).all(axis=1)).mean() > 0.8
 
 
 def charted(fps, scene, path=None, *, changes=False, returns=False):

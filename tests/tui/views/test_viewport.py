@@ -26,12 +26,6 @@ def test_every_cell_leads_to_what_is_drawn_in_its_middle(size, theta, omega, fac
     assert viewport.y(omega) == pytest.approx(4 * row + 2, abs=0.5 + 1e-4)
 
 
-@given(sizes)
-def test_rest_can_be_clicked_exactly_in_the_middle_cell(size):
-    columns, rows = size
-    assert Viewport.portrait(columns, rows, DRIFT).at_cell(columns // 2, rows // 2) == (0.0, 0.0)
-
-
 @given(sizes, st.floats(-math.pi, math.pi))
 def test_every_angle_of_a_turn_is_on_the_portrait_and_every_turn_shows_the_same(size, theta):
     viewport = Viewport.portrait(*size, DRIFT)
