@@ -114,7 +114,7 @@ def test_a_judged_series_prints_as_the_command_does():
     assert lines[0].endswith("bounded")
     assert "nan" not in str(judge(TIMES, [*WAVE[:-1], math.nan]))
     half_the_band = WAVE + TIMES / len(TIMES)  # rises by 1, in a band from -1 to 1
-    assert "+50 % of its band" in str(judge(TIMES, half_the_band))
+    assert "+50 % of the band" in str(judge(TIMES, half_the_band))
     assert "end at 1999" in str(judge(TIMES, [*WAVE[:-1], math.nan]))
 
 
