@@ -100,13 +100,8 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
 @pytest.mark.parametrize(
     ("work", "why"),
     [
-        ("while True: pass", "`while True: pass` takes more than 3 s"),
+        ("while True: pass", "line 3: `while True: pass` takes more than 3 s"),
         ("pow(7, 10**9)", "takes more than 4 s for a trial"),
-        (
-            "import time; time.sleep(99)",
-            "line 3: `import time; time.sleep(99)` takes more than 3 s",
-        ),
-        ("raise KeyboardInterrupt", "ends the process in which it is tried"),
         ("os._exit(0)", "ends the process in which it is tried"),
     ],
 )
