@@ -84,13 +84,13 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     wall_seconds = time.perf_counter() - began
     sample = samples[-1]
     is_whole = sample.step == steps
-    rows = rows_of(scene, sample, lockstep, is_whole)
+    rows = rows_of(lockstep, sample, is_whole)
     if options.record:
         size = file_size(options.record.stat().st_size)
         warn(f"recorded {sample.t:g} s, {size}: {options.record}")
     if not is_whole:
         keep_older(options.output)
-    publish(_report(scene, samples, lockstep, rows, wall_seconds), options)
+    publish(_report(lockstep, samples, rows, wall_seconds), options)
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -148,8 +148,9 @@ def _lines(scene: Scene, samples: Sequence[Sample]) -> Iterator[Line]:
         yield method.letter, [part[0].t for part in parts], errors
 
 
-def rows_of(scene: Scene, sample: Sample, lockstep: Lockstep, is_whole: bool) -> list[Row]:
+def rows_of(lockstep: Lockstep, sample: Sample, is_whole: bool) -> list[Row]:
     """Return the results of each method, as in --json."""
+    scene = lockstep.scene
     model = scene.equations
     exact = scene.exact().at(sample.t).theta
     rows = []
@@ -197,12 +198,9 @@ def _check(name: str, rows: Sequence[Row], gate: Gate) -> Check:
 
 
 def _report(
-    scene: Scene,
-    samples: Sequence[Sample],
-    lockstep: Lockstep,
-    rows: Sequence[Row],
-    wall_seconds: float,
+    lockstep: Lockstep, samples: Sequence[Sample], rows: Sequence[Row], wall_seconds: float
 ) -> Report:
+    scene = lockstep.scene
     sample = samples[-1]
     return Report(
         name="run",
@@ -210,7 +208,7 @@ def _report(
         f"{counted(sample.step, 'step')} to t = {sample.t:g} s in {wall_seconds:.2f} s\n",
         columns=columns_of(scene, quantity_column(quantities.TREND)),
         rows=rows,
-        notes=list(_notes(scene, lockstep)),
+        notes=_notes(lockstep),
         fields={
             "scene": scene.fields(),
             "time": sample.t,
@@ -229,8 +227,9 @@ def _report(
     )
 
 
-def _notes(scene: Scene, lockstep: Lockstep) -> Iterator[str]:
+def _notes(lockstep: Lockstep) -> Iterator[str]:
     """Yield what happened, why a method is undecided, and how fast orbits separate."""
+    scene = lockstep.scene
     for milestone in lockstep.milestones:
         if milestone.kind in ("over the top", "errors cross"):
             yield milestone_insight(milestone, scene.equations.conserves_energy).text
@@ -291,7 +290,7 @@ def _rows_of_list(time: float, expected_steps: int, is_plain: bool, scene: Scene
         last = sample
     numbers = {_column(name): value for name, value in scene.numbers.items()}
     start = {"model": scene.model, **numbers, "time": time}
-    return [start | row for row in rows_of(scene, last, lockstep, is_whole=True)]
+    return [start | row for row in rows_of(lockstep, last, is_whole=True)]
 
 
 def _column(name: str) -> str:
