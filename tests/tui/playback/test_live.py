@@ -1,18 +1,23 @@
 """A live source, driven by a clock that the test moves and watched by a recorder that keeps everything."""
 
+import functools
 import itertools
 import math
 import sys
+import threading
 from collections import Counter
 from collections.abc import Callable
 
 import pytest
 
 from pendu_tui.engine.inputs import InputError
+from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, available
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
+from pendu_tui.tui.playback import live
 from pendu_tui.tui.playback.live import FRAME_BUDGET
 from pendu_tui.tui.playback.source import doubled
 from tests.own_methods import load
@@ -237,6 +242,34 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     assert bench.live.failure is None
     sample = bench.run(2)
     assert states(sample) == simulated(scene, sample.step)
+
+
+@pytest.mark.skipif(not available(), reason="Numba is not installed")
+def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
+    method, model = DEFAULT_SCENE.cast[3], DEFAULT_SCENE.equations
+    start = (1.0, 0.0), 0.05, 20, math.inf
+    release, used = threading.Event(), []
+    plain = PlainLoops(method, model)
+
+    def advance(*start):
+        used.append(start)
+        return plain.advance(*start)
+
+    def slowly(method, model):
+        release.wait(10)
+        return CompiledLoops(plain.propagate, advance)
+
+    monkeypatch.setattr(loops, "COMPILED_FROM", 10)
+    monkeypatch.setattr(live, "compiled", slowly)
+    monkeypatch.setattr(live, "_compiling", functools.cache(live._compiling.__wrapped__))
+    tiered = live.compiled_in_background(method, model)
+    expected = plain.advance(*start)
+    assert tiered.advance(*start) == expected  # at once: `slowly` has not been let go
+    assert not used
+    release.set()
+    live._compiling(method, model).result(10)
+    assert tiered.advance(*start) == expected
+    assert used[-1] == start
 
 
 def calls(work: Callable[[], object]) -> int:
