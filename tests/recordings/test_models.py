@@ -29,7 +29,8 @@ def test_a_scene_is_recorded_verified_recovered_and_replayed(tmp_path, name, sce
     assert verify(path).identical
     recover(path, copy)
     assert verify(copy).identical
-    with Recording.open(copy, check=True) as recording:
+    with Recording.open(copy, check=True) as recording, Recording.open(path) as original:
+        assert list(recording.entries()) == list(original.entries())
         assert recording.runs[0].scene == scene
         assert [value for _, value in samples_of(recording)] == samples
         replay = Replay(recording, clock=lambda: 0.0)

@@ -152,6 +152,16 @@ def test_without_its_start_a_run_is_lost(path, out):
     assert [path.name for path in out.parent.iterdir()] == ["a.mcap"]
 
 
+def test_an_interrupted_recovery_leaves_nothing(path, out, monkeypatch):
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Recorder, "close", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        recover(path, out)
+    assert [path.name for path in out.parent.iterdir()] == ["a.mcap"]
+
+
 class Whole:
     """A recording, and what may be read of its damaged copies."""
 

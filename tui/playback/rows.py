@@ -45,18 +45,17 @@ class Ghost:
         self.scene = scene
         self.label = label
         self._window = window
-        failed = ~np.isfinite(rows["high"][:, 0])
-        self._thetas = np.where(failed, math.nan, rows["states"][:, :-1, 0])
-        self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
+        self._thetas = rows["states"][:, :-1, 0]
+        self.widest = float(abs(self._thetas).max(initial=0.0))
         """The largest angle that it comes to [rad]."""
 
     def rods(self, t: float) -> dict[str, float]:
-        """Return the angles [rad] at a time [s] by method key, without failed methods."""
+        """Return the angles [rad] at a time [s] by method key."""
         row = int(np.searchsorted(self._window.x, t + 1e-9, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._window.x[-1] + abs(self.scene.h):
             return {}
-        pairs = zip(self.scene.cast, self._thetas[row].tolist(), strict=True)
-        return {method.key: theta for method, theta in pairs if not math.isnan(theta)}
+        keys = (method.key for method in self.scene.cast)
+        return dict(zip(keys, self._thetas[row].tolist(), strict=True))
 
     def window(self, until: float, seconds: float | None = None) -> Window:
         """Return its errors up to a simulated time [s], of the last `seconds` or all."""

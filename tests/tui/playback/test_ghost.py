@@ -22,6 +22,8 @@ def test_its_pendulums_and_errors_are_where_a_lab_with_its_step_size_would_have_
             assert found.rods(t)[method.key] == pytest.approx(reading.theta, abs=0.7)
     assert found.rods(16.0) == found.rods(-1.0) == {}
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
+    recent = found.window(10.0, seconds=2.0)
+    assert recent.x.min() == pytest.approx(10.0 - 2.0 - recent.repeats, abs=0.1)
     low = found.window(4.0).low["energy_error"][:, 0]
     high = found.window(10.0).high["energy_error"][:, 0]
     assert np.nanmax(high) > np.nanmax(low) > 0
