@@ -94,7 +94,7 @@ class Track:
     energy: "Floats" = field(repr=False)  # s⁻², per unit m·L²
     energy_error: "Floats" = field(repr=False)  # relative
     verdict: str
-    failed_at: float | None  # s
+    diverged_at: float | None  # s
 
 
 class Run(ByMethod[Track]):
@@ -166,7 +166,7 @@ class Judged:
     fluctuation: float | None  # standard deviation about a line, over the scale
     independent: float  # samples
     scale: float  # in the energies' unit
-    failed_at: float | None = None  # the time of the first energy that is nan or infinite
+    diverged_at: float | None = None  # the time of the first energy that is nan or infinite
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
@@ -177,8 +177,8 @@ class Judged:
         verdict = f"{self.verdict}{', and rests now' * self.rests}"
         if self.reason:
             verdict += f": {self.reason}"
-        if self.failed_at is not None:
-            verdict += f": its numbers end at {self.failed_at:g} {time_unit}".rstrip()
+        if self.diverged_at is not None:
+            verdict += f": its numbers end at {self.diverged_at:g} {time_unit}".rstrip()
         lines = [f"verdict       {verdict}"]
         if self.slope is not None and self.uncertainty is not None:
             absolute = f"{self.slope * self.scale:+.2e} ± {self.uncertainty * self.scale:.0e}"
@@ -209,11 +209,11 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
 
     t, e = _series(times, energies)
     finite = int(np.isfinite(e).cumprod().sum())
-    failed_at = None
+    diverged_at = None
     if finite < len(e):
-        failed_at = float(t[finite])
+        diverged_at = float(t[finite])
     e = _finite("energies", e[: max(finite, 1)])
-    judgement = judge_record(t[: len(e)], e, failed=failed_at is not None)
+    judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
     if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
@@ -231,7 +231,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
         fluctuation=scaled.fluctuation,
         independent=judgement.independent,
         scale=size,
-        failed_at=failed_at,
+        diverged_at=diverged_at,
     )
 
 

@@ -351,7 +351,7 @@ class Series:
     kinetic: Any
     number: int = 0  # from 1
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
-    failed_at: float | None = None  # the time of the first energy that is no finite number
+    diverged_at: float | None = None  # the time of the first energy that is no finite number
     units: tuple[str, str] = ("", "")  # of time and energy
 
     @property
@@ -390,7 +390,7 @@ class Series:
         used = np.flatnonzero(left)
         lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
         if len(lost):
-            self.failed_at = float(times[used[lost[0]]])
+            self.diverged_at = float(times[used[lost[0]]])
             self.skipped["energy_not_finite"] = len(used) - int(lost[0])
             used = used[: lost[0]]
         self.times = times[used]

@@ -198,7 +198,7 @@ def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
         "samples": series.rows,
         "first_time": float(series.times[0]),
         "last_time": float(series.times[-1]),
-        "diverged_at": series.failed_at,
+        "diverged_at": series.diverged_at,
         "skipped": series.skipped,
     }
     for name, value in (
@@ -223,8 +223,8 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
         scale = abs(float(series.kinetic.mean()))
     times = series.times
     energies = series.energies
-    if series.failed_at is not None:
-        times = np.append(times, series.failed_at)
+    if series.diverged_at is not None:
+        times = np.append(times, series.diverged_at)
         energies = np.append(energies, np.nan)
     try:
         return library.judge(times, energies, scale)
@@ -243,8 +243,8 @@ def _finish(series: Series, options: argparse.Namespace) -> None:
         )
     if series.rows == 0:
         why = f"no row has a usable time and energy{_skipped(series.skipped)}."
-        if series.failed_at is not None:
-            why += f" Use --from with a later time than {series.failed_at:g}."
+        if series.diverged_at is not None:
+            why += f" Use --from with a later time than {series.diverged_at:g}."
         raise unreadable(why)
 
 

@@ -155,27 +155,27 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
     for end in ends:
         last = "".join(form.format(t=45 + n / 2, e=end) + "\n" for n in range(5))
         (series,) = tables(head + rows(form.replace("}{", "} {")) + last)
-        assert (len(series.times), series.failed_at) == (90, 45.0)
+        assert (len(series.times), series.diverged_at) == (90, 45.0)
 
 
 @pytest.mark.parametrize(
-    ("text", "failed_at", "skipped"),
+    ("text", "diverged_at", "skipped"),
     [
         (rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
         (rows("{t},{e}") + "45.0,\n", None, 1),  # cut while it is written
         (rows("{t},{e}") + "45.0,\n45.5,\n", 45.0, 0),
     ],
 )
-def test_energies_that_are_only_rarer_have_not_failed(text, failed_at, skipped):
+def test_energies_that_are_only_rarer_have_not_failed(text, diverged_at, skipped):
     (series,) = tables(f"t,E\n{text}")
-    assert (len(series.times), series.failed_at) == (90, failed_at)
+    assert (len(series.times), series.diverged_at) == (90, diverged_at)
     assert series.skipped["without_numbers"] == skipped
 
 
 @pytest.mark.parametrize("nan", ["nan", "1.#QNAN"])
 def test_printed_values_after_the_first_nan_are_nan_too(nan):
     (series,) = tables(rows(f"t = {{t}}, E = {nan}") + rows("t = 1{n:02}, E = {e}"), start=40.0)
-    assert series.failed_at == 40.0
+    assert series.diverged_at == 40.0
 
 
 @pytest.mark.parametrize("odd", ["t = 1.2.3, E = 1", "t = -1-2, E = "])
