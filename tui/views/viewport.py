@@ -80,6 +80,9 @@ def amplitude(model: Model, theta: float, omega: float) -> float:
     return high
 
 
+HALF_EVEN = 1.5 * 2**52
+"""Added to a number or an array and taken off again, it rounds half to even: both edges stay."""
+
 MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad from the left to the right edge
 
 
@@ -126,7 +129,7 @@ class Viewport(NamedTuple):
         x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
         if self.wrap:
             turn = math.tau / self.theta_per_dot
-            x = x - turn * (((x - self.columns) / turn + 0.5) // 1)
+            x = x - turn * ((x - self.columns) / turn + HALF_EVEN - HALF_EVEN)
         return x
 
     def y(self, omega: Any) -> Any:
