@@ -1,6 +1,5 @@
 """The reader of energy logs: what is a table, a run, a column, a unit, an energy that ended."""
 
-import bz2
 import gzip
 import io
 import json
@@ -77,6 +76,7 @@ def columns(series: Series) -> str | None:
         ("", "{t} {e}", "column 1, column 2"),
         ("", "{k} {p}", None),
         ("", "{t} {k} {e}", None),
+        ("", '{{"t": {t}, "a": {{"E": {k}}}, "b": {{"E": {e}}}}}', None),
     ],
 )
 def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
@@ -125,14 +125,13 @@ def array(*unnamed: object, **named: object) -> bytes:
         array(np.array([TIMES, ENERGIES]).T),
         array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
         gzip.compress(rows("{t} {e}").encode()),
-        bz2.compress(rows("{t} {e}").encode()),
         lzma.compress(rows("{t} {e}").encode()),
         rows("{t}\t{e}").encode("utf-16"),
         "t;E\n" + rows("{t:};{e:}").replace(".", ","),
         "| t | E |\n|---|---|\n" + rows("| {t} | {e} |"),
         "t,E\n" + rows('"{t}","{e}",'),
         "t E\n" + rows("{t} {e}\nwriting restart\nwrote file {n} at step {s}"),
-        "t,E\n" + rows("{t},{e}") + "45,2 3\n",
+        "t,E\n" + rows("{t},{e}") + "a note\n45,2 3\n",
         "id t E\n" + rows("{n} {t} {e}") + "# 46 5\n",
     ],
 )
@@ -185,8 +184,10 @@ def test_a_print_that_is_not_quite_like_the_others_leaves_them_in_place(odd):
     assert list(series.energies[-179:-91]) == ENERGIES[1:-1]
 
 
-def test_names_that_differ_in_a_digit_are_columns_of_their_own():
-    (series,) = tables(rows("t = {t}\nE1 = {k}\nE2 = {e}"), energy="E2")
+@pytest.mark.parametrize("name", ["E", "E."])
+def test_names_that_differ_in_a_digit_are_columns_of_their_own(name):
+    text = rows(f"t = {{t}}\n{name}1 = {{k}}\n{name}2 = {{e}}")
+    (series,) = tables(text, energy=f"{name}2")
     assert list(series.energies) == ENERGIES
 
 
