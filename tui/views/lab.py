@@ -1,7 +1,7 @@
 """The lab (F2): the stage, charts of errors, phase space, the events, and the table."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.models.model import ExactMotion, Model
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture, ink_of
-from pendu_tui.tui.playback.shown import Quantity, Shown, Stretch
+from pendu_tui.tui.playback.shown import Shown, Stretch
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.phase import PhasePane
@@ -75,29 +75,23 @@ def modified_energy_of(cast: Cast) -> str:
     return f"shadow energy is known for {' and '.join(letters) or 'none'} only"
 
 
-def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
-    charts = {each.name: each.chart for each in model.charted()}
-    chart = charts[quantity]
-    return chart.title, chart.magnitude or chart.title
-
-
 def title(shown: Shown, exact: ExactMotion, model: Model, room: int = 100) -> str:
     """Return what the chart shows; with less `room` [characters], less of it."""
-    name, magnitude = _names(shown.quantity, model)
+    chart = next(each.chart for each in model.charted() if each.name == shown.quantity)
     span = ", all"
     if shown.stretch is not None:
         span = f", {shown.stretch.begin:.5g} to {shown.stretch.end:.5g} s"
     elif shown.seconds is not None:
         span = f", {about(shown.seconds)}"
     if not shown.log:
-        parts = [name, "", span]
+        parts = [chart.title, "", span]
     else:
         cycles = {"libration": " per half swing", "rotation": " per turn"}
         cycle = ""
         if exact.period and shown.stretch is None:
             cycle = cycles.get(exact.regime, "")
         log_time = "log time, " if shown.has_log_time else ""
-        parts = [f"{log_time}max {magnitude}", cycle, span]
+        parts = [f"{log_time}max {chart.magnitude or chart.title}", cycle, span]
     texts = ("".join(parts), "".join(parts[::2]), parts[0])
     return next((text for text in texts if len(text) <= room), parts[0])
 
@@ -241,31 +235,33 @@ def places(columns: int, rows: int) -> dict[str, Region]:
     return regions
 
 
-class CellLayout(Layout):
-    """A layout computed by a function of the size; it hides widgets without a region."""
+class PaneLayout(Layout):
+    """Arranges the lab's panes by their names; those without a place are hidden."""
 
-    name = "cells"
+    name = "panes"
 
-    def __init__(self, regions: Callable[[Size], dict[Widget, Region]]) -> None:
-        self._regions = regions
+    def __init__(self, panes: Mapping[str, Pane]) -> None:
+        self._panes = panes
 
     def arrange(
         self, parent: Widget, children: list[Widget], size: Size, greedy: bool = True
     ) -> ArrangeResult:
+        regions = places(size.width, size.height)
+        self._panes["phase"].can_focus = "phase" in regions  # Tab skips hidden panes
         return [
-            WidgetPlacement(region, NULL_OFFSET, NULL_SPACING, widget)
-            for widget, region in self._regions(size).items()
-            if region and widget in children
+            WidgetPlacement(region, NULL_OFFSET, NULL_SPACING, self._panes[name])
+            for name, region in regions.items()
+            if region
         ]
 
 
 class Arranged(Box):
-    def __init__(self, layout: CellLayout, *panes: Widget) -> None:
-        super().__init__(*panes)
-        self._layout = layout
+    def __init__(self, panes: Mapping[str, Pane]) -> None:
+        super().__init__(*panes.values())
+        self._layout = PaneLayout(panes)
 
     @property
-    def layout(self) -> CellLayout:
+    def layout(self) -> PaneLayout:
         return self._layout
 
 
@@ -281,15 +277,11 @@ class LabView(View):
         }
 
     def compose(self) -> ComposeResult:
-        panes = map(self.with_source, self._named.values())
-        yield Arranged(CellLayout(self._regions), *panes)
+        for pane in self._named.values():
+            self.with_source(pane)
+        yield Arranged(self._named)
         yield self.with_source(ErrorTable())
 
     def zoom(self, factor: float) -> None:
         charts = list(self.query(TimeChart))
         next((each for each in charts if each.pointer is not None), charts[0]).zoom(factor)
-
-    def _regions(self, size: Size) -> dict[Widget, Region]:
-        regions = places(size.width, size.height)
-        self._named["phase"].can_focus = "phase" in regions  # Tab skips hidden panes
-        return {self._named[name]: region for name, region in regions.items()}
