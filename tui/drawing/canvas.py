@@ -245,7 +245,7 @@ class Canvas:
             taken |= sum(owned.values())
             if rank is methods:
                 disputed = shared
-                owned = {ink: cells & ~shared for ink, cells in owned.items()}
+                owned = alone = {ink: cells & ~shared for ink, cells in owned.items()}
             for ink, cells in owned.items():
                 layer = self._layers[ink]
                 dots |= cells & ~shared & _number(layer)
@@ -256,7 +256,7 @@ class Canvas:
         all_dots = bytearray(dots.to_bytes(size, "little"))
         all_colours = bytearray(colours.to_bytes(size, "little"))
         if disputed:
-            self._share(methods, disputed.to_bytes(size, "little"), all_dots, all_colours)
+            self._share(alone, disputed.to_bytes(size, "little"), all_dots, all_colours)
         return all_dots, all_colours
 
     def _turns(self, inks: Sequence[int], free: int) -> tuple[dict[int, int], int]:
@@ -281,7 +281,7 @@ class Canvas:
         return owned, shared
 
     def _share(
-        self, inks: Sequence[int], shared: bytes, dots: bytearray, colours: bytearray
+        self, alone: dict[int, int], shared: bytes, dots: bytearray, colours: bytearray
     ) -> None:
         """Give each shared cell to one of its methods, column by column from the left.
 
@@ -293,9 +293,10 @@ class Canvas:
         look like the steps of one line.
         """
         columns = self.columns
-        layers = {ink: self._layers[ink] for ink in inks}
-        room = {ink: columns - self._columns_of(layer).count(0) for ink, layer in layers.items()}
-        shown = {ink: self._columns_of(colours.translate(_only(ink))) for ink in inks}
+        layers = {ink: self._layers[ink] for ink in alone}
+        in_columns = {ink: self._columns_of(_number(layer)) for ink, layer in layers.items()}
+        room = {ink: columns - each.count(0) for ink, each in in_columns.items()}
+        shown = {ink: self._columns_of(cells) for ink, cells in alone.items()}
 
         def share(ink: int) -> int:
             return STEPS * (columns - shown[ink].count(0)) // room[ink]
@@ -316,9 +317,8 @@ class Canvas:
             if len({*present.values()}) > 1:
                 dots[cell] = _DOTTED[present[ink]]
 
-    def _columns_of(self, cells: bytes | bytearray) -> bytearray:
-        """Return a byte for each column, 0 where all its cells are."""
-        number = _number(cells)
+    def _columns_of(self, number: int) -> bytearray:
+        """Return a byte for each column of a layer, 0 where all its cells are."""
         rows = 1
         while rows < self.rows:  # the first row takes in twice as many below it
             number |= number >> (8 * self.columns * rows)
@@ -345,12 +345,6 @@ def _every(number: int, columns: int, rows: int) -> int:
     """Return a layer of each second or third cell of a row, at other columns in the next ones."""
     turns = ((column + 3 * row // 5) % number for row in range(rows) for column in range(columns))
     return _number(bytes([255 * (not turn) for turn in turns]))
-
-
-@lru_cache(maxsize=256)
-def _only(ink: int) -> bytes:
-    """Return a table that translates colours above NOBODY to 1 where they are this ink."""
-    return bytes([colour + NOBODY == ink for colour in range(256)])
 
 
 @lru_cache(maxsize=256)
