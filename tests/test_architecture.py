@@ -66,7 +66,6 @@ MODEL_MODULES = {model.__module__ for model in MODELS.values()}
 
 
 def asks_which_model(node):
-    """Whether a syntax node compares a model's key, tests its type or imports its module."""
     match node:
         case ast.Compare(left, _, others):
             constants = [part for side in (left, *others) for part in ast.walk(side)]

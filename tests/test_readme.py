@@ -229,6 +229,8 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     record = "run --time 60 --methods ruth,rk4 --record two.mcap"
     assert "Ruth 3  bounded" in run(*pendu, *record.split())
     assert "11 recordings, 11 identical" in run(*pendu, "verify", "two.mcap", "golden")
+    (tmp_path / "tests").mkdir()
+    shutil.copy(ROOT / "tests" / "models.py", tmp_path / "tests")
     claims = shutil.copy(ROOT / "tests" / "engine" / "methods" / "test_claims.py", tmp_path)
     alone = ("-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider")
     told = run("-m", "pytest", *alone, claims, "-k", "ruth_3")

@@ -66,7 +66,6 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path):
 
 
 def is_silent(lab: PtyLab) -> bool:
-    """Whether nothing is sent any more; a cursor that blinks sends something twice a second."""
     end = lab.now + 20
     while lab.now < end:
         if not lab.run(1.4):
