@@ -12,10 +12,9 @@ from tests.tui.command_line import pendu
 from tests.tui.drawn import looks
 from tests.tui.harness import Theatre, lab, player
 
-SIZES = {"80x24": (80, 24), "120x40": (120, 40)}
+SMALL = (80, 24)
+LARGE = (120, 40)
 SECONDS = 12.0
-
-VIEWS = {"lab": [], "phase": ["f3", "5"], "accuracy": ["f4"], "stability": ["f5"]}
 
 
 @pytest.fixture
@@ -37,29 +36,33 @@ async def settled(theatre: Theatre, *keys: str) -> str:
     return looks(theatre.app)
 
 
-@pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize(
+    ("name", "size", "keys"),
+    [
+        ("lab-60x16", SMALLEST, []),
+        ("lab-80x24", SMALL, []),
+        ("lab-120x40", LARGE, []),
+        ("phase-80x24", SMALL, ["f3", "5"]),
+        ("accuracy-120x40", LARGE, ["f4"]),
+        ("stability-80x24", SMALL, ["f5"]),
+    ],
+)
 @pytest.mark.usefixtures("robust_studies")
-async def test_every_view_at_every_size(snapshot, view, size):
-    async with lab(size=SIZES[size]) as theatre:
-        snapshot(f"{view}-{size}.txt", await settled(theatre, *VIEWS[view]))
+async def test_every_view(snapshot, name, size, keys):
+    async with lab(size=size) as theatre:
+        snapshot(f"{name}.txt", await settled(theatre, *keys))
 
 
-@pytest.mark.parametrize("size", SIZES)
-async def test_a_replay_at_every_size(snapshot, size):
-    async with player(resolve("drift"), SIZES[size]) as theatre:
-        snapshot(f"replay-{size}.txt", await settled(theatre, "home", *["right"] * 6))
+async def test_a_replay(snapshot):
+    async with player(resolve("drift"), SMALL) as theatre:
+        snapshot("replay-80x24.txt", await settled(theatre, "home", *["right"] * 6))
 
 
-async def test_the_lab_on_the_smallest_screen_in_ascii_and_without_colours(snapshot, monkeypatch):
-    async with lab(size=SMALLEST) as theatre:
-        snapshot("lab-60x16.txt", await settled(theatre))
-    async with lab(size=SIZES["80x24"]) as theatre:
+async def test_the_lab_in_ascii_without_colours(snapshot, monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with lab(size=SMALL) as theatre:
         theatre.app.action_use_pixels("ascii")
         snapshot("lab-ascii.txt", await settled(theatre))
-    monkeypatch.setenv("NO_COLOR", "1")
-    async with lab(size=SIZES["80x24"]) as theatre:
-        snapshot("lab-no-color.txt", await settled(theatre))
 
 
 def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_length(
