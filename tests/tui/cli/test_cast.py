@@ -38,9 +38,7 @@ def cast_from(*arguments: str) -> Cast:
 @pytest.mark.parametrize(
     ("text", "keys"),
     [
-        ("rk4,explicit_euler", "rk4 explicit_euler"),
         ("s,vel,explicit_e", "symplectic_euler velocity_verlet explicit_euler"),
-        ("velocity, rk4", "velocity_verlet rk4"),
         ("Leapfrog,symplectic-euler", "velocity_verlet symplectic_euler"),
         ("stormer verlet,RK2", "velocity_verlet heun"),
         ("yoshida,implicit euler", "yoshida_6 backward_euler"),

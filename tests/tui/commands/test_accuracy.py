@@ -57,8 +57,7 @@ def test_a_target_that_no_method_reaches_is_reported():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--h-values", "0.2:0.1:1001"], ["not a list"]),
-        (["--h-values", "0.1"], ["not a list of step sizes", "0.2:0.001:10"]),
+        (["--h-values", "0.2:0.1:1001"], ["not a list of step sizes", "0.2:0.001:10"]),
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
         (["--time", "1e9"], ["take hours"]),
         (["--methods", "taylor_20"], ["--cost seconds"]),

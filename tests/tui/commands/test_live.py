@@ -6,6 +6,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.files import DiskError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.commands.lab import lesson_of
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.launch import say_goodbye
 from tests.tui.command_line import pendu
@@ -34,6 +35,16 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert path.read_bytes() == b"precious"
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
     assert pendu("live", "--plain").refused(5, str(path))
+
+
+def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(tmp_path):
+    plain = tmp_path / "plain.toml"
+    plain.write_text("theta = 1\n", encoding="utf-8")
+    asking = tmp_path / "asking.toml"
+    shot = "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\n"
+    asking.write_text(shot, encoding="utf-8")
+    assert lesson_of(plain) is None
+    assert lesson_of(asking).page.shot.question == "Why?"
 
 
 def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys):
