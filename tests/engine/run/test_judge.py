@@ -305,7 +305,7 @@ def test_rk4s_error_passes_verlets_once_for_good() -> None:
 
 
 def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
-    lockstep = moved(Scene(model="linear", h=1.0), [2000])
+    lockstep = moved(Scene(model="linear", h=1.0), [600])
     failed = {each.method: each.t for each in milestones(lockstep, "failed")}
     readings = lockstep.sample().readings
     ends = {m: r.diverged_at for m, r in zip(USUAL_CAST, readings, strict=True) if r.diverged_at}

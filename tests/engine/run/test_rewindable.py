@@ -35,7 +35,7 @@ def move(course, n):
         course.forward(n)
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(st.lists(st.integers(-1500, 2500), min_size=1, max_size=6), H_VALUES)
 def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
     course = RewindableRun(DEFAULT_SCENE, 1)
