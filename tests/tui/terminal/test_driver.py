@@ -1,5 +1,3 @@
-"""What passes between Textual and the terminal."""
-
 import io
 from types import SimpleNamespace
 

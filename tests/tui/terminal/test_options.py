@@ -1,5 +1,3 @@
-"""What the lab takes from the command line, and what from the terminal."""
-
 import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
