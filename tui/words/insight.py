@@ -187,7 +187,7 @@ def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
         names = f"{', '.join(others)} and {last} stay"
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
     since = about(min(found.values()) * period)
-    return Insight(BOUNDED, f"{names} bounded; no trend over {since}.", tuple(found))
+    return Insight(BOUNDED, f"{names} bounded over {since}.", tuple(found))
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
