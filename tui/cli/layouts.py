@@ -174,8 +174,6 @@ ROLES = (
 )
 """Roles of columns and their names as `key` writes them; the best comes first."""
 
-_ROLES = [(role, re.compile(names)) for role, names in ROLES]
-
 
 def key(name: str) -> str:
     """Return a name without its unit, in letters, digits and + alone, to compare it."""
@@ -187,10 +185,10 @@ def key(name: str) -> str:
 def role(name: str) -> tuple[str, int]:
     """Return the role of a column by its name, "" for none, and its rank."""
     keys = [key(split_unit(name)[0]), key(name)]
-    for rank, (each, names) in enumerate(_ROLES):
-        if any(map(names.fullmatch, keys)):
+    for rank, (each, names) in enumerate(ROLES):
+        if any(re.fullmatch(names, name) for name in keys):
             return each, rank
-    return "", len(_ROLES)
+    return "", len(ROLES)
 
 
 def is_energy(name: str) -> bool:

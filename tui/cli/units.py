@@ -1,6 +1,7 @@
 """Units of time and energy: how heads of tables write them, and their sizes."""
 
 import re
+from functools import lru_cache
 
 NANOSECONDS = {
     "fs": 1e-6,
@@ -46,6 +47,7 @@ _SUFFIX = re.compile(r"(.+?)[\s_/]((?:kJ|kcal)/mol\w*|[^\s_/]{2,}|[sJ])", re.IGN
 _TIME_NAME = re.compile(r"(?:.*[^a-z])?t|.*time", re.IGNORECASE)
 
 
+@lru_cache(4096)
 def shown(kind: str, unit: str) -> str:
     """Return the usual name of a unit of this kind; one that is not known as it is."""
     for pattern, name in _OTHER_NAMES[kind]:
