@@ -1,6 +1,6 @@
-"""Methods for friction: where in a step it acts decides the order and how area shrinks.
+"""Methods that take the parts of one model: friction, a stiff spring, two levels, derivatives.
 
-They take the pendulum's force and its friction, gamma [s⁻¹], separately.
+Where in a step friction acts decides the order and how area shrinks.
 """
 
 import math

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import TAYLOR_20, USUAL_CAST, Method, method_of
 from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.loops import PlainLoops, available, compiled, count_evaluations
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import (
     Flaws,
@@ -211,3 +211,10 @@ def test_a_series_counts_seconds_and_no_evaluations():
     found = front(lines, "theta", "seconds")
     assert {one.method for one in found} == {R, TAYLOR_20}
     assert {one.saves for one in found if one.method is TAYLOR_20} == {None}
+
+
+def test_evaluations_that_vary_are_those_of_2000_steps_extrapolated():
+    method = method_of("backward_euler")
+    point = Study(DRIFT, 10.0, LOOPS).run(method, 4000)
+    counted = count_evaluations(method, DRIFT.equations, (1.0, 0.0), point.h, 4000)
+    assert point.force_evaluations == pytest.approx(counted, rel=0.02)

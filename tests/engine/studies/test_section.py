@@ -138,11 +138,6 @@ def test_the_nearest_fraction_is_a_small_one():
     assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0"]
 
 
-def test_the_lyapunov_number_is_chirikovs_per_step():
-    found = kind(VERLET, 1.0, math.sqrt(20), omega=0.3)  # K = 20
-    assert found.lyapunov == pytest.approx(math.log(10), rel=0.05)
-
-
 @pytest.mark.parametrize(("change", "is_known"), [(5e-5, True), (2e-4, False)])
 def test_a_rotation_that_changes_by_more_than_a_ten_thousandth_is_none(change, is_known):
     turns = np.repeat([0.13 * (1 + change), 0.13], 1000)
