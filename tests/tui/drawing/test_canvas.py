@@ -114,6 +114,22 @@ def test_flat_lines_in_a_row_of_cells_keep_their_heights_and_never_meet(heights,
     assert [ink for _, ink in picture.rows[0]] == [place % len(heights) for place in range(6)]
 
 
+def test_trails_in_one_place_have_as_many_cells_each():
+    canvas = Canvas(6, 1)
+    for ink in range(3):
+        canvas.line(0, 1.5, 12, 1.5, faint(ink))
+    owners = sorted(ink for _, ink in cells(canvas.picture()).values())
+    assert owners == [faint(0)] * 2 + [faint(1)] * 2 + [faint(2)] * 2
+
+
+def test_a_letter_stands_where_no_other_method_is():
+    canvas = Canvas(3, 1)
+    canvas.points([(0, 0)], 1)
+    canvas.points([(2, 0)], 0)
+    canvas.label_near([(0, 0), (1, 0), (2, 0)], "e", 0)
+    assert canvas.picture().text == "⠁e"
+
+
 def test_of_other_inks_the_one_drawn_first_lies_below():
     canvas = Canvas(2, 1)
     canvas.points([(0, 0), (2, 0)], FRAME)

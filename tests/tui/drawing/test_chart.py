@@ -19,7 +19,6 @@ from tests.tui.drawn import cells, inks, size
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)
 TIMES = np.arange(0.05, 20.0, 0.05)
-ROOM = 4  # columns for letters
 
 
 def window(x, low, high=None, repeats=0.0, turned=False):
