@@ -6,7 +6,7 @@ import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.studies.accuracy import Study, front, ladder
+from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series
@@ -37,7 +37,7 @@ async def complete(pilot, pane: AccuracyPane) -> None:
 
 @pytest.mark.parametrize(("kind", "orders"), [("energy", {1, 2, 5}), ("theta", {1, 2, 4})])
 def test_the_guides_have_the_measured_orders_of_the_error_on_the_chart(kind, orders):
-    points = [*Study(SCENES["drift"], 5.0).points(RUNGS)]
+    points = [*measured(SCENES["drift"], 5.0, RUNGS)]
     series = accuracy_series(points, kind, "evaluations", USUAL_CAST)
     assert {one.mark for one in series if one.dotted} == {f"slope {order}" for order in orders}
 
@@ -54,7 +54,7 @@ async def accuracy_view(scene=SCENES["drift"], size=(80, 30)):
 @pytest.mark.other_process
 async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
     async with accuracy_view() as (_, pane, _live):
-        for point in Study(SCENES["drift"], 5.0).points(RUNGS):
+        for point in measured(SCENES["drift"], 5.0, RUNGS):
             shown = pane.points[point.method.key, point.steps]
             assert shown.error("theta") == point.error("theta")
             assert shown.error("energy") == point.error("energy")
