@@ -1,5 +1,3 @@
-"""`serve`, by the websocket that a browser would open."""
-
 import asyncio
 import contextlib
 import os

@@ -10,7 +10,7 @@ from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.screens.dialogs import Choices
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
-from tests.tui.harness import Theatre, lab
+from tests.tui.harness import Theatre, lab, until
 
 SIZE = (100, 30)
 
@@ -76,6 +76,7 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
         await theatre.press("e", "1", "-")
         await do("scene file")
+        await until(theatre.pilot, (tmp_path / "scene.toml").exists)
         (scene,) = read_scenes(tmp_path / "scene.toml").values()
         assert (scene.h, scene.cast) == (0.1, SCENES["crossover"].cast)
         front = [scene.cast[place].key for place in theatre.stage.shown.places(scene.cast)]

@@ -1,5 +1,3 @@
-"""No signal, and no closed terminal, leaves a lab that hangs."""
-
 import random
 import signal
 from collections import Counter
