@@ -1,5 +1,3 @@
-"""`doctor` reports whatever it finds, and names what to do about it."""
-
 import pytest
 
 from tests.tui.command_line import pendu

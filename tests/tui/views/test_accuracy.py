@@ -81,7 +81,7 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         await complete(pilot, pane)
         assert "O" in pane.text
         await pilot.press("enter")
-        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
+        await until(pilot, lambda: live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0]))
         assert (live.sample.run, pane.cursor) == (1, None)  # the run goes on
         live.start(SCENES["large-swing"])
         await until(pilot, lambda: not before.items() & pane.points.items())
