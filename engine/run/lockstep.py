@@ -9,7 +9,7 @@ from pendu_tui.engine.models.model import NO_EXTRA
 from pendu_tui.engine.run.judge import Judges, LookPoint, stride
 from pendu_tui.engine.run.loops import Advance, Advanced, LoopsOf, PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import Judgement, Milestone
+from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
 from pendu_tui.engine.scenes import Scene
 
 
@@ -189,7 +189,7 @@ class Lockstep:
                 if self._judges:
                     self._judges.fail(index, begin + done)
                     step = self.step + math.ceil((done + 1) / track.parts)
-                    self._judges.note("failed", index, step, track.diverged_at, track.error)
+                    self._judges.note(FAILED, index, step, track.diverged_at, track.error)
         self.step += n
 
     def _walk(self, track: _Track, h: float, begin: int, n: int) -> int:

@@ -87,8 +87,8 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     steps = len(theta) - 1
     start = (float(theta[0]), float(omega[0]))
     moves = bool(np.ptp(theta) or np.ptp(omega))
-    lap = np.floor(theta / math.tau + 0.5)
-    spins = model.turns and bool(np.ptp(lap))
+    lap = model.turns * np.floor(theta / math.tau + 0.5)
+    spins = bool(np.ptp(lap))
     neighbours = Stretching(method, model, h)
     for at in range(0, steps - _CHUNK + 1, _CHUNK):
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
@@ -102,7 +102,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     fraction = None
     island = False
     if moves and not chaotic:
-        rotation = rotation_number(theta, omega, model.w0, spins)
+        rotation = rotation_number(theta - math.tau * lap[0], omega, model.w0, spins)
     if rotation is not None:
         fraction = nearest_fraction(abs(rotation))
         island = _is_island(points, model.w0, rotation, fraction, spins)
@@ -137,7 +137,7 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
     if spins:
         turns = np.diff(theta) / math.tau
     else:
-        angle = np.arctan2(-omega / w0, np.remainder(theta + math.pi, math.tau) - math.pi)
+        angle = np.arctan2(-omega / w0, theta)
         turns = np.diff(angle) / math.tau % 1  # a swing goes round clockwise
     half = len(turns) // 2
     if half < 2:

@@ -146,3 +146,10 @@ def test_a_rotation_that_changes_by_more_than_a_ten_thousandth_is_none(change, i
     assert (found is not None) == is_known
     if is_known:
         assert found == pytest.approx(0.13, rel=change)
+
+
+def test_an_oscillator_has_its_rotation_at_any_width():
+    model = LinearOscillator(1.0)
+    found = kind_of(VERLET, model, 0.3, orbit(VERLET, model, 0.3, (10.0, 0.0), 2000))
+    assert found.rotation == pytest.approx(math.acos(1 - 0.3**2 / 2) / math.tau, rel=1e-9)
+    assert not found.spins
