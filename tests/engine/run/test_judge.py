@@ -112,11 +112,14 @@ def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict() -> None:
 @pytest.mark.parametrize("h", [0.02, 0.1, -0.05])
 def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h: float) -> None:
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
+    judged = set()
     for steps in (5, 13, 29, 47):
         lockstep = moved(SCENES["large-swing"], [steps])
         lockstep.set_stepping(Stepping(h))
         lockstep.advance(round(120 / abs(h)))
         assert words(lockstep) == BELOW_THE_LIMITS
+        judged.add(lockstep.judgements[1].periods)
+    assert len(judged) == 1  # each from the change on
 
 
 @pytest.mark.parametrize(
