@@ -241,7 +241,7 @@ def measure(step: "Phases") -> "Measured":
     `step(force, phase, h)` is a generator function that yields the phase (q, p) after one step of
     h, after two, and so on; q'' = force(q).
     """
-    from pendu_tui.engine.methods.examine import measured_function
+    from pendu_tui.engine.methods.measure import measured_function
     from pendu_tui.engine.methods.own import OwnMethodError
 
     if not callable(step):

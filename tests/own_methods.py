@@ -1,4 +1,4 @@
-from pendu_tui.engine.methods.examine import measured_text
+from pendu_tui.engine.methods.measure import measured_text
 from pendu_tui.engine.methods.own import OwnMethod, own_method
 
 

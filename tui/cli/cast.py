@@ -118,7 +118,7 @@ def _tried(source: str, key: str, file: str) -> "Measured":
 
 def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
-    from pendu_tui.engine.methods.examine import measured_text  # NumPy
+    from pendu_tui.engine.methods.measure import measured_text  # NumPy
     from pendu_tui.tui.cli.watchdog import watchdog
 
     def tell(sentence: str) -> None:

@@ -345,7 +345,7 @@ def _chart(fields: Mapping[str, Any], rows_below: int) -> "list[Text]":
     """Return the lines of a chart of the energy, which leave room for what is printed below."""
     from pendu_tui.tui.drawing.picture import PALETTES
     from pendu_tui.tui.drawing.picture import lines_of as drawn
-    from pendu_tui.tui.drawing.record_chart import record_chart
+    from pendu_tui.tui.drawing.plotted import record_chart
 
     series = fields["series"]
     judged = fields["judged"]

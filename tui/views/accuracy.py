@@ -22,8 +22,8 @@ from pendu_tui.engine.studies.accuracy import (
     usual,
     with_all_methods,
 )
-from pendu_tui.tui.drawing.loglog import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from pendu_tui.tui.drawing.picture import FRAME, Picture, ink_of
+from pendu_tui.tui.drawing.plotted import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Chooser, Memo, StepSizeChosen, StudyView
 from pendu_tui.tui.words.studies import COSTS, front_words, point_words

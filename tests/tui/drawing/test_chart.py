@@ -9,8 +9,8 @@ from hypothesis.extra.numpy import arrays
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
-from pendu_tui.tui.drawing.loglog import Series, loglog_chart
 from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, TEXT
+from pendu_tui.tui.drawing.plotted import Series, loglog_chart
 from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pendu_tui.tui.drawing.record_chart import ENERGY, TREND, record_chart
+from pendu_tui.tui.drawing.plotted import ENERGY, TREND, record_chart
 
 TIMES = np.linspace(0, 50, 4000)
 ERRORS = 1e-3 * np.sin(7 * TIMES) + 1e-4 * TIMES
