@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from pendu_tui.engine.methods.measure import Measured
-    from pendu_tui.engine.methods.method import Phases
+    from pendu_tui.engine.methods.method import Measured, Phases
     from pendu_tui.engine.run.record import Order
     from pendu_tui.engine.studies.accuracy import ErrorKind
     from pendu_tui.engine.studies.recommend import Attempt

@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from pendu_tui.engine.library import Judged
-    from pendu_tui.engine.methods.measure import Measured
-    from pendu_tui.engine.methods.method import Phases
+    from pendu_tui.engine.methods.method import Measured, Phases
     from pendu_tui.engine.run.record import Order
 
 ORDER_TOLERANCE = 0.1  # errors are measured at finite steps: an order of 6 reads 5.91
@@ -133,7 +132,7 @@ class MethodProperties:
         """
         __tracebackhide__ = True
         from pendu_tui.engine import measure
-        from pendu_tui.engine.methods.measure import no_order
+        from pendu_tui.engine.methods.method import no_order
 
         try:
             found = measure(step)

@@ -10,11 +10,11 @@ from functools import partial
 from itertools import islice
 from operator import neg
 from statistics import linear_regression
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
-from pendu_tui.engine.methods.method import Phases
+from pendu_tui.engine.methods.method import SMALL_ERROR, Measured, Phases
 from pendu_tui.engine.methods.own import OwnMethodError, guarded, on_force, own_function
 from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models.model import Force, Phase
@@ -26,47 +26,7 @@ LARGE_H = 0.2  # s; with small steps a high order hides a change of area, or a m
 WIDEST_Z = 16  # of the search for a limit
 RUNGS = 2048  # in each 1 of z: they are two thirds of the narrowest gap apart, BM6's
 NO_LIMIT_BELOW = 0.1  # z, below which some unstable methods grow by less than rounding
-SMALL_ERROR = 0.1  # rad; larger ones are not yet proportional to a power of h
-LOWEST_ORDER = 0.5  # half-way between an error that falls like h and one that stays
 LINEAR_ROUNDING = 3e-13  # of a linear step; the limit moves by up to a thousand times as much
-
-
-class Measured(NamedTuple):
-    """The measured properties of a method."""
-
-    order: float | None  # the slope of log error over log h; None: no error is ever small
-    force_evaluations: float  # a step, on average over many
-    more_at_the_start: int  # force evaluations
-    symplectic: bool
-    reversible: bool
-    linear_limit: float  # z; 0: none; inf: none found up to WIDEST_Z
-
-    def __str__(self) -> str:
-        stable = f"up to z = h·w0 = {self.linear_limit:.4g}"
-        if self.linear_limit in (0.0, math.inf):
-            stable = "at any h" if self.linear_limit else "at no h"
-        lines = (
-            f"order             {no_order(self.order) or f'{self.order:.3f}'}",
-            f"force evaluations {self.force_evaluations:.3g} per step",
-            f"symplectic        {yes(self.symplectic)}",
-            f"reversible        {yes(self.reversible)}",
-            f"stable            {stable} (small swings)",
-        )
-        return "\n".join(lines)
-
-
-def no_order(order: float | None) -> str:
-    """Return why a method has no order, a clause; "" if it has one."""
-    if order is None:
-        return f"no order: its error stays above {SMALL_ERROR:g} rad, it solves another equation"
-    if order < LOWEST_ORDER:
-        return f"order {order:.3f}: the error does not fall with h, it solves another equation"
-    return ""
-
-
-def yes(value: bool) -> str:
-    """Return a property as a word."""
-    return "yes" if value else "no"
 
 
 def measured(phases: Phases) -> Measured:

@@ -1,10 +1,10 @@
-"""A method and its claims."""
+"""A method, its claims, and what is measured of one."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from pendu_tui.engine.models.model import Model, Offer, Phase, Sine
 
@@ -123,3 +123,45 @@ class Method:
     def evaluations(self, steps: int) -> int:
         """Return how often a run of so many steps evaluates the force, or about that."""
         return steps * self.force_evaluations + int(self.first_same_as_last)
+
+
+SMALL_ERROR = 0.1  # rad; larger ones are not yet proportional to a power of h
+LOWEST_ORDER = 0.5  # half-way between an error that falls like h and one that stays
+
+
+class Measured(NamedTuple):
+    """The measured properties of a method."""
+
+    order: float | None  # the slope of log error over log h; None: no error is ever small
+    force_evaluations: float  # a step, on average over many
+    more_at_the_start: int  # force evaluations
+    symplectic: bool
+    reversible: bool
+    linear_limit: float  # z; 0: none; inf: none found up to 16
+
+    def __str__(self) -> str:
+        stable = f"up to z = h·w0 = {self.linear_limit:.4g}"
+        if self.linear_limit in (0.0, math.inf):
+            stable = "at any h" if self.linear_limit else "at no h"
+        lines = (
+            f"order             {no_order(self.order) or f'{self.order:.3f}'}",
+            f"force evaluations {self.force_evaluations:.3g} per step",
+            f"symplectic        {yes(self.symplectic)}",
+            f"reversible        {yes(self.reversible)}",
+            f"stable            {stable} (small swings)",
+        )
+        return "\n".join(lines)
+
+
+def no_order(order: float | None) -> str:
+    """Return why a method has no order, a clause; "" if it has one."""
+    if order is None:
+        return f"no order: its error stays above {SMALL_ERROR:g} rad, it solves another equation"
+    if order < LOWEST_ORDER:
+        return f"order {order:.3f}: the error does not fall with h, it solves another equation"
+    return ""
+
+
+def yes(value: bool) -> str:
+    """Return a property as a word."""
+    return "yes" if value else "no"

@@ -13,13 +13,10 @@ from dataclasses import dataclass
 from functools import cache, wraps
 from inspect import CO_GENERATOR, unwrap
 from traceback import format_exception_only, walk_tb
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from pendu_tui.engine.methods.method import Method, Phases
+from pendu_tui.engine.methods.method import Measured, Method, Phases
 from pendu_tui.engine.models.model import Force, Offer, Phase
-
-if TYPE_CHECKING:  # it brings NumPy
-    from pendu_tui.engine.methods.measure import Measured
 
 MAX_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
 MAX_TIME = 3.0  # s, for a step
@@ -68,7 +65,7 @@ USER_CODE = _UserCode()
 class OwnMethod(Method):
     """A user's method.  Its fields are measured."""
 
-    measured: "Measured"
+    measured: Measured
     source: str  # the text of the file
     file: str  # its name
 
@@ -85,7 +82,7 @@ class OwnMethod(Method):
 
 
 @cache
-def own_method(source: str, key: str, letter: str, file: str, measured: "Measured") -> OwnMethod:
+def own_method(source: str, key: str, letter: str, file: str, measured: Measured) -> OwnMethod:
     """Return the method of a measured text, the same for equal texts."""
     function = own_function(source, key, file)
     others: dict[Offer, Phases] = {}

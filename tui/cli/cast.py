@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, all_named
+from pendu_tui.engine.methods.method import Measured
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
@@ -17,8 +18,6 @@ from pendu_tui.tui.cli.options import given_by
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
-
-    from pendu_tui.engine.methods.measure import Measured  # NumPy
 
 MAX_SECONDS = 10.0  # to measure a method; 0.2 s is typical
 
@@ -92,7 +91,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     return own_method(source, key, letter, path, _tried(source, key, path))
 
 
-def _tried(source: str, key: str, file: str) -> "Measured":
+def _tried(source: str, key: str, file: str) -> Measured:
     """Return the properties of a user's method, which is tried in another process.
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.

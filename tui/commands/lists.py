@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from pendu_tui.engine.methods import METHODS, Cast, Method, family_of, simplified
+from pendu_tui.engine.methods.method import no_order, yes
 from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES
 from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, Gate, conclude, parse
@@ -32,7 +33,6 @@ Row = dict[str, Any]
 
 
 def methods(options: argparse.Namespace) -> int:
-    from pendu_tui.engine.methods.measure import no_order, yes
     from pendu_tui.engine.run.loops import available
 
     if options.names:
@@ -89,8 +89,6 @@ def _failure(gate: Gate, row: Row, wrong: Mapping[str, str]) -> str:
 
 def _gated(row: Row) -> Row:
     """Return the measured properties as --fail-if compares them."""
-    from pendu_tui.engine.methods.measure import yes
-
     values = {name: row[f"measured_{name}"] for name in (*MEASURED_NUMBERS, *MEASURED_WORDS)}
     for name in MEASURED_WORDS:
         if values[name] is not None:

@@ -22,6 +22,7 @@ from pendu_tui.engine.methods import (
     measure,
 )
 from pendu_tui.engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
+from pendu_tui.engine.methods.method import no_order
 from pendu_tui.engine.methods.runge_kutta import EXPLICIT_EULER, EXPLICIT_MIDPOINT, HEUN
 from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models import Pendulum
@@ -129,8 +130,8 @@ def stepping(first, second):
 def test_a_method_of_another_equation_has_no_order(coefficients, why):
     order = measure.order(stepping(*coefficients))
     assert order is None or abs(order) < 0.1
-    assert why in measure.no_order(order)
-    assert [bool(measure.no_order(order)) for order in (0.4, 0.6)] == [True, False]
+    assert why in no_order(order)
+    assert [bool(no_order(order)) for order in (0.4, 0.6)] == [True, False]
 
 
 @pytest.mark.parametrize(("parts", "limit"), [(7, 14), (8.1, math.inf)])
