@@ -184,8 +184,8 @@ class Pane(CellWidget):
             self.post_message(SceneChosen(scene))
 
     def words(self, *texts: str) -> list[Row]:
-        width = max(self.room.width - 2, 1)
-        return [[(f" {line}", TEXT)] for text in texts for line in wrap(text, width)]
+        width = max(self.room.width, 1)
+        return [[(line, TEXT)] for text in texts for line in wrap(text, width)]
 
     # Computing in another process
 
