@@ -64,13 +64,13 @@ class Portrait:
         theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
         levels = model.level(theta, omega, np.cos)
-        separatrix = _dots(_border((levels < 0) & model.has_separatrix, heavy=True))
+        separatrix = _dots(_border((levels < 0) & model.has_separatrix))
         words = axes(viewport)
         if model.has_separatrix:
             words += _names(viewport, model.w0)
         ground = Canvas(viewport.columns, viewport.rows)
         ground.scatter(*_dots(_border(_bands(levels))), FRAME)
-        ground.scatter(*separatrix, TEXT)
+        ground.scatter(*separatrix, QUIET)
         return cls(viewport, model, levels, separatrix, ground, words)
 
     def orbit(self, theta: float, omega: float) -> Dots:
@@ -112,7 +112,7 @@ def phase_picture(
         for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
             y = float(viewport.y(omega))
             canvas.line(0, y, canvas.width, y, EXACT, dotted=True)
-            canvas.label(1, int(y) // 4, name, EXACT)
+            canvas.label(0, int(y) // 4, f" {name} ", EXACT)
     if crosshair is not None:
         draw_crosshair(canvas, viewport, crosshair)
     if orbit is not None:
@@ -297,19 +297,20 @@ def _names(viewport: Viewport, w0: float) -> list[Word]:
     spin = (crest + max(viewport.omega_at(0.0), crest)) / 2
     slope = math.pi / 2  # rad
     places = (
-        (" libration ", 0.0, 0.0, QUIET),
-        (" rotation ", 0.0, spin, QUIET),
-        (" rotation ", 0.0, -spin, QUIET),
-        ("separatrix", slope, crest * math.cos(slope / 2), TEXT),
+        (" libration ", 0.0, 0.0),
+        (" rotation ", 0.0, spin),
+        (" rotation ", 0.0, -spin),
+        (" separatrix ", slope, crest * math.cos(slope / 2)),
     )
     words: list[Word] = []
-    for text, theta, omega, ink in places:
+    for text, theta, omega in places:
         column = int(viewport.x(theta)) // 2 - len(text) // 2
         row = int(viewport.y(omega)) // 4
         if theta:
-            column = int(viewport.x(theta)) // 2 + 2
-        if 0 < column <= viewport.columns - len(text) and 0 <= row < viewport.rows - 1:
-            words.append((column, row, text, ink))
+            column = int(viewport.x(theta)) // 2 + 1
+        room = viewport.columns - column
+        if column > 0 and len(text.rstrip()) <= room and 0 <= row < viewport.rows - 1:
+            words.append((column, row, text[:room], QUIET))
     return words
 
 
@@ -321,16 +322,11 @@ def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.floor(spacing / step).astype(np.int64)
 
 
-def _border(values: NDArray[Any], heavy: bool = False) -> Mask:
-    """Return dots that differ from the one to the right or below; `heavy` doubles them."""
+def _border(values: NDArray[Any]) -> Mask:
+    """Return dots that differ from the one to the right or below."""
     border = np.zeros(values.shape, np.bool_)
-    right = values[:, 1:] != values[:, :-1]
-    below = values[1:] != values[:-1]
-    border[:, :-1] |= right
-    border[:-1] |= below
-    if heavy:
-        border[:, 1:] |= right
-        border[1:] |= below
+    border[:, :-1] |= values[:, 1:] != values[:, :-1]
+    border[:-1] |= values[1:] != values[:-1]
     return border
 
 

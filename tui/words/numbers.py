@@ -37,17 +37,15 @@ def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
-    """Write an angle [rad]; beyond a turn as turns and, if it fits, the rest: "-5 turns +0.89"."""
-    in_radians = decimal(theta, width, max(decimals, 1))
-    if not math.tau < abs(theta) < math.inf:
-        return in_radians
+    """Write an angle [rad]; beyond a turn, where 14 fit, as turns and a rest: "-5 turns +0.89"."""
+    if width < 14 or not math.tau < abs(theta) < math.inf:
+        return decimal(theta, width, max(decimals, 1))
     turns = round(theta / math.tau)
-    text = f"{turns:+d} turns"
+    text = f"{decimal(turns, width - 6, 0).strip()} turns"
     if abs(turns) == 1:
         text = f"{turns:+d} turn"
     whole = f"{text} {theta - turns * math.tau:+.2f}"
-    fitting = (each.rjust(width) for each in (whole, text) if len(each) <= width)
-    return next(fitting, in_radians)
+    return min(whole, text, key=lambda each: len(each) > width).rjust(width)
 
 
 def start(theta: float, omega: float) -> str:

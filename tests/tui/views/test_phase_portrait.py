@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.drawing.frame import in_pi, number_ticks, theta_ticks
+from pendu_tui.tui.drawing.picture import FRAME, QUIET
 from pendu_tui.tui.views.portrait import Portrait
 from pendu_tui.tui.views.viewport import Viewport
+from tests.tui.drawn import inks
 
 DRIFT = SCENES["drift"]
 MODEL = DRIFT.equations
@@ -22,6 +24,10 @@ def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span)
     viewport = viewport.zoomed(span / viewport.theta_span, 47, 34)
     portrait = Portrait.of(viewport, MODEL)
     assert len(portrait.separatrix[0])
+    # methods stand out
+    assert inks(portrait.ground.picture()) <= {FRAME, QUIET}
+    dots = {*zip(*portrait.separatrix, strict=True)}
+    assert not any({(x + 1, y), (x, y + 1), (x + 1, y + 1)} <= dots for x, y in dots)
     for x, y in zip(*portrait.separatrix, strict=True):
         around = [(x + i + 0.5, y + j + 0.5) for i in (-1, 0, 1) for j in (-1, 0, 1)]
         values = [MODEL.level(viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
@@ -35,7 +41,7 @@ def test_the_three_regimes_are_named_where_they_are(scene, size):
     words = Portrait.of(viewport, scene.equations).words
     names = sorted(text.strip() for _, _, text, _ in words if "ti" in text)
     assert names == ["libration", "rotation", "rotation"]  # one for each sense
-    assert [text for _, _, text, _ in words].count("separatrix") == 1
+    assert [text.rstrip() for _, _, text, _ in words].count(" separatrix") == 1
     for column, row, text, _ in words:
         if "ti" in text:
             for at in range(column, column + len(text)):
