@@ -8,20 +8,13 @@ import pytest
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.picture import EXACT, FAINT
-from pendu_tui.tui.views.portrait import (
-    SPARSE,
-    PhasePoint,
-    Portrait,
-    phase_picture,
-)
+from pendu_tui.tui.views.portrait import SPARSE, PhasePoint, Portrait, phase_picture
 from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import cells, places
 
 DRIFT = SCENES["drift"]
 SMALL = Viewport.portrait(46, 15, DRIFT)
 PORTRAIT = Portrait.of(SMALL, DRIFT.equations)
-
-
 PLAIN = phase_picture(PORTRAIT, [])
 
 

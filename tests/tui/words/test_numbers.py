@@ -55,10 +55,8 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (decimal(-1e150, 8), " -1e+150"),
         (scientific(1.5e-300, 5), "#####"),  # not cut to a wrong one
         (angle(-30.52848, 14, 5), "-5 turns +0.89"),
-        (angle(-30.52848, 6, 3), "-30.53"),
         (angle(-30.52848, 11, 3), "    -30.528"),  # one unit in a narrow column
         (angle(-89198.063, 16, 5), "    -14196 turns"),
-        (angle(1e300, 16, 5), " +1.6e+299 turns"),
         (angle(3.0, 11, 5), "   +3.00000"),
         (angle(math.nan, 6, 3), "     -"),
         (seconds(0), "0.00 s"),
