@@ -110,8 +110,8 @@ def loglog_chart(
             column, row = cells[-1]
             rows = [at for at in (row, row - 1, row + 1) if 1 <= at <= axes.rows]
             near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
-            if not canvas.label_where_blank(near, one.mark, one.ink):
-                canvas.label(column, row, one.mark, one.ink)
+            if not canvas.label_where_blank(near, f" {one.mark}", QUIET):
+                canvas.label(column, row, one.mark, QUIET)
     return canvas.picture()
 
 

@@ -114,7 +114,7 @@ def test_speed_against_accuracy():
         " 1e-8┤              ⠁⠁⠂⠄⡀     ⠈⠑r⠤⣀\n"
         "     │                   ⠈⠐⠠⢀      ⠉r⠤⣀\n"
         "     │                       ⠈⠐⠠⢀      ⠉r\n"
-        "1e-12┤                           ⠈⠐order 4\n"
+        "1e-12┤                           ⠈⠐ order 4\n"
         "     └┬───────────┬────────────┬───────────┬────\n"
         "      10         100          1e3         1e4\n"
         "                               force evaluations"
