@@ -338,7 +338,7 @@ def recommend(
     chosen = _general(scene, methods, numbers)
     if chosen.theta == chosen.omega == 0:
         raise InputError("the pendulum hangs at rest; use another theta or omega.")
-    check_name("error", error, ("theta", "energy", "final"))
+    check_name("kind of error", error, ("theta", "energy", "final"))
     wanted = _number("target", target)
     seconds, _ = usual(chosen)
     if time is not None:

@@ -73,7 +73,7 @@ def test_tables_tell_what_the_program_tells():
     for each in VERDICTS.values():
         assert f"| `{each.word}` | {each.meaning} |" in README
     keys = re.findall(r"^\| `(.+?)` \| (.+) \|$", section("Keys"), re.MULTILINE)
-    assert len(keys) == 8
+    assert len(keys) == 9
     assert {f"{key:<9}{does}" for key, does in keys} <= set(key_lines(bindings_of(LabScreen)))
     recipes = block_with("python", "read_csv")
     columns = set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes))

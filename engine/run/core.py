@@ -157,14 +157,12 @@ def _moved(whole: Part) -> Judgement | None:
     ranked = Part(whole.bins._replace(rounding=1.0, white=0.0), ranks)
     for share in levels.WINDOWS:
         last = whole.last(share)
+        if not last.exceeds(levels.MATERIAL, last.move):
+            continue
         for every, level in ((whole, levels.MOVES), (ranked, levels.MOVES_BY_RANK)):
             part = every.last(share)
             is_certain = part.slope.chance < level * share and part.move * last.move > 0
-            if (
-                last.exceeds(levels.MATERIAL, last.move)
-                and is_certain
-                and is_new(every.values, part.values, part.move)
-            ):
+            if is_certain and is_new(every.values, part.values, part.move):
                 return whole.described(GROWS if last.move > 0 else LOSES)
     return None
 

@@ -68,7 +68,7 @@ VERDICTS: dict[str, Verdict] = {
             UNDECIDED,
             sign="",
             ink="quiet",
-            meaning="the data support none of these; the reason says what is missing",
+            meaning="the data do not yet support any of these; the reason says what is missing",
         ),
     )
 }

@@ -142,6 +142,13 @@ def count(text: str) -> int:
     return int(text)
 
 
+def port(text: str) -> int:
+    """Return a port to listen on; 0: any free one."""
+    if not re.fullmatch(r"\d{1,5}", text):
+        raise ValueError(f"{text!r} is not a port; use 0 to 65535")
+    return int(text)
+
+
 @contextmanager
 def given_by(option: str) -> Iterator[None]:
     """Put the option before the sentence of an InputError."""

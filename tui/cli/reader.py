@@ -14,6 +14,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
+from statistics import mode
 from typing import Any
 
 import numpy as np
@@ -142,18 +143,18 @@ def _records(document: Any) -> list[Any]:
             each = [*each.values()]
         if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], (dict, list)):
             columns[name] = each
-    size = max(map(len, columns.values()), default=0)
-    columns = {name: each for name, each in columns.items() if len(each) == size}
     if columns:
+        size = mode(map(len, columns.values()))  # positions, for example, are more
+        columns = {name: each for name, each in columns.items() if len(each) == size}
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     return next(filter(None, map(_records, document.values())), [])
 
 
 def _record(item: Any) -> str:
     """Return an object or a row in one line; the names of inner values have those around them."""
-    if isinstance(item, list):
-        return " ".join(map(str, item))
-    return json.dumps(dict(_flat(item)), ensure_ascii=False)
+    if isinstance(item, dict):
+        return json.dumps(dict(_flat(item)), ensure_ascii=False)
+    return " ".join(map(str, item if isinstance(item, list) else [item]))
 
 
 def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -170,11 +171,10 @@ def _arrays(stream: io.BufferedReader) -> Any:
         loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
         names = getattr(loaded, "files", None) or loaded.dtype.names
         if names:
-            return {name: np.squeeze(loaded[name]).tolist() for name in names}
+            return {name: loaded[name].squeeze().tolist() for name in names}
         return loaded.reshape(len(loaded), -1).tolist()
-    except Exception as error:  # a broken archive may raise anything
-        why = printable(str(error), 100)
-        raise unreadable(f"its arrays cannot be read: {why}; save a workbook as CSV.") from None
+    except Exception:  # a broken archive may raise anything
+        raise unreadable("its arrays cannot be read; save arrays of numbers, or CSV.") from None
 
 
 def number(text: str) -> float | None:

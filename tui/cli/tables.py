@@ -24,7 +24,7 @@ MAX_NAMES = 500  # of values that are printed with their names
 NOT_TIMES = "its time never increases; name the column of times with --time."
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 REASONS = {
-    "without_numbers": "without numbers",
+    "without_numbers": "without numbers, or of another width",
     "time_not_later": "whose time is not later",
     "time_not_finite": "whose time is not finite",
     "out_of_range": "before --from or after --to",
@@ -191,7 +191,7 @@ class Sheet:
         self.line = line  # where it begins
         self.kept: Group = ()  # the columns that are still read
         self.choice: Choice | None = None
-        self.skipped = 0  # rows without numbers
+        self.skipped = 0  # rows of another width
         self.puts = 0
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
@@ -283,6 +283,12 @@ class Sheet:
         rows = len(times)
         if not choice.time:
             times = np.arange(rows, dtype=float)
+        if self.skipped > rows:
+            raise UserError(
+                f"{self.skipped} rows have another number of columns than the {rows} that fit the "
+                "head; cut the file there.",
+                Exit.INPUT_UNREADABLE,
+            )
         runs = list(_runs(times))
         if len(runs) == rows > 1:
             raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)

@@ -25,6 +25,7 @@ from multiprocessing.context import SpawnContext
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
@@ -127,7 +128,7 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
         def run(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[Any]:
             try:
                 yield from executor.map(function, list(tasks))
-            except (UserError, OwnMethodError):
+            except (InputError, OwnMethodError):
                 raise
             except Exception as error:
                 why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")

@@ -135,7 +135,7 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
 def choose(seen: Sequence[Series], options: argparse.Namespace) -> Series | None:
     """Return the table to judge, None if that is not certain.  Raises UserError."""
     if options.table and options.table > len(seen):
-        raise unreadable(f"there is no table {options.table}; the input has {len(seen)}.")
+        raise UserError(f"there is no table {options.table}; the input has {len(seen)}.")
     some = seen
     if options.table:
         some = [seen[options.table - 1]]
@@ -152,7 +152,7 @@ def _missing(seen: Sequence[Series], wanted: Sequence[str | None]) -> UserError:
     parts = [part.strip() for each in wanted if each for part in each.split("+")]
     lost = [each for each in parts if not each.isdecimal() and not find(names, each)]
     if not lost:
-        return unreadable("no row has a number in each column; columns count from 1.")
+        return UserError("no row has a number in each column; columns count from 1.")
     present = [printable(name, 40) for name in names[:20]]
     advice = did_you_mean(lost[0], present) or f"; choose from {', '.join(present)}."
     if not present:

@@ -28,6 +28,7 @@ from pendu_tui.tui.cli.options import (
     count,
     ladder,
     moment,
+    port,
     positive,
     record_time,
     scale,
@@ -170,7 +171,7 @@ OPTIONS: dict[str, Settings] = {
     "--loop": flag("start again at the end"),
     "--paused": flag("start paused"),
     "--size": option("CxR", "columns x rows (120x40)", cells, default=(120, 40)),
-    "--port": option("N", "port to listen on (%(default)s; 0: any free one)", int, default=8000),
+    "--port": option("N", "port to listen on (%(default)s; 0: any free one)", port, default=8000),
     "--host": option("ADDRESS", "address to listen on (%(default)s)", default="127.0.0.1"),
     "--at-most": option("N", "limit of open labs (%(default)s)", count, default=20),
     # times and steps

@@ -185,10 +185,11 @@ class LabScreen(SizedScreen[None]):
             self._pause_where_due(self.source, before)
         if is_writing(self.app):
             return
-        self._beat += 60 // self.fps
+        passed = 60 // self.fps
+        self._beat += passed
         if self._is_late:
             self.show_now()
-        elif sample != before or self._beat % Pane.EVERY == 0:
+        elif sample != before or self._beat % Pane.EVERY < passed:
             self._follow(sample, self._beat)
 
     def _pause_where_due(self, live: Live, before: Sample) -> None:
@@ -568,8 +569,12 @@ class LabScreen(SizedScreen[None]):
         self._show_text("Events", numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
-        titles = [pane.border_title or "" for pane in self.query(Pane) if pane.is_on_screen]
-        on_screen = "; ".join(Content.from_markup(title).plain for title in titles if title)
+        panes = (pane.border_title for pane in self.query(Pane) if pane.is_on_screen)
+        titles = [
+            VIEWS[self.view].title,
+            *(Content.from_markup(each).plain for each in panes if each),
+        ]
+        on_screen = "; ".join(titles)
         self._show_text("In words", [*description(self.source), f"On screen: {on_screen}."])
 
     def action_screenshot(self) -> None:

@@ -56,7 +56,12 @@ def recording_path(file: Path | None, folder: Path | None = None) -> Path:
     path = file or files.new_path(folder)
     if file is None:
         path.parent.mkdir(parents=True, exist_ok=True)
-    files.check_target(path, force=None)
+    try:
+        files.check_target(path, force=None)
+    except files.DiskError as error:
+        if file is None:
+            error.strerror = f"{error.strerror}, with PENDU_RECORDINGS, or use --no-record"
+        raise
     return path
 
 

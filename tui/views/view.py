@@ -135,10 +135,13 @@ class Pane(CellWidget):
     failure = ""
     """Why the picture cannot be computed, in a sentence."""
     _titles = ("", "")
+    _turn = 0
 
     def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
         """Show a sample if it is this pane's turn, as it always is at beat 0."""
-        if beat % self.EVERY == 0:
+        turn = beat // self.EVERY
+        if not beat or turn != self._turn:
+            self._turn = turn
             self.sample = sample
             self.shown = shown
             self.draw()

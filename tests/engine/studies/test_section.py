@@ -153,3 +153,10 @@ def test_an_oscillator_has_its_rotation_at_any_width():
     found = kind_of(VERLET, model, 0.3, orbit(VERLET, model, 0.3, (10.0, 0.0), 2000))
     assert found.rotation == pytest.approx(math.acos(1 - 0.3**2 / 2) / math.tau, rel=1e-9)
     assert not found.spins
+
+
+def test_starts_are_spread_evenly_over_their_rectangle():
+    theta, omega = spread(400, (-1.0, 3.0), (2.0, 5.0))
+    counts, *_ = np.histogram2d(theta, omega, bins=(4, 2), range=((-1, 3), (2, 5)))
+    assert counts.sum() == 400
+    assert np.ptp(counts) <= 4

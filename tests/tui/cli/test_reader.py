@@ -121,7 +121,7 @@ def array(*unnamed: object, **named: object) -> bytes:
     [
         json.dumps({"run": {"h": 0.5, "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
-        array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3))),
+        array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270)),
         array(np.array([TIMES, ENERGIES]).T),
         array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
         gzip.compress(rows("{t} {e}").encode()),

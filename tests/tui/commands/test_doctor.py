@@ -1,5 +1,8 @@
+from types import SimpleNamespace
+
 import pytest
 
+from pendu_tui.tui.commands import doctor
 from tests.tui.command_line import pendu
 
 
@@ -58,3 +61,13 @@ def test_on_windows_it_says_which_terminal_to_use(session, fine, monkeypatch):
     advice = findings()["console"]["advice"]
     assert fine == (not advice)
     assert fine or "Windows Terminal" in advice
+
+
+@pytest.mark.parametrize(("size", "fine"), [("60x16", True), ("59x16", False), ("60x15", False)])
+def test_a_terminal_may_be_as_small_as_the_lab(size, fine, monkeypatch):
+    stdout = SimpleNamespace(isatty=lambda: True, encoding="utf-8")
+    monkeypatch.setattr(doctor, "sys", SimpleNamespace(stdout=stdout))
+    for name, value in zip(("COLUMNS", "LINES"), size.split("x"), strict=True):
+        monkeypatch.setenv(name, value)
+    found = findings()["size"]
+    assert (found["found"], not found["advice"]) == (size, fine)

@@ -30,6 +30,9 @@ def lines(form: str, rows: list[tuple[float, float]] = ROWS) -> str:
 TABLE = "t,E\n" + lines("{t},{e}")
 
 
+WIDER = "t,E\n" + "".join(f"{t},1{',1' * (t > 29)}\n" for t in range(70))
+
+
 def guess(text: str | bytes, *more: object) -> Outcome:
     Path("energies.csv").write_bytes(text.encode() if isinstance(text, str) else text)
     return pendu("judge", "energies.csv", *more)
@@ -53,7 +56,7 @@ LOG += "Step TotEng Temp\n" + lines("  {t:.1f} {e!r} 300.") + "Loop time\n"
 def test_one_table_is_judged_and_named():
     names = {"time": "Step", "energy": "TotEng"}
     log = LOG.replace("  15.0 ", "  15.0x ")
-    words = "299 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers"
+    words = "299 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers, or of another width"
     assert words in judge(log, **names).out
     for skipped, code in ((0, 1), (1, 0)):
         gate = f"skipped > {skipped} or samples < 299"
@@ -62,7 +65,7 @@ def test_one_table_is_judged_and_named():
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
     assert answer["energy_error"] == pytest.approx(math.sin(199) / 91)
     assert (answer["lowest_energy"], answer["highest_energy"]) == pytest.approx((90, 92), abs=1e-3)
-    assert judge(LOG, "--table", 3, **names).refused(3, "no table 3; the input has 2")
+    assert judge(LOG, "--table", 3, **names).refused(2, "no table 3; the input has 2")
 
 
 def test_a_file_alone_is_listed_guessed_and_judged():
@@ -203,7 +206,8 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         (TABLE, "t Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (TABLE, "t E+Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
-        (TABLE, "1 3", 3, "no row has a number in each column; columns count from 1"),
+        (WIDER, "1 2", 3, "40 rows have another number of columns than the 30"),
+        (TABLE, "1 3", 2, "no row has a number in each column; columns count from 1"),
         ("1 2\n", "t E", 2, "give columns by number"),
         ("t,E\n1,nan\n", "t E", 3, "no row has a usable"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time never increases"),
