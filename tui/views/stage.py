@@ -310,7 +310,7 @@ class Stage(Pane):
             titles = [*(f"{title}{note}" for title in titles), note.removeprefix(", ")]
         below = "drag: throw it"
         if held:
-            below = "let go or throw it"
+            below = "let go or throw"
         elif room >= 32:
             below = "drag: throw it · dotted: exact"
         self.write_titles(next((each for each in titles if len(each) <= room), titles[-1]), below)

@@ -198,7 +198,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         held, table, _, below = await grabbed(theatre, (30, 9), (40, 8))
         assert held == pytest.approx(1.9, abs=0.4)
         assert table.count(f"{held:+.3f}") == 4
-        assert below == "let go or throw it"
+        assert below == "let go or throw"
         scene = theatre.source.scene
         assert (scene.theta, scene.omega) == (held, 0.0)
         assert [event.kind for event in theatre.source.events] == ["start", "start"]
