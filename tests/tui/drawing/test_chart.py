@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
-from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, TEXT
+from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, QUIET, TEXT
 from pendu_tui.tui.drawing.plotted import Series, loglog_chart
 from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from pendu_tui.tui.playback.rows import Window
@@ -119,7 +119,7 @@ def test_speed_against_accuracy():
         "      10         100          1e3         1e4\n"
         "                               force evaluations"
     )
-    assert inks(picture) == {0, 3, EXACT, FRAME, TEXT}
+    assert inks(picture) == {0, 3, EXACT, FRAME, QUIET, TEXT}
 
 
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
