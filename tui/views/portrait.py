@@ -304,10 +304,10 @@ def _names(viewport: Viewport, w0: float) -> list[Word]:
     )
     words: list[Word] = []
     for text, theta, omega in places:
-        column = int(viewport.x(theta)) // 2 - len(text) // 2
+        column = int(viewport.x(theta)) // 2 + 1
         row = int(viewport.y(omega)) // 4
-        if theta:
-            column = int(viewport.x(theta)) // 2 + 1
+        if theta == 0:
+            column -= len(text) // 2 + 1
         room = viewport.columns - column
         if column > 0 and len(text.rstrip()) <= room and 0 <= row < viewport.rows - 1:
             words.append((column, row, text[:room], QUIET))

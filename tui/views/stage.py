@@ -312,7 +312,7 @@ class Stage(Pane):
         if held:
             below = "let go or throw"
         elif room >= 32:
-            below = "drag: throw it · dotted: exact"
+            below += " · dotted: exact"
         self.write_titles(next((each for each in titles if len(each) <= room), titles[-1]), below)
 
     # The mouse
