@@ -243,16 +243,16 @@ def _values(what: str, given: Mapping[str, Any], types: Mapping[str, Any]) -> di
                     value = _READERS[name](str(value))
                 found[name] = _printable(msgspec.convert(value, types[name]))
             except msgspec.ValidationError as error:
-                raise InputError(f"{name}: {error}; use for example {_example(name)}") from None
+                raise InputError(f"{name}: {error}; use for example {_example(name)}.") from None
             except ValueError as error:  # of a reader
                 raise InputError(f"{name}: {error}") from None
     return found
 
 
 def _example(name: str) -> str:
-    """Return a line of a scene file with this field."""
+    """Return a whole line of a scene file with this field."""
     texts = (*map(scene_text, SCENES.values()), TOUR.read_text(encoding="utf-8"))
-    found = re.search(rf"^\[?{name}\b.*", "\n".join(texts), re.MULTILINE)
+    found = re.search(rf'^\[?{name}\b(?! = """).*', "\n".join(texts), re.MULTILINE)
     assert found
     return found[0]
 

@@ -7,7 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.geometry import Region
 
+from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.lab import SMALL, places
+from pendu_tui.tui.views.view import Pane
 
 
 @given(st.integers(1, 400), st.integers(1, 150))
@@ -38,3 +40,14 @@ def test_there_are_more_panes_where_there_is_room_and_the_stage_is_about_square(
     if "events" in names:
         assert stage.width == pytest.approx(2 * stage.height, abs=6)
     assert all(region.height >= 5 for region in regions.values())
+
+
+@pytest.mark.parametrize("fps", [5, 8, 10, 20, 30, 60])
+def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps):
+    pane = Pane()
+    drawn = []
+    pane.draw = lambda: drawn.append(pane.sample)
+    passed = 60 // fps
+    for frame in range(1, 10 * fps + 1):
+        pane.follow(frame, Shown(), frame * passed)
+    assert len(drawn) == pytest.approx(10 * min(fps, 60 / Pane.EVERY), abs=6)
