@@ -72,7 +72,7 @@ def _white_model(v: Any, x: Any, white: float) -> tuple[Any, ...]:
 
 
 class Slope:
-    """The slope of four values or more: a mixture of Student's t, one for each model of the noise."""
+    """The slope of four or more values: a mixture of Student's t, one for each noise model."""
 
     def __init__(self, times: Any, values: Any, rounding: float, white: float = 0.0) -> None:
         """Each value is rounded to `rounding`.

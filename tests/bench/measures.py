@@ -21,18 +21,18 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 897_000,
-    "characters_of_engine": 272_100,
-    "characters_of_recordings": 73_100,
-    "characters_of_tui": 552_000,
-    "characters_of_tests": 786_000,
+    "characters": 869_000,
+    "characters_of_engine": 266_300,
+    "characters_of_recordings": 71_900,
+    "characters_of_tui": 531_000,
+    "characters_of_tests": 688_000,
     "characters_of_bench": 86_000,
-    "files": 131,
+    "files": 127,
     "long_lines": 0,
     "parallel_assignments": 15,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
-    "numeric_constants": 238,
+    "numeric_constants": 232,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 

@@ -75,7 +75,7 @@ def parse(
     cast: Cast = USUAL_CAST,
     words: Words = VERDICT,
 ) -> Gate:
-    """Return the gate in `text` for a cast, which everything passes if it is None.  Raises UserError.
+    """Return the gate in `text` for a cast; None passes everything.  Raises UserError.
 
     With `fields`, comparisons name one of these, or of `words`, and no method; their values are
     under the key "".

@@ -111,7 +111,7 @@ def _lines(text: io.TextIOBase) -> Iterator[str]:
 
 
 def _json(text: io.TextIOBase) -> Iterator[str]:
-    """Yield a line for each record of a document or of lines of JSON, or other lines as they are."""
+    """Yield a line for each record of JSON, or other lines as they are."""
     whole = text.read(MAX_DOCUMENT)
     if len(whole) == MAX_DOCUMENT:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")

@@ -266,14 +266,7 @@ class Sheet:
         lines, _ = self._column(leading[0])
         if not len(lines):
             return
-        here = np.ones(len(lines), dtype=bool)
-        sums = []
-        for group in (choice.time, choice.energy, choice.kinetic):
-            sums.append(np.zeros(len(lines)))
-            for place in group:
-                column, has_value = self._joined(place, lines)
-                here &= has_value
-                sums[-1] += column
+        here, sums = self._sums((choice.time, choice.energy, choice.kinetic), lines)
         last = np.flatnonzero(here).max(initial=-1)
         inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
         missing = len(here) - 1 - last  # rows after the last energy
@@ -301,6 +294,18 @@ class Sheet:
             series.skipped["without_numbers"] = skipped
             skipped = 0
             yield series
+
+    def _sums(self, groups: Sequence[Group], lines: Any) -> tuple[Any, list[Any]]:
+        """Return the leading lines where all columns have a value, and the sum of each group."""
+        here = np.ones(len(lines), dtype=bool)
+        sums = []
+        for group in groups:
+            sums.append(np.zeros(len(lines)))
+            for place in group:
+                column, has_value = self._joined(place, lines)
+                here &= has_value
+                sums[-1] += column
+        return here, sums
 
     def _joined(self, place: int, lines: Any) -> tuple[Any, Any]:
         """Return a column at the lines of the leading one, nan where it has no value, and where.

@@ -160,10 +160,8 @@ def time_chart(
         plot.draw_crossings(high, times, window.repeats, height - 2)
     plot.name_lines(plot.ends(runs[0], low, high, names))
     ends = (x_axis.low, x_axis.high)
-    picture = plot.canvas.picture()
-    return TimePlot(
-        picture, shown.places(cast), plot.left, times.tolist(), values, ends, shown.has_log_time
-    )
+    told = (shown.places(cast), plot.left, times.tolist(), values, ends, shown.has_log_time)
+    return TimePlot(plot.canvas.picture(), *told)
 
 
 def _runs(

@@ -1,4 +1,4 @@
-"""The insight of the moment, a sentence about what was measured; a forecast extrapolates a slope."""
+"""The insight of the moment: a sentence on what was measured, or a slope that goes on."""
 
 import math
 import re
