@@ -40,6 +40,7 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
                 break
             assert words(shot.question) in panel(theatre)
             assert words(f"1: {shot.answers[0]} 2: {shot.answers[1]}") in panel(theatre)
+            assert "1 2 answer" in panel(theatre)
             await theatre.press(str(1 + number % 2))
             result = "Right." if shot.right == 1 + number % 2 else "Not quite."
             assert f"{result} {shot.right}: {shot.answers[shot.right - 1]}" in panel(theatre)
