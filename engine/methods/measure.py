@@ -1,7 +1,7 @@
 """Measured properties of a method: order, cost, symplecticity, reversibility, linear limit.
 
-Tests compare them with the fields of METHODS; a user's own method has them as fields, after a check
-that it is a method as the lab, its charts and its files need it.
+Tests compare them with the fields of METHODS.  A user's own method is first checked for what the
+lab, its charts and its files rely on; then the measured values become its fields.
 """
 
 import cmath
@@ -26,6 +26,10 @@ LARGE_H = 0.2  # s; with small steps a high order hides a change of area, or a m
 WIDEST_Z = 16  # of the search for a limit
 RUNGS = 2048  # in each 1 of z: they are two thirds of the narrowest gap apart, BM6's
 NO_LIMIT_BELOW = 0.1  # z, below which some unstable methods grow by less than rounding
+H = 0.05  # s, of the steps with which a user's own method is checked
+STEPS = 80
+CUT = 37  # steps; a prime, so that a method that counts to a round number of up to 40 shows it
+SAME = 1e-9  # relative; rounding differs by far less, wrong numbers by far more
 LINEAR_ROUNDING = 3e-13  # of a linear step; the limit moves by up to a thousand times as much
 
 
@@ -144,12 +148,6 @@ def is_stable(phases: Phases, z: Any) -> Any:
     b, d = after(phases, neg, (zero, zero + 1.0), z, 1)
     area = a * d - b * c
     return (area <= 1 + LINEAR_ROUNDING) & (abs(a + d) <= 1 + area + LINEAR_ROUNDING)
-
-
-H = 0.05  # s
-STEPS = 80
-CUT = 37  # steps; a prime, so that a method that counts to a round number of up to 40 shows it
-SAME = 1e-9  # relative; rounding differs by far less, wrong numbers by far more
 
 
 def measured_text(source: str, key: str, file: str) -> Measured:

@@ -137,7 +137,7 @@ class Measured(NamedTuple):
     more_at_the_start: int  # force evaluations
     symplectic: bool
     reversible: bool
-    linear_limit: float  # z; 0: none; inf: none found up to 16
+    linear_limit: float  # z; 0: none; inf: none found
 
     def __str__(self) -> str:
         stable = f"up to z = h·w0 = {self.linear_limit:.4g}"

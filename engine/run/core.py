@@ -60,7 +60,7 @@ class Part:
         return abs(move) >= level * self.fluctuation
 
     def described(self, verdict: str, **known: Any) -> Judgement:
-        """Return a verdict with what this part tells of the slope, and what else is known."""
+        """Return a judgement with this verdict, the slope of this part, and what else is known."""
         spread = max(self.slope.uncertainty * self.length, 1e-300)
         return Judgement(
             verdict,

@@ -238,7 +238,7 @@ class Judge:
         return found
 
     def _kept(self, found: Judgement, low: float, high: float) -> Judgement:
-        """Return the verdict of before with what is found, until the band comes back."""
+        """Return the earlier verdict with the new numbers, until the energy is back in its band."""
         before = self.judgement
         beyond = low if before.verdict == GROWS else -high
         if before.verdict in LEAVES and beyond > -levels.AWAY * (high - low):

@@ -62,7 +62,7 @@ def _models(count: int) -> _Models:
 
 
 def _white_model(v: Any, x: Any, white: float) -> tuple[Any, ...]:
-    """Return what a noise tells that is white and of a known standard deviation."""
+    """Return the slope's distribution if the noise is white, with a known standard deviation."""
     square = float((v * v).sum())
     centre = float((v * x).sum()) / square
     misfit = float(((x - centre * v) ** 2).sum()) / white**2
