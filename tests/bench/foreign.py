@@ -8,7 +8,7 @@ standard deviation of the fluctuation is also `bounded`.
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,11 +20,11 @@ SIZES = (100, 200, 500, 2000, 6000)
 SEED = 232253  # drawn after the last change of a rule or level
 CLEAR = math.inf  # enough of an effect, or of samples, for a verdict
 MATERIAL = 0.5  # standard deviations: a smaller drift is bounded, too
-AWAY = {1: {"loses"}, -1: {"grows"}}  # where an energy goes that starts above or below
+BOUNDED = {"bounded"}
 
 
 class Series(NamedTuple):
-    """A series and the verdicts that are right."""
+    """A series and the verdicts that are right, beside `undecided`."""
 
     kind: str
     energies: Any
@@ -33,226 +33,20 @@ class Series(NamedTuple):
     independent: float = CLEAR  # samples
 
 
+def filtered(kicks: Iterable[float], first: float, second: float = 0.0) -> Any:
+    """Return the autoregressive noise that some kicks make."""
+    values = [0.0, 0.0]
+    for kick in kicks:
+        values.append(first * values[-1] - second * values[-2] + kick)
+    return np.array(values[2:])
+
+
 def correlated(count: int, times: float, random: np.random.Generator) -> Any:
     """Return stationary noise of standard deviation 1, so many correlation times long."""
     keep = math.exp(-times / count)
     kicks = random.standard_normal(count) * math.sqrt(1 - keep * keep)
     kicks[0] = random.standard_normal()
-    values = np.empty(count)
-    value = 0.0
-    for at, kick in enumerate(kicks):
-        value = keep * value + kick
-        values[at] = value
-    return values
-
-
-class Maker:
-    """Makes series of `count` samples; x runs from 0 to 1."""
-
-    def __init__(self, count: int, random: np.random.Generator) -> None:
-        self.count = count
-        self.random = random
-        self.x = (np.arange(count) + 0.5) / count
-        self.sign = int(random.choice([-1, 1]))
-        self.way = {"grows" if self.sign > 0 else "loses"}
-
-    def between(self, low: float, high: float) -> float:
-        """Return a random number, with a uniform logarithm."""
-        return math.exp(self.random.uniform(math.log(low), math.log(high)))
-
-    def white(self) -> Any:
-        return self.random.standard_normal(self.count)
-
-    def wave(self, cycles: float) -> Any:
-        return np.sin(math.tau * (cycles * self.x + self.random.uniform()))
-
-    def all(self) -> Iterator[Series]:
-        yield from self.levels()
-        yield from self.drifts()
-        yield from self.waves()
-        yield from self.changes()
-        yield from self.digits()
-        yield from self.colours()
-        yield from self.narrow_bands()
-        yield from self.late_and_early()
-
-    def levels(self) -> Iterator[Series]:
-        bounded = {"bounded"}
-        yield Series("white", self.white(), bounded, independent=self.count)
-        for times in (200, 100, 50, 20, 10, 5):
-            noise = correlated(self.count, times, self.random)
-            yield Series(f"correlated T/{times}", noise, bounded, independent=times / 2)
-        yield Series("constant", 0 * self.x, bounded)
-        rare = self.random.uniform(size=self.count) < 0.01
-        yield Series(
-            "spikes", self.white() + rare * self.random.exponential(30, self.count), bounded
-        )
-        yield Series("Student-2", self.random.standard_t(2, self.count), bounded)
-        yield Series("walk", np.cumsum(self.white()), {"undecided"}, sigmas=0)
-        walk = np.cumsum(self.white()) / math.sqrt(self.count)
-        yield Series(
-            "walk and white", walk + self.between(0.02, 0.3) * self.white(), {"wanders"}, sigmas=0
-        )
-        few = self.white()[: self.random.integers(10, 64)]
-        yield Series("few", few, set(), sigmas=0)
-
-    def drifts(self) -> Iterator[Series]:
-        for times in (200, 100, 50, 20, 10, 5):
-            sigmas = self.between(5, 30)
-            drift = self.sign * sigmas * math.sqrt(24 / times) * self.x
-            noise = correlated(self.count, times, self.random)
-            yield Series(f"drift, correlated T/{times}", noise + drift, self.way, sigmas, times / 2)
-        for low, high in ((5, 10), (10, 300)):
-            sigmas = self.between(low, high)
-            drift = self.sign * sigmas * math.sqrt(12 / self.count) * self.x
-            yield Series(
-                f"drift {low} to {high} sigma", self.white() + drift, self.way, sigmas, self.count
-            )
-        noise = correlated(self.count, 20, self.random)
-        yield Series(
-            "drift 10 sd, correlated T/20", noise + 10 * self.sign * self.x, self.way, 9, 10
-        )
-
-    def waves(self) -> Iterator[Series]:
-        most = min(60, self.count / 3)
-        noise = 0.01 * self.white()
-        yield Series("sine", self.wave(self.between(4.5, most)) + noise, {"bounded"})
-        yield Series("slow sine", self.wave(self.between(1, 4)) + noise, {"bounded"}, sigmas=0)
-        two = self.wave(self.between(5, most)) + 0.4 * self.wave(self.between(5, self.count / 3))
-        yield Series("two sines", two, {"bounded"})
-        drift = self.sign * self.x
-        slow = self.wave(self.between(2.5, 7.7))
-        yield Series("slow sine, drift of 3 amplitudes", slow + noise + 3 * drift, self.way)
-        fast = self.wave(self.between(8, most))
-        yield Series("sine, drift of 1 amplitude", fast + 10 * noise + drift, self.way)
-        wider = self.x * np.sin(math.tau * self.between(40, 400) * self.x)
-        yield Series("widening", wider, {"undecided"}, sigmas=0)
-
-    def changes(self) -> Iterator[Series]:
-        size = self.sign * self.between(5, 100)
-        step = self.x > self.random.uniform(0.15, 0.85)
-        yield Series("step of 5 to 100 sd", self.white() + size * step, self.way)
-        size = self.sign * self.between(1, 5)
-        step = self.x > self.random.uniform(0.3, 0.7)
-        yield Series("step of 1 to 5 sd", self.white() + size * step, self.way, sigmas=0)
-        size = self.sign * self.between(3, 100) * max(1.0, math.sqrt(200 / self.count))
-        for share in (2, 3):
-            curve = 1.5 * size * -np.expm1(-share * self.x)
-            yield Series(f"relaxation T/{share}", self.white() + curve, self.way)
-        for share in (8, 15):
-            curve = size * -np.expm1(-share * self.x)
-            yield Series(f"relaxation T/{share}", self.white() + curve, self.way)
-        curve = size * -np.expm1(-100 * self.x)
-        truth = self.way if abs(size) > 3 * math.e**2 else {"bounded", *self.way}  # a blip at first
-        yield Series("relaxation T/100", self.white() + curve, truth)
-        curve = size * np.log1p(self.x * self.between(3, 300)) / 3
-        yield Series("logarithmic growth", self.white() + curve, self.way)
-        curve = self.sign * np.expm1(self.between(4, 20) * self.x)
-        yield Series("exponential growth", 0.01 * (self.white() + curve), self.way)
-        start = self.white()
-        start[: self.random.integers(1, max(2, self.count // 60))] += self.sign * self.between(
-            8, 300
-        )
-        yield Series("short start", start, {"bounded", *AWAY[self.sign]})
-
-    def digits(self) -> Iterator[Series]:
-        for digit in (0.3, 1, 3):
-            yield Series(
-                f"digits of {digit} sd", np.round(self.white() / digit) * digit, {"bounded"}
-            )
-        still = np.round(0.2 * self.white() + self.random.uniform())
-        yield Series("hardly a digit", still, {"bounded"})
-        drift = self.sign * self.between(4, 30) * self.x + self.random.uniform()
-        noise = self.between(0.01, 0.5) * self.white()
-        yield Series("drift of 4 to 30 digits", np.round(drift + noise), self.way)
-
-    def colours(self) -> Iterator[Series]:
-        """Yield what the judge does not model: other noises, waves and roundings."""
-        bounded = {"bounded"}
-        for times in (200, 20):
-            noise, at_zero = oscillating(self.count, times, self.random)
-            yield Series(f"AR(2) T/{times}", noise, bounded, independent=times / 2)
-            drift = self.sign * 5 * math.sqrt(12 * at_zero / self.count) * self.x
-            yield Series(
-                f"AR(2) T/{times}, drift of 5 sigma", noise + drift, self.way, 5, times / 2
-            )
-        most = min(60, self.count / 3)
-        sines = sum(self.between(0.2, 1) * self.wave(self.between(5, most)) for _ in range(4))
-        yield Series("four sines", sines, bounded)
-        cycles = self.between(5, most) * self.x + self.random.uniform()
-        yield Series("sawtooth", cycles % 1, bounded)
-        yield Series("square wave", np.floor(2 * cycles) % 2 + 0.0, bounded)
-        switches = np.cumsum(self.random.uniform(size=self.count) < 50 / self.count) % 2
-        yield Series("random switch", switches + 0.1 * self.white(), bounded, independent=50)
-        yield Series("Laplace", self.random.laplace(size=self.count), bounded)
-        yield Series("lognormal", self.random.lognormal(size=self.count), bounded)
-        yield Series("Student-1.5", self.random.standard_t(1.5, self.count), bounded)
-        size = self.sign * self.between(10, 100) * max(1.0, math.sqrt(200 / self.count))
-        fast = -np.expm1(-self.between(30, 100) * self.x)
-        caught = size * (fast - np.expm1(-self.between(8, 15) * self.x))
-        yield Series("two relaxations, over", self.white() + caught, self.way)
-        moving = size * (fast - 1.5 * np.expm1(-self.between(1, 2.5) * self.x))
-        yield Series("two relaxations, one goes on", self.white() + moving, self.way)
-        near = 2.0 ** self.random.integers(10, 16) * 1.1
-        rounding = float(np.spacing(np.float32(near)))
-        drift = self.sign * self.between(5, 30) * rounding * self.x
-        yield Series("float32, drift of 5 to 30 roundings", single(near + drift), self.way)
-        noise = self.between(0.3, 10) * rounding * self.white()
-        yield Series("float32 noise", single(near + noise), bounded)
-        yield Series("a line alone", self.sign * self.x, self.way)
-        gap = np.abs(self.x - self.random.uniform(0.3, 0.7)) > 0.1
-        yield Series("a gap", np.where(gap, self.white(), math.nan), bounded)
-
-    def narrow_bands(self) -> Iterator[Series]:
-        """Yield oscillations that equal blocks alias, and slow ones."""
-        bounded = {"bounded"}
-        most = min(400.0, self.count / 2.5)
-        fast = self.between(min(20, most / 2), most)
-        yield Series("fast sine", self.wave(fast), bounded)
-        blocks = min(64, self.count // 4 * 2)
-        near = (blocks // 2) * int(self.random.integers(1, 7)) + self.random.normal(0, 0.3)
-        near = min(near, blocks // 2 * (2 * most // blocks))
-        yield Series("sine near a multiple of 32 cycles", self.wave(near), bounded)
-        yield Series("the same with noise", self.wave(near) + 0.1 * self.white(), bounded)
-        yield Series("Kepler", self.kepler(fast), bounded)
-        yield Series("Kepler with 32k orbits", self.kepler(round(near)), bounded)
-        secular = 0.05 * self.wave(self.between(0.2, 1.5))
-        yield Series("a slow wave of 5 % of the band", self.wave(fast) + secular, bounded)
-        drift = self.sign * self.between(0.02, 0.2) * self.x
-        truth = bounded | (self.way if abs(drift[-1]) > 0.1 else set())
-        yield Series("immaterial trend", self.wave(fast) + drift, truth)
-        drift = self.sign * self.between(1, 30) * self.x
-        yield Series("fast sine, drift of 1 to 30 amplitudes", self.wave(fast) + drift, self.way)
-
-    def kepler(self, orbits: float) -> Any:
-        """Return 1/r³ along an orbit, as which the energy error of leapfrog goes."""
-        eccentricity = self.random.uniform(0.05, 0.7)
-        anomaly = mean = math.tau * (orbits * self.x + self.random.uniform())
-        for _ in range(60):
-            anomaly = mean + eccentricity * np.sin(anomaly)
-        return (1 - eccentricity * np.cos(anomaly)) ** -3
-
-    def late_and_early(self) -> Iterator[Series]:
-        size = self.sign * self.between(3, 100) * max(1.0, math.sqrt(200 / self.count))
-        rise = size * -np.expm1(-self.between(30, 200) * self.x)
-        truth = self.way if abs(rise[-1] - rise[self.count // 50]) > 3 else {"bounded", *self.way}
-        yield Series("rise at the start", self.white() + rise, truth, sigmas=0)
-        begin = self.random.uniform(0.3, 0.9)
-        late = size * np.clip((self.x - begin) / (1 - begin), 0, 1)
-        yield Series("late drift", self.white() + late, self.way, sigmas=0)
-        stairs = sum(self.x > self.random.uniform() for _ in range(self.random.integers(4, 20)))
-        yield Series("stairs", 0.2 * self.white() + self.sign * stairs, self.way, sigmas=0)
-        keep = self.random.uniform(0, 1, self.count) < 0.3
-        yield Series("rare kicks", np.cumsum(keep * self.white()), {"undecided"}, sigmas=0)
-        cooling = self.between(20, 300) * np.exp(-self.between(8, 60) * self.x)
-        floor = 1 + 0.2 * self.white()
-        yield Series("cooling to a floor", floor + cooling, {"loses"}, sigmas=0)
-        end = self.x > 1 - self.between(0.02, 0.12)
-        ended = self.white() + self.sign * self.between(5, 50) * end
-        yield Series("dead end", ended, {"undecided", *self.way}, sigmas=0)
-        last = self.white()
-        last[-1] += self.sign * self.between(10, 1000)
-        yield Series("wrong last value", last, {"undecided", "bounded"}, sigmas=0)
+    return filtered(kicks, keep)
 
 
 def oscillating(count: int, times: float, random: np.random.Generator) -> tuple[Any, float]:
@@ -260,11 +54,7 @@ def oscillating(count: int, times: float, random: np.random.Generator) -> tuple[
     decay = math.exp(-times / count)
     angle = random.uniform(0.1, 3) * min(1.0, times / count * 3)
     first = 2 * decay * math.cos(angle)
-    kicks = random.standard_normal(count + 400)
-    values = [0.0, 0.0]
-    for kick in kicks:
-        values.append(first * values[-1] - decay**2 * values[-2] + kick)
-    noise = np.array(values[402:])
+    noise = filtered(random.standard_normal(count + 400), first, decay**2)[400:]
     size = float(noise.std())
     return noise / size, 1 / (1 - first + decay**2) ** 2 / size**2
 
@@ -275,19 +65,223 @@ def single(energies: Any) -> Any:
     return rounded - rounded[0]
 
 
+class Maker:
+    """Makes parts of series of `count` samples; x runs from 0 to 1."""
+
+    def __init__(self, count: int, random: np.random.Generator) -> None:
+        self.count = count
+        self.random = random
+        self.x = (np.arange(count) + 0.5) / count
+        self.sign = int(random.choice([-1, 1]))
+        self.way = {"grows" if self.sign > 0 else "loses"}
+        self.back = {"grows", "loses"} - self.way
+
+    def between(self, low: float, high: float) -> float:
+        """Return a random number, with a uniform logarithm."""
+        return math.exp(self.random.uniform(math.log(low), math.log(high)))
+
+    def seen(self, low: float, high: float) -> float:
+        """Return a size, with its sign, that few samples do not hide."""
+        return self.sign * self.between(low, high) * max(1.0, math.sqrt(200 / self.count))
+
+    def drift(self, low: float, high: float) -> Any:
+        return self.sign * self.between(low, high) * self.x
+
+    def white(self) -> Any:
+        return self.random.standard_normal(self.count)
+
+    def wave(self, cycles: float) -> Any:
+        return np.sin(math.tau * (cycles * self.x + self.random.uniform()))
+
+    def relaxed(self, rate: float) -> Any:
+        return -np.expm1(-rate * self.x)
+
+    def kepler(self, orbits: float) -> Any:
+        """Return 1/r³ along an orbit, as which the energy error of leapfrog goes."""
+        eccentricity = self.random.uniform(0.05, 0.7)
+        anomaly = mean = math.tau * (orbits * self.x + self.random.uniform())
+        for _ in range(60):
+            anomaly = mean + eccentricity * np.sin(anomaly)
+        return (1 - eccentricity * np.cos(anomaly)) ** -3
+
+
+Kinds = Iterator[tuple[Any, ...]]
+"""The fields of each Series."""
+
+
+def levels(make: Maker) -> Kinds:
+    yield "white", make.white(), BOUNDED, CLEAR, make.count
+    for times in (200, 100, 50, 20, 10, 5):
+        noise = correlated(make.count, times, make.random)
+        yield f"correlated T/{times}", noise, BOUNDED, CLEAR, times / 2
+    yield "constant", 0 * make.x, BOUNDED
+    rare = make.random.uniform(size=make.count) < 0.01
+    yield "spikes", make.white() + rare * make.random.exponential(30, make.count), BOUNDED
+    yield "Student-2", make.random.standard_t(2, make.count), BOUNDED
+    yield "walk", np.cumsum(make.white()), set(), 0
+    walk = np.cumsum(make.white()) / math.sqrt(make.count)
+    yield "walk and white", walk + make.between(0.02, 0.3) * make.white(), set(), 0
+    yield "few", make.white()[: make.random.integers(10, 64)], set(), 0
+
+
+def drifts(make: Maker) -> Kinds:
+    for times in (200, 100, 50, 20, 10, 5):
+        sigmas = make.between(5, 30)
+        drift = make.sign * sigmas * math.sqrt(24 / times) * make.x
+        noise = correlated(make.count, times, make.random)
+        yield f"drift, correlated T/{times}", noise + drift, make.way, sigmas, times / 2
+    for low, high in ((5, 10), (10, 300)):
+        sigmas = make.between(low, high)
+        drifting = make.white() + make.sign * sigmas * math.sqrt(12 / make.count) * make.x
+        yield f"drift {low} to {high} sigma", drifting, make.way, sigmas, make.count
+    noise = correlated(make.count, 20, make.random)
+    yield "drift 10 sd, correlated T/20", noise + 10 * make.sign * make.x, make.way, 9, 10
+
+
+def waves(make: Maker) -> Kinds:
+    most = min(60, make.count / 3)
+    noise = 0.01 * make.white()
+    yield "sine", make.wave(make.between(4.5, most)) + noise, BOUNDED
+    yield "slow sine", make.wave(make.between(1, 4)) + noise, BOUNDED, 0
+    two = make.wave(make.between(5, most)) + 0.4 * make.wave(make.between(5, make.count / 3))
+    yield "two sines", two, BOUNDED
+    drift = make.sign * make.x
+    slow = make.wave(make.between(2.5, 7.7))
+    yield "slow sine, drift of 3 amplitudes", slow + noise + 3 * drift, make.way
+    fast = make.wave(make.between(8, most))
+    yield "sine, drift of 1 amplitude", fast + 10 * noise + drift, make.way
+    yield "widening", make.x * np.sin(math.tau * make.between(40, 400) * make.x), set(), 0
+
+
+def changes(make: Maker) -> Kinds:
+    size = make.sign * make.between(5, 100)
+    step = make.x > make.random.uniform(0.15, 0.85)
+    yield "step of 5 to 100 sd", make.white() + size * step, make.way
+    size = make.sign * make.between(1, 5)
+    step = make.x > make.random.uniform(0.3, 0.7)
+    yield "step of 1 to 5 sd", make.white() + size * step, make.way, 0
+    size = make.seen(3, 100)
+    for rate, part in ((2, 1.5), (3, 1.5), (8, 1), (15, 1)):
+        yield f"relaxation T/{rate}", make.white() + part * size * make.relaxed(rate), make.way
+    truth = make.way if abs(size) > 3 * math.e**2 else BOUNDED | make.way  # a blip at first
+    yield "relaxation T/100", make.white() + size * make.relaxed(100), truth
+    curve = size * np.log1p(make.x * make.between(3, 300)) / 3
+    yield "logarithmic growth", make.white() + curve, make.way
+    curve = make.sign * np.expm1(make.between(4, 20) * make.x)
+    yield "exponential growth", 0.01 * (make.white() + curve), make.way
+    start = make.white()
+    few = make.random.integers(1, max(2, make.count // 60))
+    start[:few] += make.sign * make.between(8, 300)
+    yield "short start", start, BOUNDED | make.back
+
+
+def digits(make: Maker) -> Kinds:
+    for digit in (0.3, 1, 3):
+        yield f"digits of {digit} sd", np.round(make.white() / digit) * digit, BOUNDED
+    yield "hardly a digit", np.round(0.2 * make.white() + make.random.uniform()), BOUNDED
+    drift = make.drift(4, 30) + make.random.uniform()
+    noise = make.between(0.01, 0.5) * make.white()
+    yield "drift of 4 to 30 digits", np.round(drift + noise), make.way
+
+
+def colours(make: Maker) -> Kinds:
+    """Yield what the judge does not model: other noises and waves."""
+    for times in (200, 20):
+        noise, at_zero = oscillating(make.count, times, make.random)
+        yield f"AR(2) T/{times}", noise, BOUNDED, CLEAR, times / 2
+        drift = make.sign * 5 * math.sqrt(12 * at_zero / make.count) * make.x
+        yield f"AR(2) T/{times}, drift of 5 sigma", noise + drift, make.way, 5, times / 2
+    most = min(60, make.count / 3)
+    sines = sum(make.between(0.2, 1) * make.wave(make.between(5, most)) for _ in range(4))
+    yield "four sines", sines, BOUNDED
+    cycles = make.between(5, most) * make.x + make.random.uniform()
+    yield "sawtooth", cycles % 1, BOUNDED
+    yield "square wave", np.floor(2 * cycles) % 2 + 0.0, BOUNDED
+    switches = np.cumsum(make.random.uniform(size=make.count) < 50 / make.count) % 2
+    yield "random switch", switches + 0.1 * make.white(), BOUNDED, CLEAR, 50
+    yield "Laplace", make.random.laplace(size=make.count), BOUNDED
+    yield "lognormal", make.random.lognormal(size=make.count), BOUNDED
+    yield "Student-1.5", make.random.standard_t(1.5, make.count), BOUNDED
+
+
+def two_rates_and_roundings(make: Maker) -> Kinds:
+    size = make.seen(10, 100)
+    fast = make.relaxed(make.between(30, 100))
+    caught = size * (fast + make.relaxed(make.between(8, 15)))
+    yield "two relaxations, over", make.white() + caught, make.way
+    moving = size * (fast + 1.5 * make.relaxed(make.between(1, 2.5)))
+    yield "two relaxations, one goes on", make.white() + moving, make.way
+    near = 2.0 ** make.random.integers(10, 16) * 1.1
+    rounding = float(np.spacing(np.float32(near)))
+    drift = make.sign * make.between(5, 30) * rounding * make.x
+    yield "float32, drift of 5 to 30 roundings", single(near + drift), make.way
+    noise = make.between(0.3, 10) * rounding * make.white()
+    yield "float32 noise", single(near + noise), BOUNDED
+    yield "a line alone", make.sign * make.x, make.way
+    gap = np.abs(make.x - make.random.uniform(0.3, 0.7)) > 0.1
+    yield "a gap", np.where(gap, make.white(), math.nan), BOUNDED
+
+
+def narrow_bands(make: Maker) -> Kinds:
+    """Yield oscillations that equal blocks alias, and slow ones."""
+    most = min(400.0, make.count / 2.5)
+    fast = make.between(min(20, most / 2), most)
+    yield "fast sine", make.wave(fast), BOUNDED
+    half = min(64, make.count // 4 * 2) // 2  # of the blocks
+    near = half * int(make.random.integers(1, 7)) + make.random.normal(0, 0.3)
+    near = min(near, half * (most // half))
+    yield "sine near a multiple of 32 cycles", make.wave(near), BOUNDED
+    yield "the same with noise", make.wave(near) + 0.1 * make.white(), BOUNDED
+    yield "Kepler", make.kepler(fast), BOUNDED
+    yield "Kepler with 32k orbits", make.kepler(round(near)), BOUNDED
+    secular = 0.05 * make.wave(make.between(0.2, 1.5))
+    yield "a slow wave of 5 % of the band", make.wave(fast) + secular, BOUNDED
+    drift = make.drift(0.02, 0.2)
+    truth = BOUNDED | make.way if abs(drift[-1]) > 0.1 else BOUNDED
+    yield "immaterial trend", make.wave(fast) + drift, truth
+    drift = make.drift(1, 30)
+    yield "fast sine, drift of 1 to 30 amplitudes", make.wave(fast) + drift, make.way
+
+
+def late_and_early(make: Maker) -> Kinds:
+    size = make.seen(3, 100)
+    rise = size * make.relaxed(make.between(30, 200))
+    truth = make.way if abs(rise[-1] - rise[make.count // 50]) > 3 else BOUNDED | make.way
+    yield "rise at the start", make.white() + rise, truth, 0
+    begin = make.random.uniform(0.3, 0.9)
+    late = size * np.clip((make.x - begin) / (1 - begin), 0, 1)
+    yield "late drift", make.white() + late, make.way, 0
+    stairs = sum(make.x > make.random.uniform() for _ in range(make.random.integers(4, 20)))
+    yield "stairs", 0.2 * make.white() + make.sign * stairs, make.way, 0
+    kicks = make.random.uniform(0, 1, make.count) < 0.3
+    yield "rare kicks", np.cumsum(kicks * make.white()), set(), 0
+    cooling = make.between(20, 300) * np.exp(-make.between(8, 60) * make.x)
+    yield "cooling to a floor", 1 + 0.2 * make.white() + cooling, {"loses"}, 0
+    end = make.x > 1 - make.between(0.02, 0.12)
+    yield "dead end", make.white() + make.sign * make.between(5, 50) * end, make.way, 0
+    last = make.white()
+    last[-1] += make.sign * make.between(10, 1000)
+    yield "wrong last value", last, BOUNDED, 0
+
+
+GROUPS = (
+    *(levels, drifts, waves, changes, digits, colours),
+    *(two_rates_and_roundings, narrow_bands, late_and_early),
+)
+
+
 def all_series(share: float, seed: int = SEED) -> Iterator[tuple[Series, Any, Any]]:
     """Yield each series with times and energies, in random units with a random zero."""
     random = np.random.default_rng(seed)
     makers = (Maker(count, random) for count in SIZES for _ in range(round(22 * share)))
-    for maker in makers:
-        for series in maker.all():
-            length = len(series.energies)
-            times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length
-            zero = round(10 ** random.uniform(1, 4)) * random.choice([-1, 1])
-            scale = 10.0 ** random.integers(-3, 3)
-            energies = np.round((zero + series.energies) * scale, 8)
-            kept = np.isfinite(energies)
-            yield series, times[kept], energies[kept]
+    for series in (Series(*made) for make in makers for group in GROUPS for made in group(make)):
+        length = len(series.energies)
+        times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length
+        zero = round(10 ** random.uniform(1, 4)) * random.choice([-1, 1])
+        scale = 10.0 ** random.integers(-3, 3)
+        energies = np.round((zero + series.energies) * scale, 8)
+        kept = np.isfinite(energies)
+        yield series, times[kept], energies[kept]
 
 
 def truth_of(series: Series, times: Any, energies: Any) -> set[str]:
@@ -297,36 +291,33 @@ def truth_of(series: Series, times: Any, energies: Any) -> set[str]:
     slope, level = np.polyfit(times, energies, 1)
     fluctuation = float(np.std(energies - slope * times - level))
     is_material = abs(slope) * np.ptp(times) >= MATERIAL * fluctuation
-    return series.truth if is_material else series.truth | {"bounded"}
+    return series.truth if is_material else series.truth | BOUNDED
+
+
+def percent(some: Any) -> float:
+    """Return the mean of truths or counts, in percent."""
+    return round(100 * float(np.mean(some)), 2)
 
 
 def measure(share: float) -> dict[str, Any]:
     kinds: defaultdict[str, Counter[str]] = defaultdict(Counter)
-    verdicts: Counter[str] = Counter()
-    false: Counter[str] = Counter()
+    wrongs: defaultdict[str, list[bool]] = defaultdict(list)  # by verdict
     clear: dict[int, list[bool]] = {sigmas: [] for sigmas in (5, 8, 10)}
     for series, times, energies in all_series(share):
         verdict = judge_record(times, energies).verdict
         is_open = verdict == "undecided"
         wrong = not is_open and verdict not in truth_of(series, times, energies)
-        kinds[series.kind][verdict] += 1
-        kinds[series.kind]["wrong"] += wrong
-        verdicts[verdict] += 1
-        false[verdict] += wrong
+        kinds[series.kind].update([verdict, *["wrong"] * wrong])
+        wrongs[verdict].append(wrong)
         for sigmas, found in clear.items():
             if series.sigmas >= sigmas and series.independent >= 50:
                 found.append(is_open)
+    all_wrongs = [wrong for found in wrongs.values() for wrong in found]
     return {
-        "series": verdicts.total(),
-        "wrong_percent": round(100 * false.total() / verdicts.total(), 2),
-        "undecided_percent": round(100 * float(np.mean(clear[10])), 2),
-        "undecided_percent_by_sigmas": {
-            sigmas: round(100 * float(np.mean(found)), 2) for sigmas, found in clear.items()
-        },
-        "false_percent": {
-            verdict: round(100 * false[verdict] / count, 2) for verdict, count in verdicts.items()
-        },
-        "kinds": {
-            kind: {name: n for name, n in counts.items() if n} for kind, counts in kinds.items()
-        },
+        "series": len(all_wrongs),
+        "wrong_percent": percent(all_wrongs),
+        "undecided_percent": percent(clear[10]),
+        "undecided_percent_by_sigmas": {sigmas: percent(found) for sigmas, found in clear.items()},
+        "false_percent": {verdict: percent(found) for verdict, found in wrongs.items()},
+        "kinds": kinds,
     }
