@@ -35,8 +35,8 @@ ALLOWED: dict[str, set[tuple[str, ...]]] = {
     "b": {("bounded",)},
     # slow chaos, seen late or not at all
     "s": {("bounded",), ("bounded", "chaotic"), ("chaotic",)},
-    "c": {("chaotic",)},  # within bounds
-    "w": {("chaotic",)},
+    "c": {("chaotic",)},  # symplectic
+    "w": {("chaotic",)},  # not symplectic
     "g": {("grows",)},
     "d": {("loses",)},
     "k": {("grows",), ("loses",)},

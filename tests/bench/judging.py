@@ -2,7 +2,6 @@
 
 import math
 import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
+from tests.tui.command_line import PENDU
 
 LIMITS = {
     "wrong": 0,  # cells of the truth table
@@ -60,11 +60,10 @@ def truth_table(share: float) -> dict[str, Any]:
 
 def runs(share: float, seed: int = SEED) -> dict[str, Any]:
     """Return what becomes of random runs of methods that are not symplectic, at five lengths."""
-    from tests.bench.truths import WINDOWS, letter, runner  # Numba
+    from tests.bench.truths import letter  # Numba
 
     random = np.random.default_rng(seed)
     cast = [method for method in GENERAL if not method.symplectic]
-    loops = {method.key: runner(method) for method in cast}
     wrong = []
     verdicts: Counter[str] = Counter()
     leaving = 0
@@ -74,24 +73,23 @@ def runs(share: float, seed: int = SEED) -> dict[str, Any]:
         spins = float(random.uniform() < 0.2) * float(random.uniform(7, 30))
         z = float(np.exp(random.uniform(math.log(0.01), math.log(2.5))))
         scene = Scene(theta=theta, omega=spins, h=z / Scene().w0, cast=(method,))
-        rows = np.full((len(WINDOWS), 5), math.nan)
-        loops[method.key](scene.theta, scene.omega, scene.h, np.array(WINDOWS), rows)
-        truth = letter(method, scene.h, rows)
-        leaving += truth in "gdkw"
+        truth = letter(method, scene)
+        allowed = {"undecided", "failed"}.union(*ALLOWED[truth])
+        if truth in "gdkw":
+            leaving += 1
+            allowed.discard("bounded")
         lockstep = Lockstep(scene, loops=compiled, judged=True)
         for steps in LENGTHS:
             lockstep.advance(steps - lockstep.step)
             verdict = lockstep.judgements[0].verdict
             verdicts[verdict] += 1
-            if (verdict == "bounded" and truth in "gdkw") or (
-                verdict not in ("undecided", "failed") and (verdict,) not in ALLOWED[truth]
-            ):
+            if verdict not in allowed:
                 wrong.append((method.key, theta, spins, z, truth, steps, verdict))
-    return {"wrong_runs": len(wrong), "wrong": wrong, "leaving": leaving, "verdicts": verdicts}
+    return {"wrong_runs": len(wrong), "which": wrong, "leaving": leaving, "verdicts": verdicts}
 
 
-def contradictions(share: float) -> list[tuple[Any, ...]]:
-    """Return where the judgements of a run and of its energies alone exclude each other."""
+def contradictions(share: float) -> Iterator[tuple[Any, ...]]:
+    """Yield where the judgements of a run and of its energies alone exclude each other."""
     random = np.random.default_rng(SEED)
     scenes = list(SCENES.values())
     for _ in range(round(200 * share)):
@@ -99,14 +97,11 @@ def contradictions(share: float) -> list[tuple[Any, ...]]:
         z = float(np.exp(random.uniform(math.log(0.01), math.log(2.0))))
         cast = tuple(random.choice(np.array(GENERAL, dtype=object), 3, replace=False))
         scenes.append(Scene(theta=theta, h=z / Scene().w0, cast=cast))
-    return [each for scene in scenes for each in _contradictions(scene)]
-
-
-def _contradictions(scene: Scene) -> Iterator[tuple[Any, ...]]:
-    for method, of_run, alone in judgements(scene, SECONDS):
-        if exclude(of_run, alone):
-            words = (of_run.verdict, alone.verdict)
-            yield scene.name, scene.theta, scene.z, method.key, *words, of_run.slope, alone.bound
+    for scene in scenes:
+        for method, of_run, alone in judgements(scene, SECONDS):
+            if exclude(of_run, alone):
+                words = (of_run.verdict, alone.verdict, of_run.slope, alone.bound)
+                yield scene.name, scene.theta, scene.z, method.key, *words
 
 
 def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement, Judgement]]:
@@ -149,19 +144,18 @@ def exclude(of_run: Judgement, alone: Judgement) -> bool:
 def million_lines() -> float:
     """Return the seconds of `judge` for 10⁶ lines."""
     energies = 1 + 1e-3 * np.random.default_rng(3).standard_normal(10**6)
-    program = str(Path(sys.executable).with_name("pendu-tui"))
     with TemporaryDirectory() as folder:
-        file = f"{folder}/energies.csv"
+        file = Path(folder) / "energies.csv"
         table = np.column_stack([np.arange(10**6) * 0.01, energies])
         np.savetxt(file, table, delimiter=",", header="t,total", comments="")
-        command = [program, "judge", file, "--time", "t", "--energy", "total"]
+        command = [*PENDU, "judge", file, "--time", "t", "--energy", "total"]
         began = time.perf_counter()
         subprocess.run(command, check=True, capture_output=True)
         return round(time.perf_counter() - began, 2)
 
 
 def measure(share: float) -> dict[str, Any]:
-    contradicting = contradictions(share)
+    contradicting = list(contradictions(share))
     return {
         **truth_table(share),
         **runs(share),

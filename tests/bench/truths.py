@@ -7,101 +7,95 @@ methods by the logarithm of the distance between neighbouring orbits.  Takes som
 
 import cmath
 import math
-import sys
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from pathlib import Path
+from functools import cache
+from itertools import pairwise
+from typing import Any
 
 import numba
 import numpy as np
 
 from pendu_tui.engine.methods import USUAL_CAST, Method
-from pendu_tui.engine.methods.method import COMPILABLE
-from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
+from pendu_tui.engine.methods.method import compilable
+from pendu_tui.engine.run.loops import compiled
+from pendu_tui.engine.scenes import Scene
+from tests.truths import FILE, STARTS, Z, scene_at
 
-WINDOWS = [1 << power for power in range(4, 20)] + [3 << 18, 1 << 20]  # steps at their ends
+ENDS = np.array([1 << power for power in range(4, 20)] + [3 << 18, 1 << 20])  # of windows, steps
+W0 = math.sqrt(9.81)
+
+
+def windows(method: Method, scene: Scene) -> Any:
+    """Return the lowest and the highest energy error in each window, nan after an overflow."""
+    loops = compiled(method, scene.equations)
+    phase = (scene.theta, scene.omega)
+    start = scene.equations.energy()(phase)
+    rows = np.full((len(ENDS), 2), math.nan)
+    for row, (begin, end) in zip(rows, pairwise([0, *ENDS.tolist()]), strict=True):
+        advanced = loops.advance(phase, scene.h, end - begin, 1e280 * start)
+        if advanced.done < end - begin:
+            break
+        row[:] = advanced.low, advanced.high
+        phase = advanced.phase
+    return (rows - start) / start
 
 
 @numba.njit
-def acceleration(theta):  # type: ignore[no-untyped-def]
-    return -9.81 * math.sin(theta)
-
-
-@numba.njit
-def complex_acceleration(theta):  # type: ignore[no-untyped-def]
+def force(theta):  # type: ignore[no-untyped-def]
     return -9.81 * cmath.sin(theta)
 
 
-def runner(method: Method):  # type: ignore[no-untyped-def]
-    """Return a loop that fills in a row for each window: the lowest and highest energy error, the
-    logarithm of the stretching, and the lowest and highest omega.
+@cache
+def stretched(method: Method) -> Any:
+    """Return a loop that finds by what logarithm neighbours have parted at the end of each window.
+
+    The neighbour is the imaginary part of the phase.
     """
-    compilable = COMPILABLE.get(method.phases)
-    phases = numba.njit(compilable() if compilable else method.phases)
-    w0 = math.sqrt(9.81)
+    phases = numba.njit(compilable(method.phases))
 
     @numba.njit
-    def step(force, phase, h):  # type: ignore[no-untyped-def]
-        for following in phases(force, phase, h):
-            return following
-        return phase
-
-    @numba.njit
-    def alone(theta, omega, along, across, h):  # type: ignore[no-untyped-def]
-        theta, omega = step(acceleration, (theta, omega), h)
-        return theta, omega, along, across
-
-    @numba.njit
-    def with_a_neighbour(theta, omega, along, across, h):  # type: ignore[no-untyped-def]
-        phase = complex(theta, 1e-100 * along), complex(omega, 1e-100 * across)
-        theta, omega = step(complex_acceleration, phase, h)
-        return theta.real, omega.real, theta.imag * 1e100, omega.imag * 1e100
-
-    advance = with_a_neighbour if method.symplectic else alone
+    def step(theta, omega, h):  # type: ignore[no-untyped-def]
+        for phase in phases(force, (theta, omega), h):
+            return phase
+        return theta, omega
 
     @numba.njit(nogil=True)
-    def run(theta, omega, h, windows, rows):  # type: ignore[no-untyped-def]
-        start = omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2
-        along = 1.0
-        across = 0.0
-        stretching = 0.0
+    def run(theta, omega, h, ends):  # type: ignore[no-untyped-def]
+        theta = complex(theta, 1e-100)
+        omega = complex(omega, 0.0)
+        logarithm = 0.0
+        found = []
         done = 0
-        for index, end in enumerate(windows):
-            low, high = math.inf, -math.inf
-            slowest, fastest = math.inf, -math.inf
+        for end in ends:
             for n in range(done, end):
-                theta, omega, along, across = advance(theta, omega, along, across, h)
+                theta, omega = step(theta, omega, h)
                 if n % 8 == 7:
-                    length = math.sqrt(along * along + (across / w0) ** 2)
-                    along /= length
-                    across /= length
-                    stretching += math.log(length)
-                error = (omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2 - start) / start
-                if not abs(error) < 1e280:
-                    return
-                low = min(low, error)
-                high = max(high, error)
-                slowest = min(slowest, omega)
-                fastest = max(fastest, omega)
-            rows[index] = low, high, stretching, slowest, fastest
+                    length = math.hypot(theta.imag, omega.imag / W0) * 1e100
+                    theta = complex(theta.real, theta.imag / length)
+                    omega = complex(omega.real, omega.imag / length)
+                    logarithm += math.log(length)
+            found.append(logarithm)
             done = end
+        return found
 
     return run
 
 
-def letter(method: Method, h: float, rows: np.ndarray) -> str:
+def letter(method: Method, scene: Scene) -> str:
     """Return the letter of a run, a key of tests.truths.ALLOWED."""
-    if not np.isfinite(rows).all():
+    if not method.symplectic:
+        return course(scene.z, *windows(method, scene).T)
+    found = stretched(method)(scene.theta, scene.omega, scene.h, ENDS)
+    if found[-1] < 16:  # neighbours part in proportion to time: ln 10⁶ = 14
+        return "b"
+    return "s" if found[-1] < 40 or found[ENDS.searchsorted(8192)] < 20 else "c"
+
+
+def course(z: float, low: Any, high: Any) -> str:
+    """Return the letter of the lowest and highest energy errors."""
+    if not np.isfinite(high).all():
         return "g"
-    low, high, stretching, slowest, fastest = rows.T
-    if method.symplectic:
-        if stretching[-1] < 16:  # neighbours part in proportion to time: ln 10⁶ = 14
-            return "b"
-        if stretching[-1] < 40 or stretching[WINDOWS.index(8192)] < 20:
-            return "s"
-        return "w" if (fastest.max() - slowest.min()) * h > math.tau else "c"
-    thrown = h * math.sqrt(9.81) > 1.5  # then the orbits of explicit Euler jump by many turns
+    thrown = z > 1.5  # then the orbits of explicit Euler jump by many turns
     middle = (low + high) / 2
     width = max(high[16:].max() - low[16:].min(), 1e-13)
     if np.abs(middle).max() < 1e-10:
@@ -122,26 +116,17 @@ def letter(method: Method, h: float, rows: np.ndarray) -> str:
     return "w" if np.ptp(middle[8:]) > np.median((high - low)[8:]) / 4 else "B"
 
 
-def cell(method: Method, run: Callable[..., None], start: str, z: float) -> str:
-    """Return the letter of a cell."""
-    scene = scene_at(start, z)
-    rows = np.full((len(WINDOWS), 5), np.nan)
-    run(scene.theta, scene.omega, scene.h, np.array(WINDOWS), rows)
-    return letter(method, scene.h, rows)
-
-
 def main() -> None:
     """Run the grid and write the file, a line for each method and start."""
     lines = []
     with ThreadPoolExecutor() as executor:
         for method in USUAL_CAST:
-            run = runner(method)
             for start in STARTS:
-                letters = "".join(executor.map(partial(cell, method, run, start), Z))
-                assert set(letters) <= set(ALLOWED)
-                lines.append(f"{method.key} {start} {letters}")
-                print(lines[-1], file=sys.stderr)
-    Path(FILE).write_text("\n".join(lines) + "\n")
+                scenes = [scene_at(start, z) for z in Z]
+                letters = executor.map(letter, [method] * len(Z), scenes)
+                lines.append(f"{method.key} {start} {''.join(letters)}\n")
+                print(lines[-1], end="")
+    FILE.write_text("".join(lines))
 
 
 if __name__ == "__main__":
