@@ -46,17 +46,21 @@ SCHEMAS = {
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """A folder with recordings, one of them cut, energies, a method and a library."""
+    prepare(tmp_path)
     monkeypatch.chdir(tmp_path)
-    whole = record(tmp_path / "whole.mcap", two_runs()).read_bytes()
-    Path("cut.mcap").write_bytes(whole[:-700])
-    Path("library").mkdir()
-    Path("library/one.mcap").write_bytes(whole)
     monkeypatch.setenv("PENDU_RECORDINGS", "library")
+
+
+def prepare(folder: Path) -> None:
+    """Write recordings, one of them cut, energies, a method and a library to a folder."""
+    whole = record(folder / "whole.mcap", two_runs()).read_bytes()
+    (folder / "cut.mcap").write_bytes(whole[:-700])
+    (folder / "library").mkdir()
+    (folder / "library/one.mcap").write_bytes(whole)
     rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
-    Path("energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
-    Path("few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
-    Path(own_method(tmp_path).removesuffix(":mine")).rename("mine.py")
+    (folder / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
+    (folder / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
+    Path(own_method(folder).removesuffix(":mine")).rename(folder / "mine.py")
 
 
 def kinds(value: Any, path: str = "") -> dict[str, set[str]]:

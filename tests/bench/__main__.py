@@ -41,7 +41,7 @@ def report(name: str, share: float) -> tuple[dict[str, Any], bool]:
 
 def main() -> int:
     if sys.argv[1:2] == ["golden"]:
-        return import_module("tests.bench.golden").main(sys.argv[2:])
+        return import_module("tests.bench.golden").main(*sys.argv[2:])
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], prog="tests.bench")
     parser.add_argument("benches", nargs="*", help=f"of {', '.join(BENCHES)}")
     parser.add_argument("--share", type=float, default=1.0, help="of the attempts (default: 1)")
