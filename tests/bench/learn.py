@@ -56,30 +56,33 @@ def fitted(matrix, target):
     return np.linalg.lstsq(ridge, padded, rcond=None)[0] / scale
 
 
-def features_and_measurements(random):
-    """Return (a, b) and c of the features, the states and their derivatives."""
+def learned(seed):
+    """Return the numbers of each name in ABOUT, a row for each feature or unit."""
+    random = np.random.default_rng(seed)
     weights = np.round(random.normal(0, 1, (FEATURES, 2)), 3)
     biases = np.round(random.uniform(-2, 2, FEATURES), 3)
-    return weights, biases, *measurements(random, POINTS, NOISE)
+    states, rates = measurements(random, POINTS, NOISE)
 
+    def two_sums(places):
+        features = np.tanh(places @ weights.T + biases)
+        return np.stack([fitted(features, rate) for rate in rates.T], 1)
 
-def learned(seed):
-    """Return the features (a, b) and c, the field's two sums, and the Hamiltonian's one."""
-    weights, biases, states, rates = features_and_measurements(np.random.default_rng(seed))
-    features = np.tanh(states @ weights.T + biases)
-    slopes = 1 - features**2
-    theta, omega = (fitted(features, rate) for rate in rates.T)
+    slopes = 1 - np.tanh(states @ weights.T + biases) ** 2
     energy_slopes = np.vstack((slopes * weights[:, 1], -slopes * weights[:, 0]))
-    return weights, biases, theta, omega, fitted(energy_slopes, rates.T.ravel())
-
-
-def learned_maps(seed):
-    """Return the plain map's two sums, and kick and drift with rows a, c, coefficient."""
-    random = np.random.default_rng(seed)
-    weights, biases, states, rates = features_and_measurements(random)
     starts = states - TAU / 2 * rates
-    features = np.tanh(starts @ weights.T + biases)
-    plain = np.stack([fitted(features, rate) for rate in rates.T], 1)
+    kick, drift = symplectic_map(random, states, rates, starts)
+    return {
+        "FEATURES": np.column_stack((weights, biases)),
+        "FIELD": two_sums(states),
+        "HAMILTONIAN": fitted(energy_slopes, rates.T.ravel())[:, None],
+        "MAP": two_sums(starts),
+        "KICK": kick.T,
+        "DRIFT": drift.T,
+    }
+
+
+def symplectic_map(random, states, rates, starts):
+    """Return kick and drift with rows a, c, coefficient."""
     slopes = np.round(random.normal(0, 1, (2, UNITS)), 3)
     offsets = np.round(random.uniform(-2, 2, (2, UNITS)), 3)
     kick, drift = (
@@ -89,9 +92,11 @@ def learned_maps(seed):
     coefficients = np.concatenate((kick, drift))
     target = rates.T.ravel()
 
+    def modules(numbers):
+        return np.stack((slopes, offsets, numbers.reshape(2, UNITS)), 1)
+
     def moved(numbers):
-        modules = np.stack((slopes, offsets, numbers.reshape(2, UNITS)), 1)
-        return ((symplectic_step(modules, starts) - starts) / TAU).T.ravel()
+        return ((symplectic_step(modules(numbers), starts) - starts) / TAU).T.ravel()
 
     units = np.eye(2 * UNITS)
     for _ in range(GAUSS_NEWTON_STEPS):
@@ -99,7 +104,7 @@ def learned_maps(seed):
         jacobian = np.stack(columns, 1)
         residual = target - moved(coefficients)
         coefficients = fitted(jacobian, residual + jacobian @ coefficients)
-    return plain, np.stack((slopes, offsets, coefficients.reshape(2, UNITS)), 1)
+    return modules(coefficients)
 
 
 def symplectic_step(modules, states):
@@ -117,21 +122,12 @@ def symplectic_step(modules, states):
 
 
 def main():
-    weights, biases, theta, omega, energy = learned(SEED)
-    plain, (kick, drift) = learned_maps(SEED)
-    columns = {
-        "FEATURES": [f"{a:g},{b:g},{c:g}" for (a, b), c in zip(weights, biases, strict=True)],
-        "FIELD": [f"{t:.6g},{o:.6g}" for t, o in zip(theta, omega, strict=True)],
-        "HAMILTONIAN": [f"{e:.6g}" for e in energy],
-        "MAP": [f"{t:.6g},{o:.6g}" for t, o in plain],
-        "KICK": [f"{a:g},{c:g},{k:.6g}" for a, c, k in kick.T],
-        "DRIFT": [f"{b:g},{c:g},{k:.6g}" for b, c, k in drift.T],
-    }
     parts = [
         "# Weights that tests/bench/learn.py learned from 600 noisy measurements, w0² = 9.81 s⁻²."
     ]
-    for name, numbers in columns.items():
-        lines = textwrap.fill(" ".join(numbers), width=100, break_on_hyphens=False)
+    for name, rows in learned(SEED).items():
+        numbers = " ".join(",".join(f"{number:g}" for number in row) for row in rows)
+        lines = textwrap.fill(numbers, width=100, break_on_hyphens=False)
         parts.append(f'\n# {ABOUT[name]}\n{name} = """\n{lines}\n"""')
     NUMBERS.write_text("\n".join(parts) + "\n", encoding="utf-8")
 
