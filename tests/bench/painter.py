@@ -1,7 +1,7 @@
 """Textual alone: an app that paints what the lab painted, from strips made beforehand.
 
-python -m tests.bench.painter COLUMNS ROWS [KEY …]   film the lab, after keys, and show the film
-python -m tests.bench.painter                        show an empty app
+python -m tests.bench.painter COLUMNS ROWS   film the lab and show the film
+python -m tests.bench.painter                show an empty app
 
 A film holds the rows of every pane of the lab in each frame, borders included.  Each pane is one
 widget directly on the screen, and only rows that change are painted: Textual cannot paint as much
@@ -32,7 +32,7 @@ class Pane(NamedTuple):
     frames: list[list[Strip]]
 
 
-async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
+async def film(size: tuple[int, int]) -> list[Pane]:
     """Film the lab."""
     from pendu_tui.engine.scenes import DEFAULT_SCENE
     from pendu_tui.tui.playback.live import Live
@@ -47,7 +47,6 @@ async def film(size: tuple[int, int], keys: list[str]) -> list[Pane]:
     async with app.run_test(size=size) as pilot:
         await pilot.pause()
         stage.frame_timer.stop()
-        await pilot.press(*keys)
         for frame in range(1, (BEGIN + SECONDS) * FPS):
             now = frame / FPS
             stage.frame()
@@ -142,5 +141,5 @@ if __name__ == "__main__":
     if len(sys.argv) == 1:
         Empty().run()
     else:
-        columns, rows, *keys = sys.argv[1:]
-        Painter(asyncio.run(film((int(columns), int(rows)), keys))).run()
+        columns, rows = map(int, sys.argv[1:])
+        Painter(asyncio.run(film((columns, rows)))).run()

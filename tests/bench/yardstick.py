@@ -23,6 +23,7 @@ from pendu_tui.recordings.events import simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from tests.bench import painter
+from tests.tui.command_line import PENDU
 from tests.tui.pty_lab import PtyLab
 
 LIMITS = {
@@ -31,11 +32,11 @@ LIMITS = {
     "frame_p99_ms": 45,
     "key_p95_ms": 50,
     "kilobytes_per_second": 200,
-    "phase_processor_ratio": 1.6,
     "first_pendulum_ratio": 1.4,
     "opening_ratio": 0.2,
     "slow_line_key_max_ms": 1000,  # 64 KiB/s and 5 frames a second
 }
+SIZE = (120, 40)
 KEYS = 30
 LAB = ("live", "--h", str(painter.H))
 PAINTER = [sys.executable, "-m", "tests.bench.painter"]
@@ -43,6 +44,7 @@ VIEWS = ("\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~")  # F2 to F5
 CURSOR = re.compile(rb"\x1b\[(\d+);(\d+)H(?=\x1b\[[\d;]*m)")  # where text follows
 PENDULUMS = 47  # columns from the left
 BRAILLE = re.compile(rb"\xe2[\xa0-\xa3][\x80-\xbf]")
+EMPTY = re.compile(rb"empty")
 BURST = 0.004  # s
 
 
@@ -100,26 +102,19 @@ def end(program: PtyLab) -> None:
     program.end()
 
 
-def beside_painter(size: tuple[int, int], *key: str) -> dict[str, float]:
-    """Return the figures of the lab, with a key in the view F3, and its ratio to Textual alone."""
-    arguments = (*map(str, size), *key)
-    with (
-        TemporaryDirectory() as folder,
-        PtyLab(*arguments, size=size, program=PAINTER) as textual,
-    ):
+def beside_painter() -> dict[str, float]:
+    """Return the figures of the lab, and its ratio to Textual alone."""
+    with TemporaryDirectory() as folder, PtyLab(*map(str, SIZE), program=PAINTER) as textual:
         textual.wait_for("\x1b[?1049h", 90.0)
         textual.run(2.0)
-        with PtyLab(*LAB, size=size, PENDU_RECORDINGS=folder) as lab:
+        with PtyLab(*LAB, PENDU_RECORDINGS=folder) as lab:
             lab.wait_for("REC 2 s")
-            if key:
-                lab.type(VIEWS[1])
             drain(lab, textual, seconds=painter.BEGIN - 2.0)
             textual.type("r")  # the film begins at this moment of the lab
             of_lab, of_textual = watched(lab, textual)
             of_lab["processor_ratio"] = of_lab["percent"] / of_textual["percent"]
             lab.run(0.5)  # reads what has piled up meanwhile
-            if not key:
-                of_lab["key_p95_ms"] = key_times(lab)[int(0.95 * KEYS)]
+            of_lab["key_p95_ms"] = key_times(lab)[int(0.95 * KEYS)]
             end(lab)
             end(textual)
     return of_lab
@@ -127,26 +122,22 @@ def beside_painter(size: tuple[int, int], *key: str) -> dict[str, float]:
 
 def mean_of(rounds: list[dict[str, float]]) -> dict[str, float]:
     """Return the mean of some rounds, and the median of times, of which a few may be outliers."""
-    result = {}
-    for name in rounds[0]:
-        average = median if name.endswith("_ms") else mean
-        result[name] = round(average(figures[name] for figures in rounds), 2)
-    return result
+    averages = {name: median if name.endswith("_ms") else mean for name in rounds[0]}
+    return {name: round(of(each[name] for each in rounds), 2) for name, of in averages.items()}
 
 
 def first_pendulum_ratio(starts: int) -> float:
     """Return the time to the first pendulum over that to an empty app's first paint."""
-    pendulums = []
-    empty = []
-    bytecode = {"PYTHONDONTWRITEBYTECODE": ""}  # let the first start write it, as users' does
+    programs = ((BRAILLE, [*PENDU, *LAB, "--no-record"]), (EMPTY, PAINTER))
+    times: list[list[float]] = [[], []]
     for _ in range(starts):
-        with PtyLab(*LAB, "--no-record", **bytecode) as program:
-            pendulums.append(program.wait_for_match(BRAILLE))
-            end(program)
-        with PtyLab(program=PAINTER, **bytecode) as program:
-            empty.append(program.wait_for("empty"))
-            end(program)
-    return round(median(pendulums) / median(empty), 2)
+        for (sign, program), found in zip(programs, times, strict=True):
+            # let the first start write the bytecode, as users' does
+            with PtyLab(program=program, PYTHONDONTWRITEBYTECODE="") as lab:
+                found.append(lab.wait_for_match(sign))
+                end(lab)
+    pendulums, empty = map(median, times)
+    return round(pendulums / empty, 2)
 
 
 def opening_ratio() -> float:
@@ -180,14 +171,8 @@ def slow_line_key_max_ms() -> float:
 
 
 def measure(share: float) -> dict[str, Any]:
-    rounds = range(max(1, round(5 * share)))
-    lab = mean_of([beside_painter((120, 40)) for _ in rounds])
-    phase = mean_of([beside_painter((200, 60), "f3") for _ in rounds])
     return {
-        **lab,
-        "phase_processor_ratio": phase["processor_ratio"],
-        "phase_percent": phase["percent"],
-        "phase_kilobytes_per_second": phase["kilobytes_per_second"],
+        **mean_of([beside_painter() for _ in range(max(1, round(5 * share)))]),
         "first_pendulum_ratio": first_pendulum_ratio(max(1, round(9 * share))),
         "opening_ratio": opening_ratio(),
         "slow_line_key_max_ms": slow_line_key_max_ms(),
