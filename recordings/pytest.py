@@ -44,7 +44,7 @@ class EnergyDrift:
         """
         __tracebackhide__ = True
         from pendu_tui.engine import judge
-        from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS
+        from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, not_within
 
         wanted = (verdict,) if isinstance(verdict, str) else tuple(verdict)
         for word in wanted:
@@ -55,7 +55,10 @@ class EnergyDrift:
         except ValueError as error:
             raise pytest.fail.Exception(str(error)) from None
         self._properties += [("verdict", judged.verdict), ("slope", judged.slope)]
-        flaws = [_drift_flaw(judged, max_drift)]
+        flaws = []
+        if max_drift is not None:
+            slope = judged.slope and abs(judged.slope)
+            flaws.append(not_within(max_drift, "the drift", slope, judged.bound))
         for name, value, limit in (
             ("error", judged.max_error, max_error),
             ("fluctuation", judged.fluctuation, max_fluctuation),
@@ -93,24 +96,6 @@ class EnergyDrift:
                 "the runs do not solve the same equation better with smaller steps"
             )
         return order
-
-
-def _drift_flaw(judged: "Judged", limit: float | None) -> str:
-    """Return why a slope is not known to be within its limit, else ""."""
-    from pendu_tui.engine.run.verdicts import advice, outcome
-
-    if limit is None:
-        return ""
-    slope = None if judged.slope is None else abs(judged.slope)
-    found = outcome(slope, judged.bound, limit)
-    if found == "below":
-        return ""
-    if found == "above":
-        return f"the energy drifts by {judged.slope:.3g}, more than {limit:g}"
-    if slope is None or judged.bound is None:
-        return f"cannot tell whether the energy drifts by more than {limit:g}"
-    sees = f"this record sees drifts above {judged.bound:.2g}, not {limit:g}"
-    return f"cannot tell: {sees}; {advice(slope, judged.bound, limit)}"
 
 
 class MethodProperties:

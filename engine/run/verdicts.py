@@ -151,32 +151,27 @@ class Milestone(NamedTuple):
     lyapunov: float | None = None  # 1/s
 
 
-Outcome = Literal["below", "above", "cannot tell"]
 LONGEST = 1e4  # a record of this many times the length is no advice
 
 
-def outcome(value: float | None, bound: float | None, limit: float) -> Outcome:
-    """Return where a number is that is below `bound` at 99 %, and above its mirror image.
+def not_within(
+    limit: float, name: str, slope: float | None, bound: float | None, sign: float = 1.0
+) -> str:
+    """Return why a slope, whose magnitude is below a bound at 99 %, may be above a limit, else "".
 
-    What is not known cannot be told.
+    With `sign` -1: below it.  The uncertainty of a slope in white noise falls like length**-1.5.
     """
-    if value is None or bound is None or not (math.isfinite(value) and math.isfinite(bound)):
-        return "cannot tell"
-    if bound <= limit:
-        return "below"
-    if 2 * value - bound > limit:
-        return "above"
-    return "cannot tell"
-
-
-def advice(value: float, bound: float, limit: float) -> str:
-    """Return how long a record would tell on which side of the limit a slope is, a clause.
-
-    The uncertainty of a slope in white noise falls like length**-1.5.
-    """
-    missing = abs(limit - value)
-    if missing > 0:
-        longer = math.ceil(((bound - value) / missing) ** (2 / 3))
+    if slope is None or bound is None or not (math.isfinite(slope) and math.isfinite(bound)):
+        return f"cannot tell: {name} is not known"
+    margin = max(0.0, bound - abs(slope))
+    excess = sign * (slope - limit)
+    if excess + margin <= 0:
+        return ""
+    if excess > margin:
+        return f"{name} is {slope:.3g}"
+    advice = "a longer record may not tell"
+    if excess:
+        longer = math.ceil((margin / abs(excess)) ** (2 / 3))
         if longer <= LONGEST:
-            return f"a record about {longer} times as long would tell"
-    return "a longer record may not tell"
+            advice = f"a record about {longer} times as long would tell"
+    return f"cannot tell: {name} is {slope:.2g} ± {margin:.1g} at 99 %; {advice}"

@@ -25,7 +25,7 @@ from pendu_tui.engine.inputs import InputError, check_name
 from pendu_tui.engine.methods import USUAL_CAST, Cast, named
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
-from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, advice, outcome
+from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, not_within
 from pendu_tui.tui.cli.errors import Exit, warn
 from pendu_tui.tui.cli.options import given_by
 
@@ -75,7 +75,7 @@ def parse(
     cast: Cast = USUAL_CAST,
     words: Words = VERDICT,
 ) -> Gate:
-    """Return the gate in `text` for a cast; None passes everything.  Raises UserError.
+    """Return the gate in `text` for a cast; None passes everything.  Raises InputError.
 
     With `fields`, comparisons name one of these, or of `words`, and no method; their values are
     under the key "".
@@ -85,8 +85,6 @@ def parse(
     source = " ".join(text.split())
     grammar = _Grammar(fields, cast, words)
     with given_by("--fail-if"):
-        if len(source) > 10_000:
-            raise InputError("it is longer than 10,000 characters.")
         source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
         if "#" in source:  # a comment would hide what follows
             raise grammar.no_comparison(source)
@@ -133,14 +131,15 @@ class _Grammar:
         return partial(_joined, found, key == "all")
 
     def no_comparison(self, text: str) -> InputError:
-        form = "METHOD.FIELD"
-        example = f"velocity_verlet.{LARGEST.name} > 1e-2"
+        number = f"any.{LARGEST.name}"
         if self.fields:
-            form = "FIELD"
-            example = f"{self.fields[0]} > 1e-2"
+            number = self.fields[0]
+        word, (right, *_) = next(iter(self.words.items()))
+        if not self.fields:
+            word = f"any.{word}"
         return InputError(
-            f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example "
-            f"{example!r}; comparisons are joined by and, or and parentheses."
+            f"{_quoted(text)} is not a comparison; use for example "
+            f"'{number} > 1e-2 or {word} != {right}'."
         )
 
 
@@ -159,8 +158,7 @@ def _number(node: ast.expr) -> float:
             return float(value)
     except (ArithmeticError, ValueError):
         pass
-    text = _quoted(ast.unparse(node))
-    raise InputError(f"{text} is not a finite number; use for example 0.05 or 1e-2.")
+    raise InputError(f"{_quoted(ast.unparse(node))} is not a finite number; use for example 1e-2.")
 
 
 def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:
@@ -190,37 +188,15 @@ def _found(
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return reading.get("unknown", {}).get(field) or f"{name} is not known"
     if field in BOUNDS and compare in (operator.gt, operator.ge, operator.lt, operator.le):
-        return _drifting(name, reading, field, compare, float(limit))
+        bound = reading.get(BOUNDS[field])
+        sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
+        return not_within(float(limit), name, slope=ours, bound=bound, sign=sign)
     unknown = ours == UNDECIDED != limit
     if not (unknown or compare(ours, limit)):
         return ""
-    if isinstance(ours, str):
-        reason = reading.get("reason")
-        return f"{name} is {ours}: {reason}" if reason else f"{name} is {ours}"
-    return f"{name} is {reading.get('shown', {}).get(field) or format(ours, '.3g')}"
-
-
-def _drifting(
-    name: str,
-    reading: Mapping[str, Any],
-    field: str,
-    compare: Callable[[Any, Any], bool],
-    limit: float,
-) -> str:
-    """Return why a slope, within its bound, is not known to keep a limit, else ""."""
-    sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
-    slope = sign * reading[field]
-    bound = reading.get(BOUNDS[field])
-    margin = math.inf if bound is None else bound - abs(slope)
-    if margin <= 0:
-        return f"{name} is {reading[field]:.3g}" if compare(reading[field], limit) else ""
-    found = outcome(slope, slope + margin, sign * limit)
-    if found == "below":
-        return ""
-    if found == "above" or not math.isfinite(margin):
-        return f"{name} is {sign * slope:.3g}"
-    longer = advice(slope, slope + margin, sign * limit)
-    return f"cannot tell: {name} is {sign * slope:.2g} ± {margin:.1g} at 99 %; {longer}"
+    if not isinstance(ours, str):
+        return f"{name} is {reading.get('shown', {}).get(field) or format(ours, '.3g')}"
+    return ": ".join(filter(None, (f"{name} is {ours}", reading.get("reason"))))
 
 
 def _quoted(text: str) -> str:

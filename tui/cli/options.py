@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pendu_tui.engine.inputs import InputError, did_you_mean, number
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
 MAX_RUNGS = 1000  # of a ladder of step sizes
@@ -155,8 +155,8 @@ def given_by(option: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        code = getattr(error, "code", Exit.USAGE)
-        raise UserError(f"{option}: {error}", code) from None
+        error.args = (f"{option}: {error}",)
+        raise
 
 
 def ladder(text: str) -> tuple[float, float, int]:

@@ -16,7 +16,7 @@ from pendu_tui.engine.run.record import (
     resolution,
 )
 from pendu_tui.engine.run.slope import student
-from pendu_tui.engine.run.verdicts import advice, outcome
+from pendu_tui.engine.run.verdicts import not_within
 from tests.bench.foreign import correlated
 
 T = np.linspace(0, 100, 2000)
@@ -210,26 +210,27 @@ def test_64_samples_are_needed():
 
 
 @pytest.mark.parametrize(
-    ("value", "bound", "limit", "expected"),
+    ("slope", "bound", "limit", "expected"),
     [
-        (1.0, 2.0, 2.0, "below"),
-        (1.0, 2.0, 1.999, "cannot tell"),
-        (5.0, 6.0, 3.999, "above"),
-        (5.0, 6.0, 4.001, "cannot tell"),
-        (-5.0, -4.0, -3.0, "below"),
-        (0.0, 0.0, 0.0, "below"),
-        (None, None, 1.0, "cannot tell"),
-        (math.nan, 0.1, 1.0, "cannot tell"),
-        (0.0, math.inf, 1.0, "cannot tell"),
+        (1.0, 2.0, 2.0, ""),
+        (1.0, 2.0, 1.999, "cannot tell: it is 1 ± 1 at 99 %"),
+        (5.0, 6.0, 3.999, "it is 5"),
+        (5.0, 6.0, 4.001, "cannot tell: it is 5"),
+        (-5.0, 6.0, -4.0, ""),
+        (0.0, 0.0, 0.0, ""),
+        (2.0, 1.0, 1.5, "it is 2"),
+        (None, None, 1.0, "cannot tell: it is not known"),
+        (math.nan, 0.1, 1.0, "cannot tell: it is not known"),
+        (0.0, math.inf, 1.0, "cannot tell: it is not known"),
+        # the length at which white noise would tell
+        (0.0, 8.0, 1.0, "cannot tell: it is 0 ± 8 at 99 %; a record about 4 times as long"),
+        (1.0, 2.0, 1.0, "cannot tell: it is 1 ± 1 at 99 %; a longer record may not"),
     ],
 )
-def test_a_number_is_below_above_or_not_known(value, bound, limit, expected):
-    assert outcome(value, bound, limit) == expected
-
-
-def test_the_advice_is_the_length_at_which_white_noise_would_tell():
-    assert "about 4 times as long" in advice(0.0, 8.0, limit=1.0)
-    assert "may not" in advice(1.0, 2.0, limit=1.0)
+def test_a_slope_is_within_a_limit_beyond_it_or_not_known(slope, bound, limit, expected):
+    found = not_within(limit, "it", slope, bound)
+    assert found.startswith(expected)
+    assert bool(found) == bool(expected)
 
 
 def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():

@@ -2,16 +2,15 @@
 
 import math
 import operator
-import time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.tui.cli.checks import FIELDS, parse
-from pendu_tui.tui.cli.errors import UserError
 
 SIGNS = {
     "<": operator.lt,
@@ -60,7 +59,7 @@ def test_parentheses_join_as_in_python():
     ],
 )
 def test_any_other_expression_is_refused_and_never_evaluated(text):
-    with pytest.raises(UserError, match="is not a comparison"):
+    with pytest.raises(InputError, match="is not a comparison"):
         parse(text)
 
 
@@ -99,14 +98,18 @@ def test_a_verdict_is_compared_with_one_of_its_words(word):
     [
         ("rk4.verdict == lose", "there is no verdict 'lose': did you mean loses?"),
         ("rk4.verdict > loses", "verdict is a word: compare it with == or !=."),
-        ("rk4.energy > loses", "'loses' is not a finite number; use for example 0.05 or 1e-2."),
+        ("rk4.energy > loses", "'loses' is not a finite number; use for example 1e-2."),
+        (
+            "verdict != bounded",
+            "for example 'any.max_energy_error > 1e-2 or any.verdict != bounded'",
+        ),
         ("rk4.energy > 1e999", "is not a finite number"),
         ("velocity_verlt.energy > 1", "no method 'velocity_verlt': did you mean velocity_verlet?"),
         ("rk4.max_enrgy_error > 1", "'max_enrgy_error': did you mean max_energy_error?"),
     ],
 )
 def test_an_error_is_one_sentence_that_helps(text, sentence):
-    with pytest.raises(UserError) as error:
+    with pytest.raises(InputError) as error:
         parse(text)
     assert str(error.value).startswith("--fail-if: ")
     assert sentence in str(error.value)
@@ -120,7 +123,7 @@ def test_any_text_is_a_gate_or_one_printable_sentence(text):
     sentence = ""
     try:
         assert callable(parse(text))
-    except UserError as error:
+    except InputError as error:
         sentence = str(error)
     assert sentence.isprintable()
     assert len(sentence) < 800  # at most 60 quoted characters, ten each when escaped
@@ -138,14 +141,6 @@ def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
     assert gate(values) == "rk4.max_energy_error is 0.004, rk4.verdict is loses"
 
 
-def test_a_gate_of_any_length_is_refused_at_once():
-    began = time.process_time()
-    for text in (" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"):
-        with pytest.raises(UserError):
-            parse(text)
-    assert time.process_time() - began < 1
-
-
 @pytest.mark.parametrize(
     ("expression", "slope", "bound", "outcome"),
     [
@@ -157,7 +152,7 @@ def test_a_gate_of_any_length_is_refused_at_once():
         ("trend < -1e-5", -1e-6, 1e-5, ""),
         ("trend < -1e-5", -1e-6, 1.1e-5, "cannot tell"),
         ("trend < -1e-5", -2e-5, 2.9e-5, "trend is -2e-05"),
-        ("trend > 1e-5", 1e-6, None, "trend is 1e-06"),
+        ("trend > 1e-5", 1e-6, None, "cannot tell: trend is not known"),
         ("trend == 1e-5", 1e-6, 1.0, ""),
     ],
 )
