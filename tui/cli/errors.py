@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import IntEnum
 from functools import partial
-from pathlib import Path
 from time import monotonic
 from typing import Any, TextIO
 
@@ -40,12 +39,9 @@ def explained(error: BaseException) -> UserError:
     """Return the error as a sentence for the user.  Raises it again if it is a bug."""
     if isinstance(error, UserError):
         return error
+    # or it is a library's error about the interrupt
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
-        return UserError(
-            "interrupted.", Exit.INTERRUPTED
-        )  # or a library's error about the interrupt
-    if place := _entry(error):
-        return UserError(f"{place}: {type(error).__name__}: {error}")
+        return UserError("interrupted.", Exit.INTERRUPTED)
     # imported here: --help and --version do not need them
     from pendu_tui.engine.methods.own import OwnMethodError
     from pendu_tui.engine.scenes import SCENES
@@ -67,23 +63,6 @@ def explained(error: BaseException) -> UserError:
             return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)
     raise error
 
-
-def _entry(error: BaseException) -> str:
-    """Return the line of the method, model or scene that cannot be made, "" if it is no such."""
-    from traceback import extract_tb  # slow, and few commands fail
-
-    if isinstance(error, SyntaxError):
-        return f"{error.filename}, line {error.lineno}"
-    for frame in reversed(extract_tb(error.__traceback__)):
-        folder = Path(frame.filename).parent
-        is_listed = folder.parent.name == "engine" and folder.name in LISTED
-        if frame.name == "<module>" and is_listed:
-            return f"{frame.filename}, line {frame.lineno}"
-    return ""
-
-
-LISTED = ("methods", "models", "scenes")
-"""The folders whose modules make entries of lists when they are imported."""
 
 ADVICE = {
     errno.ENOENT: "; choose a folder that exists",

@@ -72,16 +72,6 @@ def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
         pendu("scenes")
 
 
-def test_a_mistake_in_an_entry_of_a_list_is_one_sentence_with_its_line(monkeypatch):
-    def listed(_: object) -> int:
-        entry = "from pendu_tui.engine.scenes import Scene\nScene(h=-1)"
-        exec(compile(entry, "engine/scenes/listed.py", "exec"))
-        raise AssertionError
-
-    monkeypatch.setattr("pendu_tui.tui.commands.lists.scenes", listed)
-    assert pendu("scenes").refused(2, "engine/scenes/listed.py, line 2: ", "h = -1 s is not")
-
-
 def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_it(monkeypatch):
     def interrupted(_: object) -> int:
         try:
