@@ -8,10 +8,6 @@ from collections.abc import Iterable
 class InputError(ValueError):
     """What a user gave cannot be used; its text is a sentence: what, why, and what to do."""
 
-    def __init__(self, sentence: str, models: tuple[str, ...] = ()) -> None:
-        super().__init__(sentence)
-        self.models = models  # scenes of these would do
-
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that is most like this one, "" if none is."""

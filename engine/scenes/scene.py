@@ -109,9 +109,9 @@ class Scene:
             )
         for method in self.cast:
             if known and self.model not in method.models:
+                suited = " or ".join(method.models)
                 why = f"{method.label} is not for the model {self.model}"
-                why += f"; it is for {' and '.join(method.models)}."
-                raise InputError(why, method.models)
+                raise InputError(f"{why}; it is for {suited}: choose a scene of that model.")
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; unchanged without a model."""
@@ -120,9 +120,10 @@ class Scene:
         own = {each.name: each.default for each in MODELS[self.model].parameters}
         for name, value in given.items():
             if name not in own and value:
-                why = f"the model {self.model} has no {name}; take a scene that has."
                 owners = [key for key, model in MODELS.items() if name in _names(model)]
-                raise InputError(why, tuple(owners))
+                suited = " or ".join(owners)
+                why = f"the model {self.model} has no {name}"
+                raise InputError(f"{why}; {suited} has: choose a scene of that model.")
         return {name: given.get(name, default) for name, default in own.items()}
 
     @property

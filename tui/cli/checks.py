@@ -190,7 +190,8 @@ def _found(
     if field in BOUNDS and compare in (operator.gt, operator.ge, operator.lt, operator.le):
         bound = reading.get(BOUNDS[field])
         sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
-        return not_within(float(limit), name, slope=ours, bound=bound, sign=sign)
+        if bound is None or bound > abs(ours):
+            return not_within(float(limit), name, slope=ours, bound=bound, sign=sign)
     unknown = ours == UNDECIDED != limit
     if not (unknown or compare(ours, limit)):
         return ""

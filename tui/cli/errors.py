@@ -44,13 +44,9 @@ def explained(error: BaseException) -> UserError:
         return UserError("interrupted.", Exit.INTERRUPTED)
     # imported here: --help and --version do not need them
     from pendu_tui.engine.methods.own import OwnMethodError
-    from pendu_tui.engine.scenes import SCENES
     from pendu_tui.recordings.files import RecordingError
 
     match error:
-        case InputError(models=(_, *_)):
-            suited = [name for name, scene in SCENES.items() if scene.model in error.models]
-            return UserError(f"{error} Scenes that would do: {', '.join(suited[:3])}.")
         case InputError() | OwnMethodError():
             return UserError(str(error))
         case RecordingError():

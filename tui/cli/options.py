@@ -5,11 +5,10 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import InputError, did_you_mean, number
+from pendu_tui.engine.inputs import InputError, check_name, did_you_mean, number
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
@@ -30,14 +29,22 @@ class Parser(argparse.ArgumentParser):
         except ValueError as error:
             raise argparse.ArgumentError(action, str(error)) from None
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse what is none of the choices, unless the command itself looks at the text."""
+        if action.choices is not None and not isinstance(action.choices, Suggestions):
+            try:
+                check_name("choice", value, action.choices)
+            except InputError as error:
+                raise argparse.ArgumentError(action, str(error)) from None
+
     def error(self, message: str) -> NoReturn:
         sentence = message.removeprefix("argument ")
-        match sentence.split():
-            case ["unrecognized", "arguments:", file] if (
-                "." in file and "-o" in self._option_string_actions
-            ):
-                sentence += f"; to write a file: -o {file}"
-        if not sentence.endswith("?"):
+        match sentence.partition(": "):
+            case "unrecognized arguments", _, words if words.startswith("-"):
+                option = re.split(r"[\s=]", words)[0]
+                sentence = f"there is no option {option}"
+                sentence += did_you_mean(option, self._option_string_actions)
+        if not sentence.endswith(("?", ".")):
             sentence += f"; {self.prog} --help shows the options."
         raise UserError(sentence)
 
@@ -45,34 +52,16 @@ class Parser(argparse.ArgumentParser):
         self, arguments: Sequence[str], namespace: Any = None
     ) -> Any:
         """Parse the arguments; optional words, such as SCENE, may also come after options."""
-        if {"-h", "--help"} & {*arguments}:  # intermixing would change its text
-            return super().parse_args(arguments, namespace)
-        for argument in takewhile("--".__ne__, arguments):
-            self._check(argument)
-        if any(each.nargs == "?" and not each.option_strings for each in self._actions):
+        if any(each.endswith("=--") for each in arguments):  # of which Python 3.11 makes a list
+            self.error("-- is no value")
+        is_mixed = any(each.nargs == "?" and not each.option_strings for each in self._actions)
+        if is_mixed and not {"-h", "--help"} & {*arguments}:  # it would change the help's text
             return self.parse_intermixed_args(arguments, namespace)
         return super().parse_args(arguments, namespace)
-
-    def _check(self, argument: str) -> None:
-        """Raise UserError for an unknown option; argparse would report a missing one first."""
-        if self._negative_number_matcher.match(argument):
-            return
-        option = re.match(r"--[a-zA-Z][\w-]*|-[a-zA-Z]", argument)
-        if option is None:
-            return
-        if option[0] not in self._option_string_actions:
-            similar = did_you_mean(option[0], self._option_string_actions)
-            hint = similar or f"; {self.prog} --help shows the options."
-            raise UserError(f"{self.prog.rpartition(' ')[2]} has no option {option[0]}{hint}")
-        if argument[option.end() :].removeprefix("=") == "--":  # of which Python 3.11 makes a list
-            self.error(f"{option[0]}: expected one argument")
 
 
 class Suggestions(list[str]):
     """`choices` for the tab key only: the command itself checks the text."""
-
-    def __contains__(self, text: object) -> bool:
-        return True
 
 
 def resolve(name: str) -> Path:
@@ -92,12 +81,8 @@ def resolve(name: str) -> Path:
     items = files.listing(folder)
     if name == "latest" and items:
         return items[0].path
-    if name == "latest":
-        why = f"no recordings in {folder} yet; start pendu-tui to make one."
-        raise RecordingError(why)
-    bundled = ["latest", *files.golden_names()]
-    advice = did_you_mean(name, [*bundled, *(item.path.name for item in items)])
-    advice = advice or f": choose a file, or one of {', '.join(bundled)}."
+    names = [*["latest"][: len(items)], *files.golden_names(), *(each.path.name for each in items)]
+    advice = did_you_mean(name, names) or "; pendu-tui recordings lists yours."
     raise RecordingError(f"there is no recording {name!r}{advice}")
 
 
@@ -135,17 +120,9 @@ def above_zero(read: Callable[[str], Any], limit: float = math.inf) -> Callable[
 positive = above_zero(number)
 
 
-def count(text: str) -> int:
-    """Return a whole number, 1 or more."""
-    if not re.fullmatch(r"\d{1,18}", text) or int(text) < 1:
-        raise ValueError(f"{text!r} is not a count; use a whole number, 1 or more")
-    return int(text)
-
-
-def port(text: str) -> int:
-    """Return a port to listen on; 0: any free one."""
-    if not re.fullmatch(r"\d{1,5}", text):
-        raise ValueError(f"{text!r} is not a port; use 0 to 65535")
+def count(text: str, least: int = 1) -> int:
+    if not re.fullmatch(r"\d{1,18}", text) or int(text) < least:
+        raise ValueError(f"{text!r} is not a count; use a whole number, {least} or more")
     return int(text)
 
 
@@ -168,33 +145,16 @@ def ladder(text: str) -> tuple[float, float, int]:
     raise ValueError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
 
 
-def moment(text: str) -> float:
-    """Return a time [s] up to an hour."""
-    value = number(text)
-    if not 0 <= value <= 3600:
-        raise ValueError(f"{text!r} is not a valid time; use 0 to 3600 s")
-    return value
-
-
-def record_time(text: str) -> float:
-    """Return a time in a record, which may be infinite."""
-    value = number(text)
-    if math.isnan(value):
-        raise ValueError("nan is not a time")
-    return value
-
-
-def scale(text: str) -> float | str:
-    """Return a number, or the text: first, std or kinetic:COLUMN."""
+def scale(text: str) -> Any:
+    """Return a positive number, or the text: first, std or kinetic:COLUMN."""
     if text in ("first", "std") or text.startswith("kinetic:"):
         return text
     try:
-        size: float = positive(text)
+        return positive(text)
     except ValueError:
         raise ValueError(
             f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
         ) from None
-    return size
 
 
 def step_sizes(text: str) -> list[float]:

@@ -47,7 +47,7 @@ def _check(options: argparse.Namespace) -> None:
         )
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
-    if options.start > options.end:
+    if not options.start <= options.end:
         raise UserError(f"there is no time from {options.start:g} to {options.end:g}.")
 
 

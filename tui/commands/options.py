@@ -7,6 +7,7 @@ scenes, methods, numbers, verdicts and fields.
 import argparse
 import math
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +28,7 @@ from pendu_tui.tui.cli.options import (
     above_zero,
     count,
     ladder,
-    moment,
-    port,
     positive,
-    record_time,
     scale,
     step_sizes,
     values,
@@ -171,7 +169,12 @@ OPTIONS: dict[str, Settings] = {
     "--loop": flag("start again at the end"),
     "--paused": flag("start paused"),
     "--size": option("CxR", "columns x rows (120x40)", cells, default=(120, 40)),
-    "--port": option("N", "port to listen on (%(default)s; 0: any free one)", port, default=8000),
+    "--port": option(
+        "N",
+        "port to listen on (%(default)s; 0: any free one)",
+        partial(count, least=0),
+        default=8000,
+    ),
     "--host": option("ADDRESS", "address to listen on (%(default)s)", default="127.0.0.1"),
     "--at-most": option("N", "limit of open labs (%(default)s)", count, default=20),
     # times and steps
@@ -179,7 +182,9 @@ OPTIONS: dict[str, Settings] = {
         "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
     ),
     "accuracy --time": option("S", "simulated time (ten small swings)", above_zero(seconds)),
-    "snapshot --time": option("S", "simulated seconds (%(default)g)", moment, default=12.0),
+    "snapshot --time": option(
+        "S", "simulated time (%(default)g)", above_zero(seconds, 3600), default=12.0
+    ),
     "--sample-every": option("N", "record every N steps (default: every 1/30 s)", count),
     "stability --steps": option(
         "N", "steps for each swing (%(default)s)", above_zero(count, 2**31), default=10_000
@@ -253,8 +258,8 @@ OPTIONS: dict[str, Settings] = {
         units.assignments,
         default={},
     ),
-    "--from": option("T", "begin at time T", record_time, dest="start", default=-math.inf),
-    "--to": option("T", "end at time T", record_time, dest="end", default=math.inf),
+    "--from": option("T", "begin at time T", number, dest="start", default=-math.inf),
+    "--to": option("T", "end at time T", number, dest="end", default=math.inf),
     "--scale": option(
         None,
         "divide errors by the first energy (first), the standard deviation (std), the mean of "
