@@ -1,6 +1,5 @@
 """Files that are written whole or not at all, and work that a signal ends in order."""
 
-import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -10,40 +9,32 @@ from types import FrameType
 from typing import TextIO
 
 from pendu_tui.recordings.system import ENDING
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
 
 FIGURES = (".svg", ".pdf", ".png")  # the suffixes of figures
 
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """Yield a temporary path beside `path`, whose name it gets at the end.
+    """Yield a temporary path; the file gets the name `path` at the end, which is said on stderr.
 
     If the block raises, or at Ctrl+C, SIGTERM or SIGHUP, nothing is left of it and an older file
     stays as it was.  Devices and pipes are written to directly.  Raises DiskError before the block
     if the name is taken.
     """
-    from tempfile import mkstemp  # loads random and hashlib, which --help needs not
+    from tempfile import TemporaryDirectory  # loads random and hashlib, which --help needs not
 
-    from pendu_tui.recordings.files import check_target, is_stream, publish, writing
+    from pendu_tui.recordings.files import check_target, is_stream, publish
 
     check_target(path, force)
     if is_stream(path):
         yield path
         return
-    with writing(path):
-        handle, name = mkstemp(".part", f".{path.name[:100]}.", path.parent)
-        os.close(handle)
-    part = Path(name)
-    with interruptible():
-        try:
-            umask = os.umask(0)
-            os.umask(umask)
-            part.chmod(0o666 & ~umask)  # mkstemp makes files private
-            yield part
-            publish(part, path, force)
-        finally:
-            part.unlink(missing_ok=True)
+    with interruptible(), TemporaryDirectory(prefix=".pendu-", dir=path.parent) as folder:
+        part = Path(folder, path.name)
+        yield part
+        publish(part, path, force)
+    warn(f"wrote {path}")
 
 
 @contextmanager

@@ -10,7 +10,6 @@ from pendu_tui.tui.cli.errors import Exit, progress, warn
 from pendu_tui.tui.cli.files import text_file
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.commands.report import write_csv
-from pendu_tui.tui.words.numbers import file_size
 
 
 def run(options: argparse.Namespace) -> int:
@@ -21,9 +20,6 @@ def run(options: argparse.Namespace) -> int:
             write_csv(out, columns, _rows(recording, show))
         if recording.reason:
             warn(f"{path}: {recording.reason}; the rest is exported.")
-    if options.output:
-        size = file_size(options.output.stat().st_size)
-        warn(f"wrote {recording.length:g} s of {path.name}, {size}: {options.output}")
     return Exit.FINE
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.recordings.events import remember
 from pendu_tui.tui.cli.cast import cast_of, check_fits, own_methods
-from pendu_tui.tui.cli.errors import Exit, UserError, say
+from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.cli.scene import read_scenes, scene_of
@@ -85,6 +85,4 @@ def snapshot(options: argparse.Namespace) -> int:
     with whole_file(path, options.force) as file:
         svg = asyncio.run(launch.still(scene, options.time, options.size, display))
         file.write_text(svg, encoding="utf-8")
-    if options.output is None:
-        say(f"saved {path}")
     return Exit.FINE

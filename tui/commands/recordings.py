@@ -1,7 +1,7 @@
 """List the recordings, show the contents of one, or recover a damaged one."""
 
 import argparse
-import time
+from pathlib import Path
 from typing import Any
 
 from pendu_tui.recordings import files
@@ -10,55 +10,44 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.commands.report import Column, Report, Table, fields_of
+from pendu_tui.tui.commands.report import Column, Report, fields_of
 from pendu_tui.tui.words.numbers import counted, file_size, seconds
-
-OPTIONS = {"file": ("show", "recover"), "output": ("recover",), "force": ("recover",)}
-"""Option -> the verbs that take it."""
 
 
 def run(options: argparse.Namespace) -> int:
-    for name, verbs in OPTIONS.items():
-        if getattr(options, name) and options.verb not in verbs:
-            option = "a file" if name == "file" else f"--{name}"
-            raise UserError(f"{option} belongs to pendu-tui recordings {' or '.join(verbs)}.")
-    if options.verb in OPTIONS["file"] and options.file is None:
-        raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
-    report = {"list": _list, "show": _show, "recover": _recover}[options.verb](options)
+    given = (options.file is not None, options.output is not None)
+    report_of, takes = REPORTS[options.verb]
+    if given != takes:
+        raise UserError("use recordings, recordings show FILE, or recordings recover FILE -o OUT.")
+    report = report_of(options)
     report.show("json" if options.json else "table")  # -o names a recording
     return Exit.FINE
 
 
 def _list(options: argparse.Namespace) -> Report:
+    folder = str(files.folder())
     rows = [_facts(item) for item in files.listing()]
-    notes = [
-        f"recording now: {item.path.with_suffix('')}" for item in files.listing(being_made=True)
-    ]
-    if not (rows or notes):
-        notes = [f"No recordings in {files.folder()} yet; start pendu-tui to make one."]
     columns = (
-        Column("recording, newest first", "file"),
-        Column("last written", "modified", _date),
-        Column("scenes", _scenes),
+        Column("newest first", lambda row: Path(row["file"]).name),
         Column("length", "seconds", seconds),
         Column("size", "bytes", file_size),
+        Column("scenes", _scenes),
     )
     return Report(
         name="recordings",
+        title=f"{counted(len(rows), 'recording')} in {folder}",
         columns=columns if rows else (),
         rows=rows,
-        fields={"folder": str(files.folder()), "recordings": rows},
-        notes=notes,
+        fields={"folder": folder, "recordings": rows},
+        notes=[f"recording now: {each.path.stem}" for each in files.listing(being_made=True)],
     )
 
 
 def _scenes(row: dict[str, Any]) -> str:
-    parts = (", ".join(row["scenes"]), row["reason"])
-    return "; ".join(filter(None, parts))
-
-
-def _date(when: float) -> str:
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime(when))
+    scenes = row["scenes"]
+    if len(scenes) > 2:
+        scenes = [scenes[0], f"{len(scenes) - 1} more"]
+    return "; ".join(filter(None, (", ".join(scenes), row["reason"])))
 
 
 def _facts(item: files.Item) -> dict[str, Any]:
@@ -66,13 +55,10 @@ def _facts(item: files.Item) -> dict[str, Any]:
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            return facts | {
-                "seconds": recording.length,
-                "scenes": scenes,
-                "reason": recording.reason,
-            }
+            facts |= {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
     except RecordingError as error:
-        return facts | {"seconds": None, "scenes": [], "reason": str(error)}
+        facts |= {"seconds": None, "scenes": [], "reason": str(error)}
+    return facts
 
 
 def _show(options: argparse.Namespace) -> Report:
@@ -81,42 +67,46 @@ def _show(options: argparse.Namespace) -> Report:
 
 
 def _contents(recording: Recording) -> Report:
-    runs: list[dict[str, Any]] = [
+    runs = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
         | {"seconds": run.end - run.begin, "inputs": run.inputs}
         | {"numerics": run.arithmetic.numerics}
         for run in recording.runs
     ]
     cast = list(dict.fromkeys(method.key for run in recording.runs for method in run.scene.cast))
+    health = recording.reason or "complete"
+    if recording.damaged:
+        health = f"damaged: {health}"
+    samples = counted(recording.samples, "sample")  # reads them all
     more = []
     if len(runs) > MAX_RUNS:
         more = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
-    size = f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}"  # reads them all
-    health = recording.reason or "complete"
-    facts = {
-        "file": str(recording.path),
-        "health": f"damaged: {health}" if recording.damaged else health,
-        "length": seconds(recording.length),
-        "size": size,
-        "methods": ", ".join(cast),
-    }
-    fields = {"file": facts["file"], "runs": runs, "seconds": recording.length, "methods": cast}
     return Report(
         name="recordings-show",
-        columns=(Column("", "name"), Column("", "value")),
-        rows=[{"name": name, "value": value} for name, value in facts.items()],
-        fields=fields | fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
-        notes=[Table(RUN_COLUMNS, [run["scene"] | run for run in runs[:MAX_RUNS]]), *more],
+        title=f"{recording.path}: {health}\n"
+        f"{seconds(recording.length)}, {samples}, {file_size(recording.bytes)}\n"
+        f"methods: {', '.join(cast)}\n",
+        columns=RUN_COLUMNS,
+        rows=runs[:MAX_RUNS],
+        fields={
+            "file": str(recording.path),
+            "runs": runs,
+            "seconds": recording.length,
+            "methods": cast,
+            **fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
+        },
+        notes=more,
     )
 
 
 MAX_RUNS = 500  # in the table, of which Rich draws a thousand rows a second
 RUN_COLUMNS = (
     Column("run", "run", "d"),
-    Column("scene", "name"),
-    Column("theta [rad]", "theta", "g"),
-    Column("omega [rad/s]", "omega", "g"),
-    Column("h [s]", "h", "g"),
+    Column("scene", lambda run: run["scene"]["name"]),
+    *(
+        Column(f"{name} [{unit}]", lambda run, name=name: run["scene"][name], "g")
+        for name, unit in (("theta", "rad"), ("omega", "rad/s"), ("h", "s"))
+    ),
     Column("steps", "steps", "d"),
     Column("simulated s", "time", "g"),
     Column("recorded s", "seconds", ".2f"),
@@ -125,17 +115,14 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    if options.output is None:
-        raise UserError("name the file to write: -o OUT.")
-    path = resolve(options.file)
-    if options.output.exists() and path.samefile(options.output):
-        raise UserError(f"{path} is read by this command; choose another name to write.")
-    result = recover(path, options.output, options.force)
-    notes = [f"{result['out']}: {counted(result['samples_kept'], 'sample')} saved."]
-    if result["reason"]:
-        notes.append(f"Problem: {result['reason']}.")
-    if result["entries_lost"]:
-        notes.append(f"Lost: {result['entries_lost']} samples and events.")
-    if result["runs_lost"]:
-        notes.append(f"Runs not saved because their start is missing: {result['runs_lost']}.")
+    result = recover(resolve(options.file), options.output, options.force)
+    saved = counted(result["samples_kept"], "sample")
+    lost = f"{result['entries_lost']} samples and events, and {counted(result['runs_lost'], 'run')}"
+    why = result["reason"] or "it was complete"
+    notes = [f"{result['out']}: {saved} saved; {lost} lost: {why}."]
     return Report(name="recordings-recover", fields=result, notes=notes)
+
+
+REPORTS = {"list": (_list, (False, False)), "show": (_show, (True, False))}
+REPORTS |= {"recover": (_recover, (True, True))}
+"""The report of each verb, and whether it takes FILE and -o."""
