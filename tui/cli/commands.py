@@ -32,10 +32,8 @@ COMMANDS = {
         ("SCENE", "--speed", "--equal-cost", "RECORDING", "TERMINAL"),
         """\
   pendu-tui
-  pendu-tui live --scene crossover
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
   pendu-tui live --scene crossover --equal-cost
-  pendu-tui live --plain --no-record
 """,
         place="lab:live",
     ),
@@ -44,7 +42,6 @@ COMMANDS = {
         ("--no-record", "TERMINAL"),
         """\
   pendu-tui tour
-  pendu-tui tour --plain --no-record
 
 Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
@@ -94,7 +91,6 @@ Ctrl+C ends it.
         ),
         """\
   pendu-tui accuracy --target 1e-6 --time 100
-  pendu-tui accuracy --target 1e-3 --error energy --time 1000
   pendu-tui accuracy --cost seconds --methods taylor_20,rk4
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
@@ -127,7 +123,6 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
         ),
         """\
   pendu-tui run --time 100
-  pendu-tui run --scene crossover --time 100 --record crossover.mcap
   pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
@@ -171,7 +166,6 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
-  pendu-tui verify crossover.mcap --methods rk4
 
 A folder stands for all recordings below it, golden for the bundled ones.
 Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
@@ -190,7 +184,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
         "list the recordings, show or recover one",
         ("verb", "file", "--json", "RECOVER"),
         """\
-  pendu-tui recordings
   pendu-tui recordings show latest
   pendu-tui recordings recover swing.mcap.part -o saved.mcap
 """,
@@ -199,7 +192,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
         "list the scenes, with what to watch",
         ("name", "--json"),
         """\
-  pendu-tui scenes
   pendu-tui scenes crossover
   pendu-tui scenes --json | jq -r '.scenes[].name'
 """,
@@ -209,7 +201,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
         "list the methods with claimed and measured properties",
         ("names", "--methods", "--method", "--fail-if", "--json"),
         """\
-  pendu-tui methods
   pendu-tui methods rk4 verlet
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
   pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
@@ -221,7 +212,6 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
         "check the terminal, its colours, the recordings folder and versions; suggest fixes",
         ("--json",),
         """\
-  pendu-tui doctor
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
 """,
     ),

@@ -91,7 +91,7 @@ def _drop_output() -> Exit:
 
 def _dispatch(arguments: list[str]) -> int:
     match arguments:
-        case ["-h" | "--help", *_] | ["help"]:
+        case ["-h" | "--help", *_]:
             commands = "\n".join(f"  {name:<12}{each.about}" for name, each in COMMANDS.items())
             print(USAGE.format(commands=commands), end="")
             return Exit.FINE
@@ -100,8 +100,6 @@ def _dispatch(arguments: list[str]) -> int:
 
             print(f"pendu-tui {version('pendu-tui')}")
             return Exit.FINE
-        case ["help", name, *_]:
-            arguments = [name, "--help"]
     try:
         if arguments and arguments[0].startswith("--print-completion"):
             completion_parser().parse_args(arguments)
@@ -122,7 +120,7 @@ def _dispatch(arguments: list[str]) -> int:
 
 
 def split(arguments: list[str]) -> tuple[str, list[str]]:
-    """Return the command and its arguments.
+    """Return the command and its arguments.  Raises UserError if there is none.
 
     If the first word is a scene or a file, the command is live or replay.
     """
@@ -137,7 +135,8 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
 
     if first in SCENES:
         return "live", arguments
-    return first, []
+    hint = did_you_mean(first, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
+    raise UserError(f"there is no command, scene or file {first!r}{hint}")
 
 
 def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
@@ -149,14 +148,9 @@ def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
 
 
 def parser_of(name: str) -> "Parser":
-    """Return a command's parser.  Raises UserError if there is none."""
+    """Return a command's parser."""
     from pendu_tui.tui.cli.options import Parser
 
-    if name not in COMMANDS:
-        from pendu_tui.engine.scenes import SCENES
-
-        hint = did_you_mean(name, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
-        raise UserError(f"there is no command, scene or file {name!r}{hint}")
     parser = Parser(
         prog=f"pendu-tui {name}",
         description=COMMANDS[name].text,
@@ -187,22 +181,15 @@ def refuse_to_replace_inputs(options: Namespace) -> None:
     """Raise UserError if an output is a file that another argument names, even with --force."""
     arguments = dict(vars(options))
     outputs = [arguments.pop(name, None) for name in ("output", "record")]
-    inputs: list[str] = []
+    inputs: set[Path] = set()
     for value in arguments.values():
-        texts = value if isinstance(value, list) else [value]
-        for text in texts:
-            if isinstance(text, str | Path):
-                inputs += [str(text), str(text).rpartition(":")[0]]  # FILE.py:FUNCTION
+        for text in value if isinstance(value, list) else [value]:
+            if isinstance(text, str):
+                names = (text, text.rpartition(":")[0])  # FILE.py:FUNCTION
+                inputs.update(Path(name).resolve() for name in names)
     for output in outputs:
-        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
+        if isinstance(output, Path) and output.is_file() and output.resolve() in inputs:
             raise UserError(f"{output} is read by this command; choose another name to write.")
-
-
-def _is_same(path: Path, other: str) -> bool:
-    try:
-        return path.is_file() and path.samefile(other)
-    except (OSError, ValueError):  # an argument may be no name of a file
-        return False
 
 
 def repeat_swallowed_interrupts() -> None:

@@ -67,7 +67,7 @@ def _show(options: argparse.Namespace) -> Report:
 
 
 def _contents(recording: Recording) -> Report:
-    runs = [
+    runs: list[dict[str, Any]] = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
         | {"seconds": run.end - run.begin, "inputs": run.inputs}
         | {"numerics": run.arithmetic.numerics}
@@ -87,7 +87,7 @@ def _contents(recording: Recording) -> Report:
         f"{seconds(recording.length)}, {samples}, {file_size(recording.bytes)}\n"
         f"methods: {', '.join(cast)}\n",
         columns=RUN_COLUMNS,
-        rows=runs[:MAX_RUNS],
+        rows=[run["scene"] | run for run in runs[:MAX_RUNS]],
         fields={
             "file": str(recording.path),
             "runs": runs,
@@ -102,11 +102,10 @@ def _contents(recording: Recording) -> Report:
 MAX_RUNS = 500  # in the table, of which Rich draws a thousand rows a second
 RUN_COLUMNS = (
     Column("run", "run", "d"),
-    Column("scene", lambda run: run["scene"]["name"]),
-    *(
-        Column(f"{name} [{unit}]", lambda run, name=name: run["scene"][name], "g")
-        for name, unit in (("theta", "rad"), ("omega", "rad/s"), ("h", "s"))
-    ),
+    Column("scene", "name"),
+    Column("theta [rad]", "theta", "g"),
+    Column("omega [rad/s]", "omega", "g"),
+    Column("h [s]", "h", "g"),
     Column("steps", "steps", "d"),
     Column("simulated s", "time", "g"),
     Column("recorded s", "seconds", ".2f"),

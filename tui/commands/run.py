@@ -58,18 +58,11 @@ def run(options: argparse.Namespace) -> int:
     if options.time is None:
         raise UserError("--time is missing; use for example --time 60.")
     gate = parse(options.fail_if, cast=scenes[0].cast)
-    h = max(scene.h for scene in scenes)
-    if round(options.time / h) == 0:
-        raise UserError(
-            f"--time {options.time:g} s is shorter than one step of {h:g} s; use a longer time."
-        )
     form = check_output(options)
     if len(scenes) == 1:
         return run_one(scenes[0], options, gate)
-    if options.record:
-        raise UserError("--record is for one run; leave it out, or give each number one value.")
-    if form == "figure":
-        raise UserError("a figure shows one run; write a .csv, or give each number one value.")
+    if options.record or form == "figure":
+        raise UserError("--record and a figure are for one run; give each number one value.")
     return run_list(scenes, options, gate)
 
 
@@ -94,7 +87,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     if not is_whole:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    return conclude(options.fail_if, [_check(scene.name, rows, gate)])
+    return conclude(options.fail_if, [Check(scene.name, gate(by_method(rows)))])
 
 
 def lockstep_of(scene: Scene, expected_steps: int, is_plain: bool) -> Lockstep:
@@ -162,18 +155,18 @@ def rows_of(lockstep: Lockstep, sample: Sample, is_whole: bool) -> list[Row]:
         optional = fields_of(reading, *IF_KNOWN)
         row |= {name: value for name, value in optional.items() if value is not None}
         row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
-        theta_error = math.nan
+        theta_error = None
         if reading.diverged_at is None:
             theta_error = abs(model.theta_error(reading.theta, exact))
         rows.append(
             row
             | {
-                "theta_error": None if math.isnan(theta_error) else theta_error,
+                "theta_error": theta_error,
                 "drift_per_second": judgement.trend,
                 **fields_of(judgement, "slope", "uncertainty", "bound", "share"),
                 **fields_of(judgement, "verdict", "rests", "reason"),
                 "progress": judgement.progress and judgement.progress._asdict(),
-                "lyapunov_per_second": judgement.lyapunov,
+                "lyapunov_per_second": judgement.lyapunov or None,
                 "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
                 "diverged_at": reading.diverged_at,
             }
@@ -193,10 +186,6 @@ def _evaluations(
     return method.evaluations(steps)
 
 
-def _check(name: str, rows: Sequence[Row], gate: Gate) -> Check:
-    return Check(name, gate({row["method"]: row for row in rows}))
-
-
 def _report(
     lockstep: Lockstep, samples: Sequence[Sample], rows: Sequence[Row], wall_seconds: float
 ) -> Report:
@@ -214,7 +203,7 @@ def _report(
             "time": sample.t,
             "steps": sample.step,
             "wall_seconds": wall_seconds,
-            "methods": for_json(rows),
+            "methods": rows,
         },
         records=for_csv(rows),
         figure=Figure(
@@ -241,10 +230,8 @@ def _notes(lockstep: Lockstep) -> Iterator[str]:
             yield insight.text
 
 
-def for_json(rows: Sequence[Row]) -> list[Row]:
-    """Return rows for JSON, in which only irregular orbits have a Lyapunov number."""
-    lyapunov = "lyapunov_per_second"
-    return [{name: row[name] for name in row if name != lyapunov or row[name]} for row in rows]
+def by_method(rows: Sequence[Row]) -> dict[str, Row]:
+    return {row["method"]: row for row in rows}
 
 
 def for_csv(rows: Sequence[Row]) -> list[Row]:
@@ -310,13 +297,13 @@ def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate) -> Exit:
         for rows in work.run(run, scenes):
             kept += rows
             place = ", ".join(f"{name} {rows[0][column]:g}" for name, column in lists.items())
-            checks.append(_check(place, rows, gate))
+            checks.append(Check(place, gate(by_method(rows))))
             work.step()
     report = Report(
         name="runs",
         columns=[*(Column(name, name, ".6g") for name in lists.values()), *columns_of(scenes[0])],
         rows=kept,
-        fields={"time": options.time, "runs": for_json(kept), "interrupted": bool(work.ended)},
+        fields={"time": options.time, "runs": kept, "interrupted": bool(work.ended)},
         records=for_csv(kept),
     )
     publish(report, options)

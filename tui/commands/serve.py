@@ -54,10 +54,8 @@ def run(options: argparse.Namespace) -> int:
             file.write_bytes(pickle.dumps(settings))
             asyncio.run(LabServer(file, options).run())
     except (OSError, OverflowError, UnicodeError) as error:
-        why = getattr(error, "strerror", None) or str(error)
-        where = f"{options.host} port {options.port}"
-        advice = "choose another --port or --host"
-        raise UserError(f"cannot listen on {where}: {why}; {advice}.") from None
+        why = f"cannot listen on {options.host} port {options.port}: {getattr(error, 'strerror', error)}"
+        raise UserError(f"{why}; choose another --port or --host.") from None
     return Exit.FINE
 
 

@@ -51,15 +51,14 @@ def test_a_target_that_no_method_reaches_is_reported():
     found = (answer["method"], answer["h"], answer["why_not"])
     assert found == (None, None, "no method gets there")
     assert all(attempt["why_not"] for attempt in answer["attempts"])
-    assert "No method reaches the target" in pendu(*asked).out
+    assert "needs about" in pendu(*asked).out
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--h-values", "0.2:0.1:1001"], ["not a list of step sizes", "0.2:0.001:10"]),
-        (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
-        (["--time", "1e9"], ["take hours"]),
+        (["--h-values", "1e9:0.1:3"], ["1e+09"]),
         (["--methods", "taylor_20"], ["--cost seconds"]),
         (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
         (["--target", "10", "--time", "1"], ["a target of 10", "less than 1"]),
