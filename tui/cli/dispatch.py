@@ -4,6 +4,7 @@ Only what the command needs is imported.
 """
 
 import errno
+import gc
 import io
 import os
 import sys
@@ -65,6 +66,7 @@ def _main(arguments: Sequence[str] | None) -> int:
             stream.reconfigure(errors="replace")  # terminals without θ show a ?
     if arguments is None:
         repeat_swallowed_interrupts()
+        gc.disable()  # until all is imported, which leaves nothing to collect
     try:
         code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()
@@ -110,6 +112,9 @@ def _dispatch(arguments: list[str]) -> int:
         return Exit.FINE
     module, _, function = COMMANDS[name].place.partition(":")
     run = getattr(import_module(f"{ROOM}.{module or name}"), function or "run")
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()
     refuse_to_replace_inputs(options)
     if options.method:
         from pendu_tui.tui.cli.watchdog import watch_calls_in_c

@@ -1,7 +1,6 @@
 """PenduApp: themes, signals, errors, and the screen of the lab."""
 
 import asyncio
-import html
 import os
 import re
 from collections.abc import Sequence
@@ -140,6 +139,13 @@ class PenduApp(App[Exit | BaseException]):
         self.character_filter = CharacterSetFilter(name)
         self.refresh_css(animate=False)  # which redraws everything
 
+    def refresh_css(self, animate: bool = True) -> None:
+        """Apply the theme; before there is a screen, the sheet is read with it, and only once."""
+        if self.screen_stack:
+            super().refresh_css(animate=animate)
+        else:
+            self.stylesheet.set_variables(self.get_css_variables())
+
     def get_line_filters(self) -> Sequence[LineFilter]:
         filters = [*super().get_line_filters(), self.character_filter]
         return [each for each in filters if each.enabled]
@@ -184,6 +190,8 @@ def portable(svg: str) -> str:
 
 
 def _placed(found: re.Match[str]) -> str:
+    import html  # whose table of entities no lab needs
+
     opening, start, y, length, rest, escaped = found.groups()
     text = html.unescape(escaped)
     cell = float(length) / max(1, cell_len(text))
