@@ -201,11 +201,15 @@ class Canvas:
 
     def label_near(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> None:
         """Write a letter at the first of these cells that is free, but not on other methods."""
+        others = [
+            layer for each, layer in self._layers.items() if 0 <= each < FAINT and each != ink
+        ]
         found: list[tuple[int, int]] = []
         for place in places:
             if self.is_free(*place):
                 found.append(place)
-                if not any(0 <= each < FAINT and each != ink for each in self.inks_at(*place)):
+                column, row = place
+                if not any(layer[row * self.columns + column] for layer in others):
                     found = [place]
                     break
         for place in found[:1]:

@@ -20,6 +20,33 @@ _segment: Callable[[tuple[str, Style, None]], Segment] = partial(tuple.__new__, 
 """A Segment of a text, a style and no control, in a third of the time that its name takes."""
 
 
+class _Line(Strip):
+    """A line whose front is painted; Textual would look for its end character by character."""
+
+    __slots__ = ("behind", "front")
+    front: int  # columns
+    behind: int  # segments
+
+    def crop(self, start: int, end: int | None = None) -> Strip:
+        if (start, end) == (0, self.front):
+            return Strip(self._segments[: len(self._segments) - self.behind], self.front)
+        return super().crop(start, end)
+
+
+class _Styles(dict[Ink, Style]):
+    """The styles of inks: walking the style sheet is slow."""
+
+    def __init__(self, widget: "CellWidget") -> None:
+        super().__init__()
+        self._widget = widget
+
+    def __missing__(self, ink: Ink) -> Style:
+        base = self._widget.rich_style
+        style = base + ink if isinstance(ink, Style) else self._widget.style_of(ink, base)
+        self[ink] = style
+        return style
+
+
 class CellWidget(Widget):
     """Shows a picture, cut off or filled with blanks where it does not fit."""
 
@@ -28,10 +55,10 @@ class CellWidget(Widget):
     def __init__(self, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._picture = Picture()
-        self._styles: dict[Ink, Style] = {}
+        self._styles = _Styles(self)
         self._lines: list[Strip] = []  # the visible ones, with the border
         self._crop: Region | None = None  # of the lines; None if they are stale
-        self._changed: set[int] = set()  # rows
+        self._changed: dict[int, tuple[int, int]] = {}  # rows: columns, pieces behind
         self.room = Size()
         """Columns and rows of a picture.  Textual walks through the screen for `size`."""
 
@@ -53,12 +80,11 @@ class CellWidget(Widget):
         self.draw()
 
     def show(self, picture: Picture) -> None:
-        changes = picture.changes(self._picture, self.room.width)
-        changed = [Region(x, y, columns, 1) for y, x, columns in changes]
+        changes = [*picture.changes(self._picture, self.room.width)]
         self._picture = picture
-        self._changed.update(region.y for region in changed)
-        if changed:
-            self.refresh(*changed)
+        self._changed.update((y, (columns, behind)) for y, columns, behind in changes)
+        if changes:
+            self.refresh(*[Region(0, y, columns, 1) for y, columns, _ in changes])
 
     @property
     def text(self) -> str:
@@ -86,16 +112,19 @@ class CellWidget(Widget):
             self._end = len(self._lines) - bottom  # `room` may still be the old one
             if self._lines:
                 inside = self._lines[min(self._top, len(self._lines) - 1)]
+                self._left_width = left
                 self._left = [*inside.crop(0, left)]
                 self._right = [*inside.crop(crop.width - right)]
         else:
-            for y in self._changed:
+            for y, (columns, behind) in self._changed.items():
                 if self._top + y < self._end:
                     segments = self._segments(y)
                     for each in self._filters:
                         segments = each.apply(segments, self._background)
-                    line = [*self._left, *segments, *self._right]
-                    self._lines[self._top + y] = Strip(line, crop.width)
+                    line = _Line([*self._left, *segments, *self._right], crop.width)
+                    line.front = self._left_width + columns
+                    line.behind = behind + len(self._right)
+                    self._lines[self._top + y] = line
         self._changed.clear()
         return self._lines
 
@@ -105,10 +134,11 @@ class CellWidget(Widget):
     def _segments(self, y: int) -> list[Segment]:
         rows = self._picture.rows
         row = rows[y] if y < len(rows) else ()
-        segments = [_segment((text, self._style(ink), None)) for text, ink in row]
+        styles = self._styles
+        segments = [_segment((text, styles[ink], None)) for text, ink in row]
         text = "".join([text for text, _ in row])
         if len(text) != self.room.width or not _NARROW(text):
-            segments = Segment.adjust_line_length(segments, self.room.width, self._style(NOBODY))
+            segments = Segment.adjust_line_length(segments, self.room.width, styles[NOBODY])
         return segments
 
     def style_of(self, ink: int, base: Style) -> Style:
@@ -117,13 +147,5 @@ class CellWidget(Widget):
     def notify_style_update(self) -> None:
         """Forget the styles of the old theme or sheet."""
         super().notify_style_update()
-        self._styles = {}
+        self._styles.clear()
         self._crop = None
-
-    def _style(self, ink: Ink) -> Style:
-        """Return the style of an ink, from a cache: walking the style sheet is slow."""
-        if ink not in self._styles:
-            base = self.rich_style
-            style = base + ink if isinstance(ink, Style) else self.style_of(ink, base)
-            self._styles[ink] = style
-        return self._styles[ink]

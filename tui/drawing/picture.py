@@ -166,14 +166,16 @@ class Picture:
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self.rows)
 
     def changes(self, before: "Picture", width: int) -> Iterator[tuple[int, int, int]]:
-        """Yield row, first column and number of columns of what differs in rows of this width."""
+        """Yield each row that differs, the column where an equal end begins, and its pieces.
+
+        Rows have this width; where a character may be two columns wide, no end is equal.
+        """
         for y, (old, new) in enumerate(zip_longest(before.rows, self.rows, fillvalue=())):
             if old != new:
-                begin = _equal(old, new)
-                end = width
-                if _length(old) == _length(new) == width:  # no character is two columns wide
-                    end = max(width - _equal(old[::-1], new[::-1]), begin + 1)
-                yield y, begin, end - begin
+                behind = _equal_at_end(old, new)
+                if _length(old) != width or _length(new) != width:
+                    behind = 0
+                yield y, width - _length(new[len(new) - behind :]), behind
 
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
@@ -188,14 +190,14 @@ def _length(row: Row) -> int:
     return sum([len(text) for text, _ in row])
 
 
-def _equal(old: Row, new: Row) -> int:
-    """Return the length of the pieces that both rows begin with."""
-    length = 0
-    for one, other in zip(old, new, strict=False):
+def _equal_at_end(old: Row, new: Row) -> int:
+    """Return the number of pieces that both rows end with."""
+    count = 0
+    for one, other in zip(reversed(old), reversed(new), strict=False):
         if one != other:
             break
-        length += len(one[0])
-    return length
+        count += 1
+    return count
 
 
 def lines_of(picture: Picture, palette: Palette | None) -> list[Text]:

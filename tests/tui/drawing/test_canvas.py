@@ -215,10 +215,10 @@ def test_what_is_drawn_on_a_copy_is_not_on_the_original():
 def test_pictures_are_compared_row_by_row():
     picture = Picture((*Canvas(4, 2).picture().rows, (("ab", 1),)))
     assert picture.text == "\n\nab"
-    assert list(picture.changes(Canvas(4, 2).picture(), 4)) == [(2, 0, 4)]
+    assert list(picture.changes(Canvas(4, 2).picture(), 4)) == [(2, 4, 0)]
     old = Picture(((("abc", 1), ("d", 2), ("ef", 3)),))
     new = Picture(((("abc", 1), ("x", 2), ("ef", 3)),))
-    assert list(new.changes(old, 6)) == [(0, 3, 1)]
-    assert list(new.changes(old, 8)) == [(0, 3, 5)]  # up to the end, where a row may be wide
+    assert list(new.changes(old, 6)) == [(0, 4, 1)]  # "abcx" is sent
+    assert list(new.changes(old, 8)) == [(0, 8, 0)]  # up to the end, where a row may be wide
     assert list(new.changes(new, 6)) == []
     assert Canvas(0, 2).picture().text == "\n"

@@ -2,6 +2,7 @@
 
 from typing import ClassVar
 
+from rich.cells import cell_len
 from rich.style import Style
 from textual.app import App, ComposeResult
 from textual.strip import Strip
@@ -48,3 +49,18 @@ async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew(
         x, y = list(cells.render_line(0))[:2]
         assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
         assert x.style.bgcolor == y.style.bgcolor
+
+
+async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it():
+    app = CellApp()
+    async with app.run_test(size=(8, 3)) as pilot:
+        cells = app.query_one(Drawn)
+        cells.styles.border = ("round", "red")
+        await pilot.pause()
+        for text in ("abc", "abx", "世x"):
+            cells.show(Picture([[(text, TEXT), ("def"[: 6 - cell_len(text)], NOBODY)]]))
+            await pilot.pause()
+            line = cells.painted[1]
+            assert line.text == f"│{text}def│"
+            for end in range(1, 9):
+                assert line.crop(0, end) == Strip([*line]).crop(0, end)
