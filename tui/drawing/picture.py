@@ -97,7 +97,7 @@ PALETTES = {
             *("green", "blue", "red", "cyan", "yellow", "white"),
         ),
         exact="white",
-        frame="white",
+        frame="bright_black",
         text="bright_white",
         warn="bright_magenta",
         background="black",

@@ -123,3 +123,7 @@ def test_other_themes_get_the_palette_that_suits_their_name():
     suiting = {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}
     for theme, name in {**{name: name for name in PALETTES}, **suiting}.items():
         assert palette(theme) is PALETTES[name]
+
+
+def test_frames_are_fainter_than_words_in_every_theme():
+    assert all(each.colour(FRAME) != each.colour(QUIET) for each in PALETTES.values())
