@@ -420,9 +420,11 @@ class LabScreen(SizedScreen[None]):
         self.notify(notice, timeout=6)
 
     def action_back(self) -> None:
-        """Leave the lesson, else the zoom of the chart."""
+        """Leave the lesson, else a view for the lab, else the zoom of the chart."""
         if self.is_guided:
             self._leave_lesson()
+        elif self.view != "lab":
+            self.call_next(self.action_view, "lab")
         elif self.shown.stretch:
             self.change_shown(self.shown.zoomed(None))
 

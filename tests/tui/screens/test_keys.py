@@ -197,6 +197,9 @@ async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):
             assert text.splitlines()[0] == title
             assert text.index("pause, go on") < text.index("What is on the screen")
             await theatre.press("escape")
+            await theatre.press("escape")  # from the view
+            await theatre.pilot.pause()
+            assert theatre.stage.view == "lab"
 
 
 @pytest.mark.parametrize("owner", [LabScreen, SectionPane])
@@ -211,7 +214,7 @@ def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner):
 async def test_the_last_line_has_what_one_needs_now_each_a_button():
     async with lab(size=(80, 40)) as theatre:
         row = theatre.text("KeyLine")
-        hints = "+ - Step|p Scene|space Pause|v View|? Help|ctrl+p Find|b Back|T Tour"
+        hints = "+ - Step|p Scene|space Pause|v View|? Help|q Quit|ctrl+p Find|T Tour"
         assert all(hint in row for hint in hints.split("|"))
         await theatre.pilot.click("KeyLine", offset=(row.index("Pause") + 1, 0))
         await theatre.pilot.click("KeyLine", offset=(row.index("-"), 0))
