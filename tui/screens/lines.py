@@ -155,16 +155,21 @@ class InsightLine(Pane):
         text = insight(source, self.shown.hidden).text
         ink = TEXT
         if source.failure:
-            text = f"{source.failure} The run stands still; space tries again."
+            text = f"{without_folder(source.failure)} The run stands still; space tries again."
             ink = WARN
         elif status is not None and status.failed:
-            text = f"Not recording: {status.failed}"
+            text = f"Not recording: {without_folder(status.failed)}"
             ink = WARN
         rows = []
         if watch != text and height > 1:
             rows = text_rows(watch, TEXT, self.cast, width, 1)
             height -= len(rows)
         return Picture([*rows, *text_rows(text, ink, self.cast, width, height)])
+
+
+def without_folder(failure: str) -> str:
+    """Return a sentence that begins with a path without its folder: the reason must fit."""
+    return re.sub(r"^(\w:)?[^:`]*[/\\]", "", failure)
 
 
 def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = None) -> list[Row]:
@@ -196,6 +201,8 @@ class LessonPanel(Pane):
             forward = f"{' '.join(map(str, numbers))} answer  enter the truth"
         elif lesson.stage == "watching" and lesson.shot.moment is not None:
             forward = "enter to the moment"
+        elif lesson.index + 1 == len(lesson.pages):
+            forward = "enter end"
         title = f" {lesson.title}"
         keys = f"{forward}  esc leave  backspace back"
         while len(keys) > max(width - len(title) - 2, 0):

@@ -10,7 +10,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, Source
-from pendu_tui.tui.screens.lines import bar, facts, status_row, text_rows
+from pendu_tui.tui.screens.lines import bar, facts, status_row, text_rows, without_folder
 from tests.tui.harness import after, eventful
 
 
@@ -128,3 +128,9 @@ def test_no_line_of_a_sentence_ends_within_a_name_or_after_an_answers_number():
     wrapped = [" Watch", " Explicit Euler.", " 1: It gains.", " 2: It"]
     assert lines("Watch Explicit Euler. 1: It gains. 2: It") == wrapped
     assert lines("RK4 loses what Verlet keeps", 1) == [" RK4 loses …"]
+
+
+def test_why_something_failed_is_told_without_a_folder():
+    for folder in ("", "/home/me/a b/", "C:\\Users\\me\\", "own/"):
+        for told in ("e.py, line 7: `a / b` raises Error: x.", "run.mcap.part: 1 of 2/3 is full."):
+            assert without_folder(folder + told) == told

@@ -35,6 +35,7 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert (region.width, region.bottom) == (60, 15)  # the key line is below
             assert not theatre.stage.query_one(InsightLine).is_on_screen
             assert shot.view != "lab" or theatre.stage.query_one(TimeChart).size.height >= 5
+            assert ("enter end" in panel(theatre)) == (page is STEPS[-1])
             await theatre.press("enter")
             if page is STEPS[-1]:
                 break
@@ -45,6 +46,7 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             result = "Right." if shot.right == 1 + number % 2 else "Not quite."
             assert f"{result} {shot.right}: {shot.answers[shot.right - 1]}" in panel(theatre)
             assert words(shot.truth) in panel(theatre)
+            assert "enter go on" in panel(theatre)
             await theatre.press("enter")
         await theatre.pilot.pause()
         assert not theatre.stage.query_one(LessonPanel).is_on_screen
