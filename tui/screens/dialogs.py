@@ -33,11 +33,6 @@ COLUMN_WIDTH = 36  # characters, a key and what it does
 class Form(ModalScreen[ScreenResultType], SizedScreen[ScreenResultType]):
     """A screen over the lab that closes once, however fast clicks and keys come."""
 
-    def on_mount(self) -> None:
-        """Stop cursors from blinking with reduced motion, which Textual does not."""
-        for field in self.query(Input):
-            field.cursor_blink = self.app.animation_level != "none"
-
     def on_click(self, event: events.Click) -> None:
         if event.widget is self:
             self.dismiss(None)
@@ -193,18 +188,14 @@ class Finder(Form[str]):
         self.found = sorted(found, key=lambda each: sum(places(each)))
         listed = self.query_one(Choices)
         listed.clear_options()
-        listed.add_options(self._line(each, patterns) for each in self.found)
+        listed.add_options(map(self._line, self.found))
         listed.highlighted = 0
 
-    def _line(self, entry: Entry, patterns: Iterable[str]) -> Table:
+    def _line(self, entry: Entry) -> Table:
         line = Table.grid("text", "about", "key", expand=True, padding=(0, 1))
         line.columns[0].width = max(len(each.text) for each in self.found)
         line.columns[1].ratio = 1
-        texts = [Text(words) for words in (entry.text, entry.about, entry.key)]
-        for each in patterns:
-            for text in texts[:2]:
-                text.highlight_regex(each, "bold underline")
-        line.add_row(*texts)
+        line.add_row(*map(Text, (entry.text, entry.about, entry.key)))
         return line
 
     async def action_move(self, name: str) -> None:

@@ -4,14 +4,13 @@ import asyncio
 import gc
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.content import Content
 from textual.reactive import var
 from textual.screen import ModalScreen
 from textual.widget import Widget
@@ -82,6 +81,8 @@ class LabScreen(SizedScreen[None]):
     fps = FPS
     record: Callable[[Live], object] = staticmethod(lambda live: None)
     """Begins a lab's recording, after the first paint; may raise OSError or UserError."""
+    notice = ""
+    """What is said first."""
     guide: Lesson | None = None
     """The lesson that key T begins; None: the tour, which is read then."""
 
@@ -89,10 +90,8 @@ class LabScreen(SizedScreen[None]):
         self,
         source: Source,
         clock: Callable[[], float] = time.monotonic,
-        notices: Sequence[str] = (),
     ) -> None:
         super().__init__()
-        self._notices = notices
         self.source = source
         self.sources = [source]
         shown = Shown().through(source.scene)
@@ -167,8 +166,8 @@ class LabScreen(SizedScreen[None]):
         gc.freeze()  # never collect what exists now, which would cost frames
         gc.enable()
         self.frame_timer.resume()
-        for notice in self._notices:
-            self.notify(notice, timeout=15)
+        if self.notice:
+            self.warn(self.notice)
         if self.guide and self.source.scene == self.guide.page:
             await self.action_lesson()
 
@@ -571,13 +570,7 @@ class LabScreen(SizedScreen[None]):
         self._show_text("Events", numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
-        panes = (pane.border_title for pane in self.query(Pane) if pane.is_on_screen)
-        titles = [
-            VIEWS[self.view].title,
-            *(Content.from_markup(each).plain for each in panes if each),
-        ]
-        on_screen = "; ".join(titles)
-        self._show_text("In words", [*description(self.source), f"On screen: {on_screen}."])
+        self._show_text("In words", description(self.source))
 
     def action_screenshot(self) -> None:
         self._save("Screenshot", lambda folder: self.app.save_screenshot(path=str(folder)))

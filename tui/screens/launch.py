@@ -141,10 +141,9 @@ def open_lab(live: Live, options: argparse.Namespace, lesson: Lesson | None = No
 
 def replay_screen(replay: Replay, no_record: bool) -> LabScreen:
     """Return the screen of a replay; what continues live is recorded in the library, if at all."""
-    notices = []
+    screen = LabScreen(replay)
     if reason := replay.recording.reason:
-        notices.append(f"This recording is incomplete ({reason}); showing what is intact.")
-    screen = LabScreen(replay, notices=notices)
+        screen.notice = f"This recording is incomplete ({reason}); showing what is intact."
     if not no_record:
         screen.record = start_recording
     return screen
