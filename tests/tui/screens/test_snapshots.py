@@ -70,7 +70,7 @@ def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_len
 ):
     out = tmp_path / "lab.svg"
     outcome = pendu("snapshot", "--time", SECONDS, "-o", out)
-    assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
+    assert (outcome.code, outcome.out) == (0, "")
     svg = out.read_text(encoding="utf-8")
     snapshot("lab.svg", svg)
     texts = map(html.unescape, re.findall(r"<text [^>]*>([^<]*)</text>", svg))
@@ -82,7 +82,7 @@ def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_len
     [
         (["--size", "10x10"], "60x16"),
         (["--size", "big"], "120x40"),
-        (["--time", "nan"], "not a valid time"),
+        (["--time", "nan"], "out of range"),
         (["-o", "lab.png"], "lab.svg"),
     ],
 )
