@@ -117,7 +117,7 @@ def remember(own: Iterable["OwnMethod"]) -> None:
 
 def name_of(method: Method) -> str:
     """Return a method's name in recordings: its key, with the source's hash for a user's own."""
-    if method.phases is _no_phases:
+    if not is_present(method):
         return method.reference
     if sha256 := getattr(method, "sha256", ""):
         return f"{method.key}@{sha256}"
@@ -153,10 +153,15 @@ def method_named(name: str) -> Method:
     )
 
 
+def is_present(method: Method) -> bool:
+    """Return whether a method can be simulated."""
+    return method.phases is not _no_phases
+
+
 def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
     """Raise RecordingError if one of the scene's methods, or of `only`, cannot be simulated."""
     for method in scene.cast:
-        if method.phases is _no_phases and (only is None or method.key in only):
+        if not is_present(method) and (only is None or method.key in only):
             raise RecordingError(
                 f"it needs the user's own method {method.key}; give its file with "
                 f"--method FILE.py:{method.key}"

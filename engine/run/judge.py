@@ -207,7 +207,7 @@ class Judge:
             found = found._replace(verdict=GROWS)
         if found.verdict != UNDECIDED:
             found = found._replace(reason="")
-        elif progress := self._progress():
+        elif progress := self.progress_at(self._last.step):
             found = found._replace(progress=progress, reason=str(progress))
         self.judgement = found
 
@@ -261,19 +261,20 @@ class Judge:
             return levels.NEAR
         return "" if self._is_long else levels.SHORT
 
-    def _progress(self) -> Progress | None:
-        """Return how far it is to the first possible verdict, or else to the last one.
+    def progress_at(self, step: int) -> Progress | None:
+        """Return how far it is from a step to the first possible verdict, or else to the last one.
 
         None: a verdict can come any time.
         """
+        swings = step * self._h / self._period
         need = levels.LONG * self._h / self._period
         if self._orbit and self._orbit.is_regular:
             need = float(levels.MIN_PERIODS)
-        elif not self._orbit and not self._may_beat and self._swings < levels.MIN_SWINGS:
+        elif not self._orbit and not self._may_beat and swings < levels.MIN_SWINGS:
             need = float(levels.MIN_SWINGS)
-        if self._swings >= need:
+        if swings >= need:
             return None
-        return Progress(int(self._swings), math.ceil(need), "swings")
+        return Progress(int(swings), math.ceil(need), "swings")
 
 
 class _Orbit(Stretching):

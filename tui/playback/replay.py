@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from typing import TYPE_CHECKING
 
+from pendu_tui.engine.run.judge import Judge, LookPoint, stride
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import SteppingChange, change_before
-from pendu_tui.engine.run.verdicts import FAILED, Judgement
-from pendu_tui.recordings.events import Event, check_present
+from pendu_tui.engine.run.stepping import SteppingChange
+from pendu_tui.engine.run.verdicts import FAILED, UNDECIDED, Judgement, Milestone
+from pendu_tui.recordings.events import Event, check_present, is_present
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.live import Live
@@ -61,20 +62,46 @@ class Replay(Source):
     def _know(self) -> None:
         """Read what was known at the playhead off the events."""
         step = self.sample.step
-        self.stepping = self._past_changes[-1].stepping
+        since, _, self.stepping = self._past_changes[-1]
         self.milestones = [each for each in self.run.milestones if each.step <= step]
-        since = change_before(self.changes, step).step
-        period = self.exact.period or math.tau / self.scene.w0
-        swings = (step - since) * abs(self.stepping.h) / period
-        given = {
-            each.method: Judgement(each.verdict, each.trend, periods=swings, lyapunov=each.lyapunov)
+        verdicts = {
+            each.method: each
             for each in self.milestones
             if each.kind == "verdict" and each.step > since
         }
-        for method, reading in zip(self.scene.cast, self.sample.readings, strict=True):
-            if reading.diverged_at is not None:
-                given[method] = Judgement(FAILED)
-        self.judgements = [given.get(method, Judgement()) for method in self.scene.cast]
+        self.judgements = [
+            self._judgement(index, step - since, verdicts.get(method))
+            for index, method in enumerate(self.scene.cast)
+        ]
+
+    def _judgement(self, index: int, steps: int, last: Milestone | None) -> Judgement:
+        """Return what is known of a method, so many steps after a change, by its last verdict."""
+        method = self.scene.cast[index]
+        period = self.exact.period or math.tau / self.scene.w0
+        swings = steps * abs(self.stepping.h) / period
+        if self.sample.readings[index].diverged_at is not None:
+            return Judgement(FAILED)
+        if last is not None and last.verdict != UNDECIDED:
+            trend = last.trend
+            return Judgement(
+                last.verdict,
+                trend,
+                periods=swings,
+                lyapunov=last.lyapunov,
+                is_evident=trend is not None,
+            )
+        looked = steps - steps % stride(period, self.stepping.h)
+        if not (looked and is_present(method)):
+            return Judgement(periods=swings)
+        judge = Judge(
+            h=self.stepping.own[index],
+            period=period,
+            method=method,
+            model=self.scene.equations,
+            start=LookPoint(0, 0.0, 0.0, 0.0),
+        )
+        progress = judge.progress_at(looked * self.stepping.parts[index])
+        return Judgement(periods=swings, progress=progress)
 
     @property
     def recording_status(self) -> RecordingStatus:

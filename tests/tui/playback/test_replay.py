@@ -187,22 +187,51 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
-    """A lab that ran for 24 s, then from 10 s on for 8 s with another h; its recording."""
+    """A lab that ran for 24 s, then from 10 s on for 8 s with another h; what it said; its file."""
     path = tmp_path_factory.mktemp("lab") / "lab.mcap"
     lab = Lab(record=path)
-    lab.run(24.0)
     live = lab.live
+    said = {}
+
+    def run(seconds):
+        for _ in range(round(seconds * FPS)):
+            sample = lab.run(1 / FPS)
+            said[sample.run, sample.step] = judged(live)
+
+    run(24.0)
     first = list(live.milestones)
     live.step(200 - live.sample.step)
     live.change(live.stepping._replace(h=0.02))
     live.pause(False)
-    lab.run(8.0)
+    run(8.0)
     live.close()
-    return live, first, path
+    return live, first, said, path
+
+
+def judged(source):
+    return [(each.verdict, each.progress) for each in source.judgements]
+
+
+def test_it_says_at_each_sample_what_the_lab_said_and_shows_the_trend_of_each_verdict(lab):
+    _, first, said, path = lab
+    replay = Table(path).replay
+    seen = {}
+    trends = {}
+    while replay.sample != (sample := replay.step(1)):
+        seen[sample.run, sample.step] = judged(replay)
+        for method, judgement in zip(replay.scene.cast, replay.judgements, strict=True):
+            trends.setdefault((method, judgement.verdict), judgement.trend)
+    both = seen.keys() & said.keys()
+    assert len(both) > 500
+    assert [seen[place] for place in both] == [said[place] for place in both]
+    assert trends.items() >= {
+        ((each.method, each.verdict), each.trend) for each in first if each.kind == "verdict"
+    }
+    assert set(trends.values()) > {None}
 
 
 def test_it_shows_the_milestones_and_verdicts_of_the_lab_at_their_time(lab):
-    live, first, path = lab
+    live, first, _, path = lab
     table = Table(path)
     replay = table.replay
     assert verify(path).identical
@@ -229,7 +258,7 @@ def test_it_shows_the_milestones_and_verdicts_of_the_lab_at_their_time(lab):
 
 
 def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
-    table = Table(lab[2])
+    table = Table(lab[3])
     replay = table.replay
     replay.seek(18.0)
     table.run(1 / FPS)
@@ -244,7 +273,7 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
-    _, first, path = lab
+    _, first, _, path = lab
     said = next(each for each in first if each.verdict == "bounded")
     with Recorder(tmp_path / "other.mcap") as recorder:
         for clock, value in Table(path).recording.entries():
