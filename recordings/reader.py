@@ -23,13 +23,11 @@ from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
 
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
-MAX_SUMMARY = 1 << 26  # bytes; enough for four days
 MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
-_INDEX = struct.Struct("<BQQQQQI")  # opcode, length, start, end [ns], offset, size, that of its map
-_CHUNK_INDEX = int(Opcode.CHUNK_INDEX)
+_INDEX = struct.Struct("<QQQQI")  # start, end [ns], offset, size, that of its map
 _IN_MAP = 10  # bytes of a channel's number, of which the lowest is the first, and its offset
 _CHUNK = struct.Struct(
     "<BQQQQI8sQ"
@@ -77,10 +75,7 @@ class Contents:
         """Add a channel.  Raises RecordingError if the file is of another format."""
         version = channel.metadata.get("format")
         if channel.topic == EVENTS and version != FORMAT_VERSION:
-            maker = "0.1" if version in ("1", "2") else "another version"
-            raise RecordingError(
-                f"it was made by {maker}; this version reads format {FORMAT_VERSION}"
-            )
+            raise RecordingError(f"it is of another format; this version reads {FORMAT_VERSION}")
         self.topics[channel.id] = channel.topic
 
 
@@ -90,8 +85,6 @@ def read_contents(stream: BinaryIO, check: bool = False) -> Contents:
     With `check`, the checksum of the whole file is verified.
     """
     size = stream.seek(0, SEEK_END)
-    if not size:
-        raise RecordingError("the file is empty")
     summary = _read_summary(stream, size)
     if summary is None:
         contents = _search(stream, size, {})
@@ -113,7 +106,7 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
     stream.seek(max(0, size - _FOOTER.size))
     try:
         opcode, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
-        if (opcode, magic) != (Opcode.FOOTER, MAGIC) or size - start > MAX_SUMMARY:
+        if (opcode, magic) != (Opcode.FOOTER, MAGIC):
             return None
         stream.seek(start - 4)
         data = stream.read()
@@ -130,27 +123,27 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
 def _read_index(data: bytes) -> Contents:
     """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
+    chunk_index = int(Opcode.CHUNK_INDEX)
     events: set[int] = set()  # the lowest bytes of their channels
     chunks_end = 0  # chunks that overlap could take for ever
     at = 0
     while at < len(data):
-        if data[at] == _CHUNK_INDEX:
-            _, length, start, end, offset, size, map_size = _INDEX.unpack_from(data, at)
+        opcode, length = _RECORD.unpack_from(data, at)
+        begin = at + _RECORD.size
+        at = begin + length
+        if opcode == chunk_index:
+            start, end, offset, size, map_size = _INDEX.unpack_from(data, begin)
             if offset < chunks_end:
                 raise ValueError
             chunks_end = offset + size
-            begin = at + _INDEX.size
+            begin += _INDEX.size
             may_have_events = not events.isdisjoint(data[begin : begin + map_size : _IN_MAP])
             contents.places.append(Place(offset, start, end, may_have_events))
-        else:
-            opcode, length = _RECORD.unpack_from(data, at)
-            begin = at + _RECORD.size
-            if opcode == Opcode.CHANNEL:
-                channel = Channel.read(ReadDataStream(BytesIO(data[begin : begin + length])))
-                contents.add(channel)
-                if channel.topic == EVENTS:
-                    events.add(channel.id % 256)
-        at += _RECORD.size + length
+        elif opcode == Opcode.CHANNEL:
+            channel = _channel(data[begin:at])
+            contents.add(channel)
+            if channel.topic == EVENTS:
+                events.add(channel.id % 256)
     return contents
 
 
@@ -193,9 +186,7 @@ def _head_at(block: bytes, at: int) -> tuple[int, int]:
 
 def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
     """Return the channels and messages in a chunk's contents, without mcap for speed."""
-    is_message = int(Opcode.MESSAGE)
-    before = _RECORD.size
-    before_payload = _MESSAGE.size
+    message = int(Opcode.MESSAGE)
     declared = []
     groups: list[Group] = []
     latest = 0  # ns
@@ -203,8 +194,8 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
     at = 0
     while at < len(data):
         opcode, length, channel, sequence, log_time, _ = _MESSAGE.unpack_from(data, at)
-        end = at + before + length
-        if opcode == is_message:
+        end = at + _RECORD.size + length
+        if opcode == message:
             if not latest <= log_time <= MAX_TIME:
                 raise ValueError("time runs back, or is too late")
             if sequence != current or log_time > latest:
@@ -214,13 +205,17 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
                 messages: list[bytes] = []
                 groups.append(Group(sequence, log_time, channels, messages))
             channels.append(channel)
-            messages.append(data[at + before_payload : end])
+            messages.append(data[at + _MESSAGE.size : end])
         elif opcode == Opcode.CHANNEL:
-            declared.append(Channel.read(ReadDataStream(BytesIO(data[at + before : end]))))
+            declared.append(_channel(data[at + _RECORD.size : end]))
         at = end
     if not groups:
         raise ValueError("no messages")
     return declared, groups
+
+
+def _channel(data: bytes) -> Channel:
+    return Channel.read(ReadDataStream(BytesIO(data)))
 
 
 def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
@@ -244,10 +239,7 @@ def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
     stream.seek(0)
     start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:
-        reason = "this is not an MCAP file"
-        if contents.places:
-            reason = "its first bytes are damaged"
-        contents.damage(reason)
+        contents.damage("its first bytes are not those of an MCAP file")
     contents.reason = contents.reason or "its end is missing or damaged"
     return contents
 
