@@ -5,9 +5,9 @@ And headless runs, whose clock is the simulated time: the same run gives the sam
 
 import math
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method, method_of
 from pendu_tui.engine.models import MODELS
@@ -94,14 +94,6 @@ class Entry(NamedTuple):
     value: Sample | Event | None  # None: a gap, where entries are lost
 
 
-class Writes(Protocol):
-    """What records a run: a Recorder, whose module is slow to load and imports this one."""
-
-    def event(self, event: Event, clock: float) -> None: ...
-
-    def sample(self, sample: Sample, clock: float) -> None: ...
-
-
 def noticed(run: int, milestone: Milestone) -> Event:
     """Return the event of a milestone."""
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
@@ -183,28 +175,29 @@ def steps_for(scene: Scene, time: float) -> int:
 def simulate(
     scene: Scene,
     time: float,
-    recorder: Writes | None = None,
+    record: Callable[[Sample | Event, float], None] | None = None,
     sample_every: int | None = None,
     loops: LoopsOf = PlainLoops,
     lockstep: Lockstep | None = None,
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, the last of which is the result.
 
-    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps, and include the first
-    and the last step.  Pass a `lockstep` to read its milestones or verdicts; close the recorder.
+    `record` is the `add` of a Recorder, which the caller closes.  Samples are `sample_every` steps
+    apart, or 1/30 s rounded to whole steps, and include the first and the last step.  Pass a
+    `lockstep` to read its milestones or verdicts.
     """
-    lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
+    lockstep = lockstep or Lockstep(scene, loops=loops, judged=record is not None)
     last = steps_for(scene, time)
     recorded = 0  # milestones
     every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
-    if recorder:
-        recorder.event(Event("start", 1, 0, 0.0, scene=scene), 0.0)
+    if record:
+        record(Event("start", 1, 0, 0.0, scene=scene), 0.0)
     while True:
         sample = lockstep.sample()
-        if recorder:
-            recorder.sample(sample, sample.t)
+        if record:
+            record(sample, sample.t)
             for milestone in lockstep.milestones[recorded:]:
-                recorder.event(noticed(1, milestone), sample.t)
+                record(noticed(1, milestone), sample.t)
             recorded = len(lockstep.milestones)
         yield sample
         if lockstep.step >= last:

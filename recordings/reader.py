@@ -215,7 +215,8 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
 
 
 def _channel(data: bytes) -> Channel:
-    return Channel.read(ReadDataStream(BytesIO(data)))
+    channel: Channel = Channel.read(ReadDataStream(BytesIO(data)))
+    return channel
 
 
 def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:

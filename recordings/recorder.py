@@ -85,11 +85,24 @@ class Recorder:
         )
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
-    def event(self, event: Event, clock: float) -> None:
-        """Write an event, during a pause at once to disk.
+    def add(self, value: Sample | Event | None, clock: float) -> None:
+        """Write an entry, during a pause at once to disk; None: samples are missing here.
 
-        Finishes the recording and raises DiskError if it has as many events as may be read.
+        A sample is not written again after it or a later one.  Extremes are those since the
+        previous sample, so the first sample of a run has none.  Finishes the recording and raises
+        DiskError if it has as many events as may be read.
         """
+        if value is None:
+            self._last = None
+        elif isinstance(value, Event):
+            self._add_event(value, clock)
+        elif self._last is None:
+            self._add_sample(without_extremes(value), clock)
+            self.flush()
+        elif value.step > self._last.step:
+            self._add_sample(value, clock)
+
+    def _add_event(self, event: Event, clock: float) -> None:
         data = encode_event(event)
         if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
             self.close()
@@ -100,41 +113,25 @@ class Recorder:
             self._begin(event.scene)
         if event.kind in ("pause", "resume"):
             self._paused = event.kind == "pause"
-        self._add([(EVENTS, data)], clock)
+        self._write([(EVENTS, data)], clock)
 
-    def sample(self, sample: Sample, clock: float) -> None:
-        """Write a sample, unless it or a later one of its run is the last one written.
-
-        Extremes are those since the previous sample, so the first sample of a run has none.
-        """
-        last = self._last
-        if last is None:
-            sample = without_extremes(sample)
-        elif sample.step <= last.step:
-            return
-        messages = zip(self._topics, encode_readings(sample), strict=True)
-        self._add(list(messages), clock, urgent=last is None)
+    def _add_sample(self, sample: Sample, clock: float) -> None:
+        self._write(list(zip(self._topics, encode_readings(sample), strict=True)), clock)
         self.samples += 1
         self._last = sample
-
-    def note_gap(self) -> None:
-        """Note that samples of the run are missing here."""
-        self._last = None
 
     def flush(self) -> None:
         """Hand everything to the system, where it survives this process."""
         with writing(self.path):
             self._writer.flush()  # type: ignore[no-untyped-call]
-            if not self._is_ours():
-                raise DiskError("the file was replaced", self.path)
         self._is_empty = False
         self._unflushed = 0
 
     def close(self) -> None:
         """Finish the recording with a stop, the summary and its final name.
 
-        Without a start, no file is left.  If the name was taken meanwhile, `path` becomes the next
-        free one, and NameTakenError is raised.
+        Without a start, no file is left.  If the name was taken meanwhile, it keeps that of the
+        unfinished file, and NameTakenError is raised.
         """
         if self._file.closed:
             return
@@ -152,38 +149,24 @@ class Recorder:
 
     def _finish(self) -> None:
         if (last := self._last) is not None:
-            stop = Event("stop", last.run, last.step, last.t)
-            self._add([(EVENTS, encode_event(stop))], self.seconds)
+            self._add_event(Event("stop", last.run, last.step, last.t), self.seconds)
         self.flush()
         with writing(self.path):
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._file.flush()
             os.fsync(self._file.fileno())
             self._file.close()  # Windows renames no open file
-        try:
-            publish(self.part, self.path, self._overwrite)
-        except NameTakenError as error:
-            wanted = self.path
-            self.path = free_path(wanted)
-            publish(self.part, self.path)
-            why = f"its name was taken meanwhile; the recording is saved as {self.path.name}"
-            raise NameTakenError(why, wanted) from error
+        publish(self.part, self.path, self._overwrite)
 
     def abandon(self, delete: bool = False) -> None:
         """Leave what was flushed in NAME.mcap.part, or delete the file if that is nothing."""
         if self._file.closed:
             return
-        is_left = True
-        with suppress(OSError):
-            is_left = not (self._is_ours() and (delete or self._is_empty))
         with suppress(OSError):
             self._file.close()  # Windows removes no open file
         with suppress(OSError):
-            if not is_left:
+            if delete or self._is_empty:
                 self.part.unlink()
-
-    def _is_ours(self) -> bool:
-        return os.path.samestat(self.part.stat(), os.fstat(self._file.fileno()))
 
     def __enter__(self) -> Self:
         return self
@@ -212,9 +195,7 @@ class Recorder:
             number = self._writer.register_channel(topic, "json", self._schemas[title], metadata)
             self._channels[topic] = number
 
-    def _add(
-        self, messages: Sequence[tuple[str, bytes]], clock: float, urgent: bool = False
-    ) -> None:
+    def _write(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
@@ -226,7 +207,7 @@ class Recorder:
                 self._writer.add_message(channel, log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
-        if urgent or self._paused or self._unflushed > MAX_CHUNK:
+        if self._paused or self._unflushed > MAX_CHUNK:
             self.flush()
 
     def _publish_time(self, log_time: int) -> int:
@@ -248,11 +229,8 @@ class LiveRecorder(Recorder):
         self._lock = RLock()
         Thread(target=self._keep, name="recorder", daemon=True).start()
 
-    def event(self, event: Event, clock: float) -> None:
-        self._in_turn(super().event, event, clock)
-
-    def sample(self, sample: Sample, clock: float) -> None:
-        self._in_turn(super().sample, sample, clock)
+    def add(self, value: Sample | Event | None, clock: float) -> None:
+        self._in_turn(super().add, value, clock)
 
     def close(self) -> None:
         self._in_turn(super().close)
@@ -277,8 +255,6 @@ class LiveRecorder(Recorder):
         try:
             if self.failed is None and not self._file.closed:
                 write(*arguments)
-        except NameTakenError:
-            pass  # `close` has found another name
         except DiskError as error:
             self._fail(error)
             self.abandon()

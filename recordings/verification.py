@@ -172,12 +172,7 @@ def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
         recorder = Recorder(out, overwrite)
         try:
             for clock, value in recording.entries():
-                if value is None:
-                    recorder.note_gap()
-                elif isinstance(value, Event):
-                    recorder.event(value, clock)
-                else:
-                    recorder.sample(value, clock)
+                recorder.add(value, clock)
             if not recorder.samples:
                 why = recording.reason or "it has no samples"
                 raise RecordingError(f"{path}: {why}.")

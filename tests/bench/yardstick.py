@@ -145,7 +145,7 @@ def opening_ratio() -> float:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "hour.mcap"
         with Recorder(path) as recorder:
-            for _ in simulate(DEFAULT_SCENE, 360.0, recorder, sample_every=1):
+            for _ in simulate(DEFAULT_SCENE, 360.0, recorder.add, sample_every=1):
                 recorder.flush()
         cpu = {"timer": time.process_time, "number": 1, "repeat": 15}
         ours = timeit.repeat(lambda: Recording.open(path).close(), **cpu)

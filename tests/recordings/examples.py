@@ -64,10 +64,7 @@ def record(path: Path, entries: list[Entry]) -> Path:
     flushed_at = 0.0
     with Recorder(path) as recorder:
         for clock, value in entries:
-            if isinstance(value, Event):
-                recorder.event(value, clock)
-            else:
-                recorder.sample(value, clock)
+            recorder.add(value, clock)
             if clock >= flushed_at + FLUSH_EVERY:
                 recorder.flush()
                 flushed_at = clock
@@ -90,13 +87,13 @@ def with_changes(
     def sampled() -> Sample:
         nonlocal recorded
         sample = lockstep.sample()
-        recorder.sample(sample, clock)
+        recorder.add(sample, clock)
         for milestone in lockstep.milestones[recorded:]:
-            recorder.event(noticed(1, milestone), clock)
+            recorder.add(noticed(1, milestone), clock)
         recorded = len(lockstep.milestones)
         return sample
 
-    recorder.event(start(scene=scene), 0.0)
+    recorder.add(start(scene=scene), 0.0)
     yield sampled()
     for step, h in (*changes, (math.inf, 0.0)):
         begin = clock
@@ -112,5 +109,5 @@ def with_changes(
             return
         remaining -= (end - first) * size
         if h != lockstep.stepping.h:
-            recorder.event(Event("set_h", 1, end, lockstep.t, h=h), clock)
+            recorder.add(Event("set_h", 1, end, lockstep.t, h=h), clock)
             lockstep.set_stepping(Stepping(h, cast=scene.cast))

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live
 from tests.own_methods import load
@@ -50,9 +51,10 @@ class Noting(LiveRecorder):
 
     last = (0, 0)  # run, step
 
-    def sample(self, sample: Sample, clock: float) -> None:
-        super().sample(sample, clock)
-        self.last = (sample.run, sample.step)
+    def add(self, value: Sample | Event | None, clock: float) -> None:
+        super().add(value, clock)
+        if isinstance(value, Sample):
+            self.last = (value.run, value.step)
 
 
 def main(path: Path, log: Path) -> None:

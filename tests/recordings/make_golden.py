@@ -21,11 +21,8 @@ class Later:
     def __init__(self, recorder: Recorder, run: int) -> None:
         self._recorder, self._run, self._begin = recorder, run, recorder.seconds
 
-    def event(self, event: Event, clock: float) -> None:
-        self._recorder.event(event._replace(run=self._run), self._begin + clock)
-
-    def sample(self, sample: Sample, clock: float) -> None:
-        self._recorder.sample(sample._replace(run=self._run), self._begin + clock)
+    def add(self, value: Sample | Event, clock: float) -> None:
+        self._recorder.add(value._replace(run=self._run), self._begin + clock)
 
 
 def make(name: str, path: Path) -> None:

@@ -65,7 +65,7 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
         with (library / name).open("wb") as stream:
             Writer(stream).start("ros2")
     with Recorder(library / "running.mcap") as recorder:
-        recorder.event(start(), 0.0)
+        recorder.add(start(), 0.0)
         recorder.flush()
         assert [(item.path, item.bytes) for item in listing()] == [
             (killed, killed.stat().st_size),

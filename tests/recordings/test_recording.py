@@ -70,7 +70,7 @@ def test_a_time_is_rounded_to_the_nearest_nanosecond(tmp_path, frame):
 
 def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
     with Recorder(tmp_path / "a.mcap") as recorder:
-        list(simulate(SCENE, 2.0, recorder))
+        list(simulate(SCENE, 2.0, recorder.add))
         recorder.flush()
         with Recording.open(recorder.part) as recording:
             assert (recording.complete, recording.damaged) == (False, False)

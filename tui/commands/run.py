@@ -116,7 +116,9 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
         every = min(every, math.ceil(steps / MAX_POINTS))
     samples: list[Sample] = []
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
+        for sample in simulate(
+            scene, options.time, recording and recording.add, every, lockstep=lockstep
+        ):
             show(sample.step, steps)
             if not is_figure:
                 samples.clear()

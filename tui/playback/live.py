@@ -245,8 +245,8 @@ class Live(Source):
     def record(self, recorder: "LiveRecorder") -> None:
         self.recorder = recorder
         for event in self._events:
-            recorder.event(event, self._recorded)
-        recorder.sample(self.sample, self._recorded)
+            recorder.add(event, self._recorded)
+        recorder.add(self.sample, self._recorded)
 
     @property
     def is_marked(self) -> bool:
@@ -260,7 +260,7 @@ class Live(Source):
     def close(self) -> None:
         if self.recorder is not None:
             if not self._run.in_past:
-                self.recorder.sample(self.sample, self._recorded)
+                self.recorder.add(self.sample, self._recorded)
             self.recorder.close()
 
     def _take_sample(self, is_row: bool = True) -> Sample:
@@ -271,7 +271,7 @@ class Live(Source):
         self.milestones = run.lockstep.milestones
         self.history.add(sample, is_row)
         if is_row and self.recorder is not None and sample.step >= run.furthest:
-            self.recorder.sample(sample, self._due)
+            self.recorder.add(sample, self._due)
         self._note_milestones()
         return sample
 
@@ -310,7 +310,7 @@ class Live(Source):
             if event.kind == "noticed":
                 clock = self._due
             self._clocked = clock
-            self.recorder.event(event, clock)
+            self.recorder.add(event, clock)
 
 
 def has_own(scene: Scene) -> bool:

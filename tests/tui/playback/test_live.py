@@ -32,17 +32,14 @@ class Keeper:
         self.events: list[Event] = []
         self.seconds = 0.0
 
-    def event(self, event: Event, clock: float) -> None:
-        assert clock >= self.seconds
-        self.seconds = clock
-        self.events.append(event)
-
-    def sample(self, sample: Sample, clock: float) -> None:
+    def add(self, value: Sample | Event, clock: float) -> None:
         assert clock >= self.seconds
         self.seconds = clock
         last = self.samples[-1:]
-        if not last or last[0].run != sample.run or last[0].step < sample.step:
-            self.samples.append(sample)
+        if isinstance(value, Event):
+            self.events.append(value)
+        elif not last or last[0].run != value.run or last[0].step < value.step:
+            self.samples.append(value)
 
 
 class Bench(Lab):

@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.recordings.events import simulate
+from pendu_tui.recordings.events import Event, simulate
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
@@ -146,7 +146,7 @@ def test_of_a_long_past_the_last_minute_is_read_whole_and_seconds_before(tmp_pat
     monkeypatch.setattr("pendu_tui.tui.playback.replay.MAX_STRETCHES", 4)
     path = tmp_path / "long.mcap"
     with Recorder(path) as recorder:
-        list(simulate(DEFAULT_SCENE, 140.0, recorder, sample_every=2))
+        list(simulate(DEFAULT_SCENE, 140.0, recorder.add, sample_every=2))
     replay = Table(path).replay
     replay.seek(140.0)
     assert replay.fill()
@@ -279,12 +279,9 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
         for clock, value in Table(path).recording.entries():
             if value.run > 1:
                 break
-            if isinstance(value, Sample):
-                recorder.sample(value, clock)
-                continue
-            if value.milestone == said:
+            if isinstance(value, Event) and value.milestone == said:
                 value = value._replace(milestone=said._replace(verdict="chaotic"))
-            recorder.event(value, clock)
+            recorder.add(value, clock)
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
     assert table.verdicts[table.replay.scene.cast.index(said.method)] == "chaotic"
