@@ -147,7 +147,6 @@ def sample_schema(model: str) -> dict[str, Any]:
 
 
 _TEXTS = [field.name for field in EVENT if field.type == "string"]
-_REQUIRED = {"set_h": "h", "speed": "speed"}
 _decode_event = decoder_of((*MOMENT, *EVENT))
 _decoders = {model: decoder_of((*MOMENT, *READING, *extra)) for model, extra in EXTRA.items()}
 _values_of_reading = attrgetter(*(field.name for field in READING))
@@ -239,8 +238,6 @@ def decode_event(data: bytes) -> Event:
             return Event(kind, run, 0, 0.0, scene, arithmetic=arithmetic, sources=sources)
         if kind == "noticed":
             return noticed(run, _milestone(fields))
-        if kind in _REQUIRED and _REQUIRED[kind] not in fields:
-            raise KeyError(_REQUIRED[kind])
         names = ("h", "equal_cost", "speed", "text")
         return Event(kind, run, step, t, **{name: fields[name] for name in names if name in fields})
     except KeyError as error:

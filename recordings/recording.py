@@ -50,24 +50,31 @@ class Run:
     t: float = 0.0  # s, simulated, at its last sample
     events: list[tuple[float, Event]] = field(default_factory=list)  # each with its clock [s]
     topics: tuple[str, ...] = ()  # of its samples
+    changes: list[SteppingChange] = field(default_factory=list)  # of its stepping, the start first
 
     def __post_init__(self) -> None:
         self.topics = topics_of(self.scene)
+        self._change(0, 0.0, self.scene.h)
+
+    def add(self, clock: float, event: Event) -> None:
+        """Add the next event.  Raises RecordingError for a step that no run could have."""
+        self.events.append((clock, event))
+        if event.h is not None:
+            self._change(event.step, event.t, event.h, event.equal_cost)
+
+    def _change(self, step: int, t: float, h: float, equal_cost: bool = False) -> None:
+        stepping = Stepping(h, equal_cost, self.scene.cast)
+        try:
+            stepping.check(self.scene.w0)
+        except InputError as error:
+            why = f"run {self.number} cannot have been recorded: {error}"
+            raise RecordingError(why) from error
+        self.changes.append(SteppingChange(step, t, stepping))
 
     @property
     def inputs(self) -> int:
         """The number of actions of a user."""
         return sum(event.kind not in NOT_INPUTS for _, event in self.events)
-
-    @property
-    def changes(self) -> list[SteppingChange]:
-        """The changes of its stepping, the start first."""
-        changes = [SteppingChange(0, 0.0, Stepping(self.scene.h, cast=self.scene.cast))]
-        for _, event in self.events:
-            if event.h is not None:
-                stepping = Stepping(event.h, event.equal_cost, self.scene.cast)
-                changes.append(SteppingChange(event.step, event.t, stepping))
-        return changes
 
     @property
     def milestones(self) -> list[Milestone]:
@@ -96,20 +103,19 @@ class Recording:
         self._places = contents.places
         self._topics = contents.topics
         self._models: dict[str, str] = {}  # by topic
-        self._topics_of = lru_cache(maxsize=32)(
-            lambda channels: tuple(self._topics.get(channel, "") for channel in channels)
-        )
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
-        self._decode_event = lru_cache(MAX_EVENTS)(decode_event)  # which `events` keeps anyway
-        self._find_runs()
+        if self._places:
+            self._find_runs()
         self.runs = list(self._runs.values())
+        if not self.runs or self.at(0.0) is None:
+            raise RecordingError(self.reason or "it has no samples")
         self.length = _clock(self._places[-1].end)
 
     @classmethod
     def open(cls, path: Path, check: bool = False) -> Self:
         """Open a recording; with `check`, verify the checksum of every byte.
 
-        Raises RecordingError if it has another format or no run.
+        Raises RecordingError if it has another format or no sample.
         """
         with named(path):
             if is_stream(path):
@@ -197,15 +203,12 @@ class Recording:
             for clock, event in self._entries(chunk, only_events=True):
                 if isinstance(event, Event):
                     self.events.append((clock, event))
-                    self._runs[event.run].events.append((clock, event))
+                    self._runs[event.run].add(clock, event)
                     if event.kind == "start":
                         chunks_to_read.append(chunk)
             if len(self.events) > MAX_EVENTS:
                 raise RecordingError(f"it has more than {MAX_EVENTS} events")
-        if not self._runs:
-            raise RecordingError(self.reason or "it has no runs")
-        chunks_to_read.append(len(self._places) - 1)
-        for chunk in dict.fromkeys(chunks_to_read):
+        for chunk in dict.fromkeys([*chunks_to_read, len(self._places) - 1]):
             entries = self._decode(chunk)
             if last_before := self.beside(SamplePlace(chunk, 0), -1):
                 entries = [self.sample(last_before), *entries]
@@ -240,7 +243,7 @@ class Recording:
         """
         for _, log_time, channels, data in groups:
             clock = _clock(log_time)
-            topics = self._topics_of(tuple(channels))
+            topics = tuple(self._topics.get(channel, "") for channel in channels)
             value: Event | Sample
             if topics == (EVENTS,):
                 value = self._event(data[0], clock)
@@ -255,19 +258,11 @@ class Recording:
 
     def _event(self, data: bytes, clock: float) -> Event:
         """Return the event of a message; the first start of a run adds the run."""
-        event = self._decode_event(data)
-        run = self._runs.get(event.run)
-        if event.scene is not None and event.arithmetic is not None and run is None:
+        event = decode_event(data)
+        if event.scene is not None and event.arithmetic and event.run not in self._runs:
             run = Run(event.run, event.scene, event.arithmetic, clock, clock)
             self._runs[event.run] = run
             self._models |= dict.fromkeys(run.topics, run.scene.model)
-        elif run is not None and event.h is not None:
-            try:
-                stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
-                stepping.check(run.scene.w0)
-            except InputError as error:
-                why = f"run {event.run} cannot have been recorded: {error}"
-                raise RecordingError(why) from error
         return event
 
     def _sample(self, data: list[bytes], topics: tuple[str, ...]) -> Sample:

@@ -67,7 +67,7 @@ def verify(
     """Verify a recording up to the first damage, all methods or `only` those of these keys.
 
     `progress` is called with the seconds done and those in all.  Raises RecordingError if the
-    recording has no samples, or more than `max_steps` steps.
+    recording cannot be read, or has more than `max_steps` steps.
     """
     result = Verification(path)
     with Recording.open(path, check=True) as recording, named(path):
@@ -90,8 +90,6 @@ def verify(
 
         for number, values in groupby(intact(), attrgetter("run")):
             _rerun(recording.run_of(number), values, result, only)
-        if result.samples == 0:
-            raise RecordingError(recording.reason or "it has no samples")
         result.complete = recording.complete
         result.reason = recording.reason
         result.identical = result.first_difference is None and not recording.damaged
@@ -173,9 +171,6 @@ def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
         try:
             for clock, value in recording.entries():
                 recorder.add(value, clock)
-            if not recorder.samples:
-                why = recording.reason or "it has no samples"
-                raise RecordingError(f"{path}: {why}.")
             recorder.close()
         finally:
             recorder.abandon(delete=True)

@@ -143,7 +143,7 @@ def first_pendulum_ratio(starts: int) -> float:
 def opening_ratio() -> float:
     """Return the time to open a lab's hour, of 7200 chunks, over that of mcap for its summary."""
     with TemporaryDirectory() as folder:
-        path = Path(folder) / "hour.mcap"
+        path = Path(folder, "a.mcap")
         with Recorder(path) as recorder:
             for _ in simulate(DEFAULT_SCENE, 360.0, recorder.add, sample_every=1):
                 recorder.flush()

@@ -143,8 +143,6 @@ IMPOSSIBLE = {
         "milestone": ["under the top"], "method": [..., "\x1b[2J"],
         "verdict": ["explodes", {}], "energy_error": [...],
     },
-    Event("set_h", 1, 1, 0.1, h=0.2): {"h": [...]},
-    Event("speed", 1, 1, 0.1, speed=2.0): {"speed": [...]},
 }  # fmt: skip
 
 

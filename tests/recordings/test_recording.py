@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.recordings.events import Entry, Event, simulate
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
@@ -79,23 +80,21 @@ def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
             assert recording.sample(recording.at(1.0)).value.step == 10
 
 
-def test_a_run_without_samples_has_no_length_and_no_place(tmp_path):
-    with Recording.open(record(tmp_path / "a.mcap", two_runs()[:1])) as recording:
-        assert (recording.at(0.0), recording.samples, recording.runs[0].steps) == (None, 0, 0)
+def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_refused(tmp_path):
+    with pytest.raises(RecordingError, match="it has no samples"):
+        Recording.open(record(tmp_path / "a.mcap", two_runs()[:1]))
     starts = [Entry(1.0, start(2)), Entry(1.0, start(3))]
     with Recording.open(record(tmp_path / "b.mcap", [*two_runs()[:4], *starts])) as recording:
         runs = [(run.steps, run.begin, run.end) for run in recording.runs]
     assert runs == [(6, 0.0, 1.0), (0, 1.0, 1.0), (0, 1.0, 1.0)]
 
 
-def test_a_chunk_with_a_sample_that_lacks_a_method_costs_itself_only(tmp_path):
+def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
     def entries():
         yield from hostile.begun()
         yield hostile.event(start(2))
         yield hostile.sample(hostile.first_sample(2))[:-1]
 
     hostile.write(tmp_path / "a.mcap", entries())
-    with Recording.open(tmp_path / "a.mcap") as recording:
-        assert [run.number for run in recording.runs] == [1, 2]
-        assert [value for _, value in recording.entries()] == [None]
-        assert recording.damaged
+    with pytest.raises(RecordingError, match="a sample is incomplete"):
+        Recording.open(tmp_path / "a.mcap")

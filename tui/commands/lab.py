@@ -49,13 +49,15 @@ def tour(options: argparse.Namespace) -> int:
 
 
 def replay(options: argparse.Namespace) -> int:
+    from pendu_tui.recordings.recording import Recording  # mcap, which a lab needs later
+
     path = resolve(options.file)
     remember(own_methods(options))
     only = None
     if options.methods is not None:
         only = cast_of(options, ())
     launch.check(options)
-    played = Replay(launch.open_recording(path))
+    played = Replay(Recording.open(path))
     if not 0 <= options.start_at <= played.length:
         raise UserError(
             f"--start-at {options.start_at:g} is outside the recording; use 0 to "

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
-from typing import TYPE_CHECKING
 
 from textual.widget import Widget
 
@@ -36,9 +35,6 @@ from pendu_tui.tui.terminal.options import (
     terminal_options_of,
 )
 from pendu_tui.tui.words.plain_text import tell
-
-if TYPE_CHECKING:
-    from pendu_tui.recordings.recording import Recording
 
 
 def check(options: argparse.Namespace) -> None:
@@ -77,17 +73,6 @@ def start_recording(live: Live, file: Path | None = None, folder: Path | None = 
             if file is not None:
                 raise
             path = files.free_path(path)
-
-
-def open_recording(path: Path) -> "Recording":
-    """Open a recording to replay it.  Raises UserError if it is empty."""
-    from pendu_tui.recordings.recording import Recording  # mcap, which a lab needs later
-
-    recording = Recording.open(path)
-    if recording.at(0.0) is None:
-        recording.close()
-        raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
-    return recording
 
 
 def show(screen: LabScreen, options: argparse.Namespace) -> int:

@@ -96,7 +96,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.export.write_csv", None)
     refusal = pendu(*WRITERS["export"], tmp_path / "no" / "file.csv")
-    assert refusal.refused(5, "no folder", "choose a folder")
+    assert refusal.refused(5, "does not exist", "choose another")
 
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
