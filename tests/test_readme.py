@@ -180,7 +180,7 @@ def test_recordings_below_a_folder_are_tests(project, tmp_path):
     (line,) = re.findall(r"`(test_recordings = [^`]*)`", README)
     imports = "from pendu_tui.recordings.pytest import verify_recordings"
     test = f"from pathlib import Path\n{imports}\n{line}"
-    assert f"there is no recording (*.mcap) in {tmp_path}" in project(test)
+    assert "*.mcap: No such file" in project(test)
     data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
