@@ -110,7 +110,7 @@ class Lesson:
 
     def _reach(self, live: Live, end: int) -> None:
         """Go to a step, and turn there or tell what there is to tell."""
-        live.go_to(live.sample.run, end)
+        live.step(end - live.sample.step)
         if self.shot.returns and live.stepping.h > 0:
             live.change(live.stepping.reversed())
             live.pause(False)

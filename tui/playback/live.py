@@ -129,12 +129,6 @@ class Live(Source):
     def seek(self, position: float) -> None:
         self._go_to(self._run.step_at(min(max(position, 0.0), self.length)))
 
-    def go_to(self, run: int, step: int) -> bool:
-        if reached := run == self._run.run:
-            self.pause(True)
-            self._go_to(step)
-        return reached
-
     def _go_to(self, step: int) -> Sample:
         with self._standing_still():
             self._run.go_to(min(step, self._run.furthest))
@@ -148,11 +142,9 @@ class Live(Source):
         return max(self._run.x_at(self._run.furthest), self.playhead.position)
 
     @property
-    def ticks(self) -> Sequence[float]:
-        kinds = ("start", "set_h", "mark", "noticed")
+    def places(self) -> Sequence[tuple[float, Event]]:
         run = self._run
-        steps = {each.step for each in self._events if each.run == run.run and each.kind in kinds}
-        return [run.x_at(step) for step in sorted(steps)]
+        return [(run.x_at(each.step), each) for each in self._events if each.run == run.run]
 
     @property
     def counts(self) -> dict[str, tuple[int, int]]:

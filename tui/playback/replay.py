@@ -38,7 +38,6 @@ class Replay(Source):
         self.recording = recording
         self.length = recording.length  # s
         self.playhead = Playhead()
-        self._closed = False
         self._clock = clock
         first = recording.at(0.0)
         assert first is not None, "a recording without samples is refused before it gets here"
@@ -108,9 +107,8 @@ class Replay(Source):
         return RecordingStatus(printable(self.recording.path.name), self.length)
 
     @property
-    def ticks(self) -> list[float]:
-        """The times [s] of all events but stops."""
-        return sorted({clock for clock, event in self.recording.events if event.kind != "stop"})
+    def places(self) -> Sequence[tuple[float, Event]]:
+        return self.recording.events
 
     @property
     def counts(self) -> dict[str, tuple[int, int]]:
@@ -150,7 +148,7 @@ class Replay(Source):
         self.pause(True)
         direction = int(math.copysign(1, n))
         for _ in range(abs(n)):
-            if not self._closed and (place := self.recording.beside(self._place, direction)):
+            if place := self.recording.beside(self._place, direction):
                 self._show(place)
         self.playhead.position = self.recording.sample(self._place).clock
         self._know()
@@ -159,15 +157,6 @@ class Replay(Source):
     def seek(self, position: float) -> None:
         self.playhead.position = min(max(position, 0.0), self.length)
         self._follow()
-
-    def go_to(self, run: int, step: int) -> bool:
-        """Pause and go to the event at a step; return False if there is none."""
-        self.pause(True)
-        for clock, event in self.recording.events:
-            if (event.run, event.step) == (run, step):
-                self.seek(clock)
-                return True
-        return False
 
     def live(self) -> Live:
         """Return a lab that continues from here with the same bits.
@@ -181,7 +170,7 @@ class Replay(Source):
 
     def close(self) -> None:
         """Close the file; a frame that is still due shows the last sample."""
-        self._closed = True
+        self.playhead.paused = True
         self._reading = iter(())
         self.recording.close()
 
@@ -189,8 +178,6 @@ class Replay(Source):
 
     def _follow(self) -> None:
         """Show the last sample before the playhead, adding those in between if they are few."""
-        if self._closed:
-            return
         target = self.recording.at(self.playhead.position) or self._place
         for _ in range(MAX_FOLLOWED):
             if self._place < target and (following := self.recording.beside(self._place, 1)):

@@ -119,8 +119,14 @@ class Source(ABC):
 
     @property
     @abstractmethod
-    def ticks(self) -> Sequence[float]:
-        """The positions of the events that one can go to [s], in order."""
+    def places(self) -> Sequence[tuple[float, Event]]:
+        """The events that one can go to, each after its position [s]."""
+
+    @property
+    def ticks(self) -> list[float]:
+        """The positions of what the user or a method did [s], in order."""
+        kinds = ("start", "set_h", "mark", "noticed")
+        return sorted({position for position, event in self.places if event.kind in kinds})
 
     @property
     @abstractmethod
@@ -145,9 +151,14 @@ class Source(ABC):
     def seek(self, position: float) -> None:
         """Go to a position [s], or to the nearest end."""
 
-    @abstractmethod
     def go_to(self, run: int, step: int) -> bool:
         """Pause and go to the event at a step; return False if there is none."""
+        for position, event in self.places:
+            if (event.run, event.step) == (run, step):
+                self.pause(True)
+                self.seek(position)
+                return True
+        return False
 
     def seek_event(self, direction: int) -> None:
         """Pause at the next event, or at the previous one; at an end, if there is none."""

@@ -291,6 +291,4 @@ def test_a_closed_replay_stands_still(table):
     here = table.replay.sample
     table.replay.close()
     assert table.run(1.0) == here
-    table.replay.seek(5.0)
-    assert table.replay.step(3) == here
     assert table.replay.fill()

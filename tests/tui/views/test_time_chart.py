@@ -104,9 +104,9 @@ def charted(fps, scene, path=None, *, changes=False, returns=False):
     live.close()
     end = live.sample.step
     if returns:
-        live.go_to(1, 50)
+        live.step(50 - live.sample.step)
         live.history.window()
-        live.go_to(1, end)
+        live.step(end - live.sample.step)
     return time_chart(live.history.window(), scene.cast, Shown(), 60, 16).picture
 
 
