@@ -86,9 +86,9 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("latest", "no recordings in .*library yet"),
+        ("latest", "there is no recording .latest.; pendu-tui recordings"),
         ("drfit", "did you mean drift?"),
-        ("../../etc/passwd.mcap", "choose a file, or one of latest, changes-of-h, damped, drift"),
+        ("../../etc/passwd.mcap", "; pendu-tui recordings lists yours"),
         ("\x1b[2J", r"there is no recording '\\x1b"),
     ],
 )

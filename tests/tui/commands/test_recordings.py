@@ -120,7 +120,8 @@ def test_each_verb_takes_its_own_files(words):
 def test_of_many_scenes_the_first_is_named(library):
     with Recorder(library / "tour.mcap") as recorder:
         for run, name in enumerate("kmn", 1):
-            recorder.event(start(run, replace(SCENE, name=name)), float(run))
+            recorder.add(start(run, replace(SCENE, name=name)), float(run))
+            recorder.add(hostile.first_sample(run), float(run))
     assert pendu("recordings").out.count("k, 2 more\n") == 1
 
 
