@@ -345,7 +345,7 @@ def recommend(
         seconds = _number("time", time)
     if wanted <= 0 or seconds <= 0:
         raise InputError("target and time must be above zero.")
-    attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
+    attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted)
     successes = [attempt for attempt in attempts if attempt.succeeded]
     if not successes:
         raise InputError(

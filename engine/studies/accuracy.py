@@ -6,12 +6,12 @@ interpolated.  Cost is counted in force evaluations, or in seconds by a clock th
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
-from itertools import groupby, product
+from itertools import product
 from statistics import fmean, linear_regression
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from pendu_tui.engine.methods import GENERAL, Cast, Method
 from pendu_tui.engine.methods.own import OwnMethod
@@ -35,21 +35,15 @@ ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
-
 Flaw = Literal["lost", "rounding", "diverged"]
 REASONS: dict[Flaw, str] = {
     "lost": "as far off as the swing is wide, or as the energy is large",
     "rounding": "made of rounding: a smaller h no longer reduces it",
     "diverged": "the numbers overflowed",
 }
-
-
-class Flaws(NamedTuple):
-    """Why an error says nothing about the method and h; None if it does."""
-
-    theta: Flaw | None
-    energy: Flaw | None
-    final: Flaw | None
+Errors = Mapping[ErrorKind, float]
+"""The largest errors in theta [rad] against the exact swing, and in energy, relative, of all steps;
+and the last in theta [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +54,12 @@ class Point:
     time: float  # s, simulated
     w0: float  # rad/s
     steps: int
-    theta_error: float  # rad, the largest against the exact swing
-    energy_error: float  # relative, the largest of all steps
-    final_error: float  # rad, in theta at the end
-    flaws: Flaws
+    errors: Errors = field(hash=False)
+    # why an error says nothing about the method and h
+    flaws: Mapping[ErrorKind, Flaw | None] = field(hash=False, repr=False)
+    force_evaluations: int
     seconds: float | None = None  # the shortest of five runs without comparisons
     spread: float | None = None  # relative excess of the longest
-    counted: int | None = None  # force evaluations, where they vary
 
     @property
     def h(self) -> float:
@@ -83,27 +76,6 @@ class Point:
         """How many steps a small swing takes."""
         return math.tau / self.z
 
-    @property
-    def force_evaluations(self) -> int:
-        if self.counted is not None:
-            return self.counted
-        return self.method.evaluations(self.steps)
-
-    def error(self, kind: ErrorKind) -> float:
-        error: float = getattr(self, f"{kind}_error")
-        return error
-
-    def flaw(self, kind: ErrorKind) -> Flaw | None:
-        flaw: Flaw | None = getattr(self.flaws, kind)
-        return flaw
-
-
-class Order(NamedTuple):
-    """A method's order, measured by its theta errors."""
-
-    method: Method
-    measured: float | None  # None: fewer than three errors to fit
-
 
 class Study:
     """Runs of one scene over one time, compared with the same exact swing."""
@@ -114,10 +86,10 @@ class Study:
         self.loops = cache(loops)  # so that the steps of all its runs count
         self.exact = scene.exact()
         energy, theta = rounding_floor(scene, time)
-        self._floors = (theta, energy, theta)
+        self._floors: Errors = {"theta": theta, "energy": energy, "final": theta}
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
         width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
-        self.sizes = {"theta": width, "energy": 1.0, "final": width}
+        self.sizes: Errors = {"theta": width, "energy": 1.0, "final": width}
         """The sizes of the swing itself: an error as large says nothing."""
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
@@ -126,39 +98,46 @@ class Study:
         An error counts as rounding if it lies below the rounding floor and does not fall with h.
         Raises InputError if time/steps is no usable h.
         """
-        errors, diverged = self._errors(method, steps, comparisons)
-        flaws = Flaws("diverged", "diverged", "diverged")
-        counted = None
-        if not diverged:
-            refines = partial(self._refines, method, steps, comparisons, errors)
-            flaws = self.flaws(errors, steps, refines)
-            if method.varies:  # extrapolated from the first 2000
-                model = self.scene.equations
-                start = model.start(self.scene.theta, self.scene.omega)
-                first = min(steps, 2000)
-                count = count_evaluations(method, model, start, self.time / steps, first)
-                counted = round(count * steps / first)
-        return Point(method, self.time, self.scene.w0, steps, *errors, flaws=flaws, counted=counted)
+        errors, overflowed = self._errors(method, steps, comparisons)
+        flaws = {kind: self.flaw(kind, error, steps) for kind, error in errors.items()}
+        if overflowed:
+            flaws = dict.fromkeys(errors, "diverged")
+        if "rounding" in flaws.values():
+            falling = self._falling(method, steps, comparisons, errors)
+            flaws |= {kind: None for kind in falling if flaws[kind] == "rounding"}
+        evaluations = method.evaluations(steps)
+        if method.varies and not overflowed:  # extrapolated from the first 2000
+            model = self.scene.equations
+            start = model.start(self.scene.theta, self.scene.omega)
+            first = min(steps, 2000)
+            count = count_evaluations(method, model, start, self.time / steps, first)
+            evaluations = round(count * steps / first)
+        return Point(method, self.time, self.scene.w0, steps, errors, flaws, evaluations)
 
-    def _errors(
-        self, method: Method, steps: int, comparisons: int
-    ) -> tuple[tuple[float, float, float], bool]:
-        """Return the largest errors in theta and energy, the last in theta, and if it diverged."""
+    def _errors(self, method: Method, steps: int, comparisons: int) -> tuple[Errors, bool]:
+        """Return the errors of a run, and whether its numbers overflowed."""
         lockstep = Lockstep(
             self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops
         )
         stride = max(1, steps // comparisons)
-        theta_error = final_error = 0.0
+        largest = final = 0.0
         while lockstep.step < steps:
             lockstep.advance(min(stride, steps - lockstep.step))
             (reading,) = lockstep.sample().readings
-            final_error = abs(reading.theta - self.exact.at(lockstep.t).theta)
-            theta_error = max(theta_error, final_error)
-        return (theta_error, reading.max_energy_error, final_error), reading.diverged_at is not None
+            final = abs(reading.theta - self.exact.at(lockstep.t).theta)
+            largest = max(largest, final)
+        errors: Errors = {"theta": largest, "energy": reading.max_energy_error, "final": final}
+        return errors, reading.diverged_at is not None
 
-    def _refines(
-        self, method: Method, steps: int, comparisons: int, errors: Sequence[float]
-    ) -> list[bool]:
+    def flaw(self, kind: ErrorKind, error: float, steps: int) -> Flaw | None:
+        """Return whether an error is as large as the swing, or below the floor of its roundings."""
+        if error >= self.sizes[kind]:
+            return "lost"
+        return "rounding" if error <= self._floors[kind] * math.sqrt(steps) else None
+
+    def _falling(
+        self, method: Method, steps: int, comparisons: int, errors: Errors
+    ) -> list[ErrorKind]:
         """Return which errors fall with h, from a quarter of the steps on.
 
         Doubling the steps must reduce an error by at least half of what the order promises.
@@ -166,54 +145,30 @@ class Study:
         half, _ = self._errors(method, max(1, steps // 2), comparisons)
         quarter, _ = self._errors(method, max(1, steps // 4), comparisons)
         factor = 2 ** (method.order - 1)
-        ladder = zip(quarter, half, errors, strict=True)
-        return [fine * factor <= mid and mid * factor <= coarse for coarse, mid, fine in ladder]
-
-    def flaws(
-        self, errors: Sequence[float], steps: int, refines: Callable[[], Sequence[bool]]
-    ) -> Flaws:
-        """Return what is wrong with the errors in theta, energy and final theta of a run.
-
-        An error below the floor of so many roundings is rounding unless it falls with h.  Only then
-        `refines` is called, for that is slow.
-        """
-        flaws: list[Flaw | None] = [None, None, None]
-        floors = [floor * math.sqrt(steps) for floor in self._floors]
-        below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
-        if any(below):
-            for kind, refined in enumerate(refines()):
-                if below[kind] and not refined:
-                    flaws[kind] = "rounding"
-        for kind, size in enumerate(self.sizes.values()):
-            if errors[kind] >= size:
-                flaws[kind] = "lost"
-        return Flaws(*flaws)
-
-    def may_be_rounding(self, point: Point) -> bool:
-        """Whether a point's error in theta lies below the rounding floor."""
-        return point.theta_error <= self._floors[0] * math.sqrt(point.steps)
+        return [
+            kind
+            for kind, error in errors.items()
+            if error * factor <= half[kind] and half[kind] * factor <= quarter[kind]
+        ]
 
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
     """Return the point with the seconds of the same steps without comparisons and energies."""
-    propagate = loops(point.method, scene.equations).propagate
-    start = (scene.theta, scene.omega)
-    propagate(start, point.h, 1)  # may have to be compiled
+    propagate = partial(
+        loops(point.method, scene.equations).propagate,
+        (scene.theta, scene.omega),
+        point.h,
+        point.steps,
+    )
+    propagate()  # may have to be compiled
     runs = max(1, TIMED_STEPS // point.steps)
-    seconds, spread = shortest(lambda: propagate(start, point.h, point.steps), runs, clock)
-    return replace(point, seconds=seconds, spread=spread)
-
-
-def shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float, float]:
-    """Return the shortest of five timings [s], and the relative excess of the longest."""
-    work()  # may have to be compiled
     lengths = []
     for _ in range(5):
         began = clock()
         for _ in range(runs):
-            work()
+            propagate()
         lengths.append((clock() - began) / runs)
-    return min(lengths), max(lengths) / min(lengths) - 1
+    return replace(point, seconds=min(lengths), spread=max(lengths) / min(lengths) - 1)
 
 
 def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
@@ -225,9 +180,7 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
 def usual(scene: Scene, all: bool = False, time: float | None = None) -> tuple[float, list[int]]:
     """Return a time [s], by default ten small swings, and a ladder for the usual cast or `all`."""
     time = time or float(f"{10 * math.tau / scene.w0:.2g}")
-    largest, smallest, rungs = Z_LADDER
-    if all:
-        largest, smallest, rungs = ALL_LADDER
+    largest, smallest, rungs = ALL_LADDER if all else Z_LADDER
     return time, ladder(time, min(largest / scene.w0, time), smallest / scene.w0, rungs)
 
 
@@ -249,20 +202,22 @@ def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]
         yield study.run(method, steps)
 
 
-def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, int]) -> Point:
-    """Return the point of a task: the index of a method in the cast, and a number of steps.
-
-    For other processes, which keep the study between tasks.
-    """
-    index, steps = task
-    return _cached_study(scene, time, loops).run(scene.cast[index], steps)
-
-
 _cached_study = lru_cache(maxsize=1)(Study)
 
 
-def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
+def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, Method]) -> Point:
+    """Return the point of a number of steps and a method.
+
+    For other processes, which keep the study between tasks.
+    """
+    steps, method = task
+    return _cached_study(scene, time, loops).run(method, steps)
+
+
+def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> dict[Method, float | None]:
     """Return each method's order: the slope of log theta error over log h, up to a period.
+
+    None: fewer than three errors to fit.
 
     Over longer times RK4 reads 5 and more: its phase error a·h⁴·t is overtaken by b·h⁵·t²/2, since
     it loses energy at a rate of h⁵ and the frequency depends on energy.  Near the separatrix, where
@@ -271,22 +226,21 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
     """
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
-    return [Order(method, _order(study, method, usable)) for method in scene.cast]
+    return {method: _order(study, method, usable) for method in scene.cast}
 
 
 def _order(study: Study, method: Method, ladder: Sequence[int]) -> float | None:
     """Return the least-squares slope of log theta error over log h, of the four smallest h."""
-    points = [study.run(method, steps, ORDER_STEPS[0]) for steps in ladder]
-    fitted = [
-        (math.log(point.h), math.log(point.theta_error))
-        for point in points
-        if not study.may_be_rounding(point)
-        and point.flaws.theta is None
-        and point.theta_error < FITTED_BELOW
-    ][-4:]
+    fitted = []
+    for steps in ladder:
+        point = study.run(method, steps, ORDER_STEPS[0])
+        error = point.errors["theta"]
+        flaw = point.flaws["theta"] or study.flaw("theta", error, steps)  # also if it still falls
+        if flaw is None and error < FITTED_BELOW:
+            fitted.append((math.log(point.h), math.log(error)))
     if len(fitted) < 3:
         return None
-    return linear_regression(*zip(*fitted, strict=True)).slope
+    return linear_regression(*zip(*fitted[-4:], strict=True)).slope
 
 
 Cost = Literal["evaluations", "seconds"]
@@ -326,7 +280,7 @@ def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest
         costs = {method: cost_at(line, kind, cost, target) for method, line in lines.items()}
         known = {method: found for method, found in costs.items() if found}
         if known:
-            best = min(known, key=lambda method: known[method])
+            best = min(known, key=known.__getitem__)
             own = cost_at(lines[best], kind, "evaluations", target)
             rk4 = cost_at(lines.get(RK4, ()), kind, "evaluations", target)
             cheapest.append(Cheapest(target, best, known[best], own and rk4 and rk4 / own))
@@ -342,25 +296,19 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
     first = next(reached, None)
     if first is None or not (high := cost_of(line[first], cost)):
         return None
-    below = line[first].error(kind)
+    below = line[first].errors[kind]
     if not first or not below:
         return high
     low = cost_of(line[first - 1], cost)
-    above = line[first - 1].error(kind)
+    above = line[first - 1].errors[kind]
     if not low or not target < above < math.inf:
         return high
     share = math.log(above / target) / math.log(above / below)
     return float(low * (high / low) ** share)
 
 
-def ranges(cheapest: Sequence[Cheapest]) -> list[tuple[Method, Sequence[Cheapest]]]:
-    """Return the front by method, each with its consecutive targets, the largest error first."""
-    groups = groupby(cheapest, key=lambda entry: entry.method)
-    return [(method, tuple(entries)) for method, entries in groups]
-
-
 def _reaches(point: Point, kind: ErrorKind, target: float) -> bool:
-    return point.flaw(kind) in (None, "rounding") and point.error(kind) <= target
+    return point.flaws[kind] in (None, "rounding") and point.errors[kind] <= target
 
 
 NUDGE = 1e-9  # relative; small even near the separatrix, but far above the exact swing's error

@@ -40,19 +40,12 @@ class Attempt:
     def succeeded(self) -> bool:
         return self.why_not is None
 
-
-@dataclass(frozen=True, slots=True)
-class Advice:
-    """The attempts for one simulated time, the best first."""
-
-    time: float  # s
-    attempts: list[Attempt]
-
     @property
-    def point(self) -> Point | None:
-        """The recommended run; None: nothing reaches the target."""
-        best = self.attempts[0]
-        return best.point if best.succeeded else None
+    def cost(self) -> float:
+        """Seconds if measured, else force evaluations; inf if the target is not reached."""
+        if self.point is None or not self.succeeded:
+            return math.inf
+        return self.point.seconds or self.point.force_evaluations
 
 
 def least_cost(
@@ -62,8 +55,8 @@ def least_cost(
     show: Callable[[float], None] = lambda share: None,
     clock: Clock | None = None,
     loops: LoopsOf = PlainLoops,
-) -> Advice:
-    """Return each method's cheapest run for a target, by force evaluations or a clock.
+) -> list[Attempt]:
+    """Return each method's cheapest run for a target by force evaluations or a clock, best first.
 
     `show` is called with the share of methods tried.  Raises InputError for a target as large as
     the swing itself.
@@ -79,19 +72,12 @@ def least_cost(
             attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
         attempts.append(attempt)
         show(len(attempts) / len(study.scene.cast))
-    attempts.sort(key=_cost)
-    least = _cost(attempts[0])
-    for place, attempt in enumerate(attempts):
-        if attempt.succeeded:
-            attempts[place] = replace(attempt, times=_cost(attempt) / least)
-    return Advice(study.time, attempts)
-
-
-def _cost(attempt: Attempt) -> float:
-    """Return seconds if measured, else force evaluations; inf if the target is not reached."""
-    if attempt.point is None or not attempt.succeeded:
-        return math.inf
-    return attempt.point.seconds or attempt.point.force_evaluations
+    attempts.sort(key=lambda attempt: attempt.cost)
+    least = attempts[0].cost
+    return [
+        replace(attempt, times=attempt.cost / least) if attempt.succeeded else attempt
+        for attempt in attempts
+    ]
 
 
 def reach(
@@ -118,6 +104,11 @@ def _affordable(study: Study, method: Method, budget: int) -> int:
     return steps
 
 
+def _work(method: Method) -> int:
+    """Return the force evaluations of a step; a term of a series takes about as long as one."""
+    return method.force_evaluations or method.order
+
+
 def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most: int) -> Attempt:
     """Multiply the steps until the target is reached, then bisect, then confirm."""
     most_steps = _affordable(study, method, most)
@@ -126,59 +117,60 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     steps = min(most_steps, math.ceil(study.time * fastest))
     if not steps:
         return Attempt(method, None, f"no usable h within {most} evaluations")
-    best = None
+    best = point = study.run(method, steps)
     in_vain = 0  # times that rounding kept the error from falling
-    point = study.run(method, steps)
-    while point.error(kind) > target:
-        flaw = point.flaw(kind)
-        if best is None or point.error(kind) < best.error(kind):
+    while (error := point.errors[kind]) > target:
+        flaw = point.flaws[kind]
+        if error < best.errors[kind]:
             best = point
             in_vain = 0
-        elif flaw == "rounding":
+        elif flaw == "rounding" and point is not best:
             in_vain += 1
         if in_vain == 2 or (in_vain and steps == most_steps):
-            return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
-        if steps == most_steps:
-            return Attempt(method, point, _not_within(point))
+            return Attempt(method, best, f"rounding stops it at {best.errors[kind]:.1e}")
+        is_hopeless = steps == most_steps
         factor = 4.0
         if flaw == "rounding":
             factor = 2.0
         elif flaw is None:  # the order of the method predicts the steps
-            needed = (point.error(kind) / target) ** (1 / max(1, method.order))
-            if needed * steps > 2 * most_steps and point.error(kind) < FITTED_BELOW:
+            needed = (error / target) ** (1 / max(1, method.order))
+            if needed * steps > 2 * most_steps and error < FITTED_BELOW:
                 about = method.evaluations(round(needed * steps))
                 return Attempt(method, point, f"needs about {about:.1e} evaluations")
             factor = min(max(needed, 1.1), factor)
+        if is_hopeless:
+            return Attempt(method, point, _not_within(point))
         too_few = steps
         steps = min(most_steps, math.ceil(steps * factor))
         point = study.run(method, steps)
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))
-        if study.run(method, middle).error(kind) <= target:
+        if study.run(method, middle).errors[kind] <= target:
             steps = middle
         else:
             too_few = middle
-    return _confirmed(study, method, kind, target, steps, most_steps)
+    return _confirmed(study, method, kind, target, steps=steps, most_steps=most_steps)
 
 
 def _confirmed(
-    study: Study, method: Method, kind: ErrorKind, target: float, steps: int, most_steps: int
+    study: Study,
+    method: Method,
+    kind: ErrorKind,
+    target: float,
+    *,
+    steps: int,
+    most_steps: int,
 ) -> Attempt:
     """Confirm a run with more comparisons, and with slightly more steps; else take more steps."""
     for _ in range(20):
         point = study.run(method, steps, CONFIRMING_COMPARISONS)
         refined = study.run(method, math.ceil(steps * REFINED), CONFIRMING_COMPARISONS)
-        if max(point.error(kind), refined.error(kind)) <= target:
+        if max(point.errors[kind], refined.errors[kind]) <= target:
             return Attempt(method, point)
         if steps == most_steps:
             break
         steps = min(most_steps, math.ceil(steps * (1 + TOLERANCE)))
     return Attempt(method, point, _not_within(point))
-
-
-def _work(method: Method) -> int:
-    """Return the force evaluations of a step; a term of a series takes about as long as one."""
-    return method.force_evaluations or method.order
 
 
 def _not_within(point: Point) -> str:

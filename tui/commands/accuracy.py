@@ -5,9 +5,11 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import product, starmap
 from operator import methodcaller
 from typing import Any
 
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.loops import LoopsOf
@@ -16,7 +18,6 @@ from pendu_tui.engine.studies.accuracy import (
     REASONS,
     Cost,
     ErrorKind,
-    Order,
     Point,
     Study,
     compilable,
@@ -28,7 +29,7 @@ from pendu_tui.engine.studies.accuracy import (
     usual,
     with_all_methods,
 )
-from pendu_tui.engine.studies.recommend import Advice, Attempt, least_cost
+from pendu_tui.engine.studies.recommend import Attempt, least_cost
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.scene import general_scene_of
 from pendu_tui.tui.cli.workers import Work, work_of
@@ -49,10 +50,7 @@ from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, ac
 from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
 
 CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows
-NUMBERS = (
-    *("h", "steps", "force_evaluations", "seconds", "spread"),
-    *(f"{kind}_error" for kind in ERROR_LABELS),
-)
+NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread")
 ATTEMPTED = ("h", "z", "steps_per_swing", "force_evaluations")
 
 Row = dict[str, Any]
@@ -75,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     results = Results(searched if options.all else scene, seconds, options)
     work = measure(results, rungs, searched)
     publish(results.report(interrupted=work.ended is not None), options)
-    if results.advice and results.advice.point is None:
+    if results.attempts and not results.attempts[0].succeeded:
         warn(f"no method reaches the target over {results.time:g} s.")
         return Exit.CHECK_FAILED
     return work.conclude()
@@ -89,8 +87,8 @@ class Results:
     time: float  # s
     options: argparse.Namespace
     points: list[Point] = field(default_factory=list)
-    orders: list[Order] = field(default_factory=list)
-    advice: Advice | None = None  # with a target
+    orders: dict[Method, float | None] = field(default_factory=dict)
+    attempts: list[Attempt] = field(default_factory=list)  # with a target, the best first
 
     def __post_init__(self) -> None:
         self.kind: ErrorKind = self.options.error
@@ -117,8 +115,8 @@ class Results:
                     | {"saves_over_rk4": place.saves}
                     for place in front(self.points, self.kind, self.cost)
                 ],
-                "orders": list(map(_order_fields, self.orders)),
-                "recommendation": self.advice and self._advice_fields(self.advice),
+                "orders": list(starmap(_order_fields, self.orders.items())),
+                "recommendation": self._advice_fields() if self.attempts else None,
                 "interrupted": interrupted,
             },
             figure=Figure(
@@ -132,10 +130,11 @@ class Results:
 
     def _record(self, point: Point) -> Row:
         """Return a point for JSON and CSV."""
-        flaw = point.flaw(self.kind)
-        record = {"method": point.method.key, **fields_of(point, *NUMBERS), "valid": flaw is None}
+        flaw = point.flaws[self.kind]
+        record = {"method": point.method.key, **fields_of(point, *NUMBERS)}
+        record |= {f"{kind}_error": error for kind, error in point.errors.items()}
         record["force_evaluations"] = point.force_evaluations or None
-        return record | {"reason": flaw and REASONS[flaw]}
+        return record | {"valid": flaw is None, "reason": flaw and REASONS[flaw]}
 
     def _rungs(self) -> list[Row]:
         """Return a row for each h, with the points of all methods."""
@@ -159,18 +158,18 @@ class Results:
         return columns
 
     def _cell(self, point: Point) -> str:
-        text = f"{point.error(self.kind):.1e}{_seconds(point)}"
-        flaw = point.flaw(self.kind)
+        text = f"{point.errors[self.kind]:.1e}{_seconds(point)}"
+        flaw = point.flaws[self.kind]
         return f"{MARKS[flaw]} {text}" if flaw else text
 
     def _notes(self) -> Iterator[Any]:
-        flaws = {point.flaw(self.kind) for point in self.points}
+        flaws = {point.flaws[self.kind] for point in self.points}
         yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
         yield "n/step: force evaluations"
         measured = [
-            f"{order.method.label} {order.measured:.2f}"
-            for order in self.orders
-            if order.measured is not None
+            f"{method.label} {order:.2f}"
+            for method, order in self.orders.items()
+            if order is not None
         ]
         yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
         yield ""
@@ -184,15 +183,15 @@ class Results:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
             if savings := factor_words(front(self.points, self.kind, "evaluations")):
                 yield savings
-        if self.advice:
-            yield from self._advice_notes(self.advice)
+        if self.attempts:
+            yield from self._advice_notes()
 
-    def _advice_notes(self, advice: Advice) -> Iterator[Any]:
-        wish = f"{self.kind} error of at most {self.options.target:g} over {advice.time:g} s"
+    def _advice_notes(self) -> Iterator[Any]:
+        wish = f"{self.kind} error of at most {self.options.target:g} over {self.time:g} s"
         yield f"\nThe cheapest run of each method with a {wish}:"
-        rows = list(map(self._attempt_fields, advice.attempts))
+        rows = list(map(self._attempt_fields, self.attempts))
         columns = [
-            method_column([attempt.method for attempt in advice.attempts]),
+            method_column([attempt.method for attempt in self.attempts]),
             Column("h [s]", "h", ".5g"),
             Column("z", "z", ".3g"),
             Column("steps a swing", "steps_per_swing", few),
@@ -208,16 +207,16 @@ class Results:
     def _attempt_fields(self, attempt: Attempt) -> Row:
         fields = {"method": attempt.method.key} | dict.fromkeys((*ATTEMPTED, "error", "seconds"))
         if point := attempt.point:
-            fields |= fields_of(point, *ATTEMPTED, "seconds") | {"error": point.error(self.kind)}
+            fields |= fields_of(point, *ATTEMPTED, "seconds") | {"error": point.errors[self.kind]}
             fields["force_evaluations"] = point.force_evaluations or None
         return fields | {"times_the_cheapest": attempt.times, "why_not": attempt.why_not}
 
-    def _advice_fields(self, advice: Advice) -> Row:
-        attempts = list(map(self._attempt_fields, advice.attempts))
+    def _advice_fields(self) -> Row:
+        attempts = list(map(self._attempt_fields, self.attempts))
         best = attempts[0]
-        if not advice.point:
+        if not self.attempts[0].succeeded:
             best = dict.fromkeys(best) | {"why_not": "no method gets there"}
-        return {"time": advice.time, "target": self.options.target, **best, "attempts": attempts}
+        return {"time": self.time, "target": self.options.target, **best, "attempts": attempts}
 
 
 def _rungs(scene: Scene, options: argparse.Namespace) -> tuple[float, list[int]]:
@@ -244,16 +243,16 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
     # seconds compare methods only if all or none of them are compiled
     if options.no_compiled or (clock and not compilable(scene.cast)):
         study_loops = timed_loops = loops.PlainLoops
-    tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
+    tasks = list(product(rungs, scene.cast))
     with work_of(options, "steps", len(scene.cast) * sum(rungs)) as work:
         for point in work.run(partial(measured_point, scene, results.time, study_loops), tasks):
             if clock:
                 point = timed(point, scene, clock, timed_loops)
             results.points.append(point)
             work.step(point.steps)
-        results.orders += orders(scene, results.time, study_loops)
+        results.orders = orders(scene, results.time, study_loops)
         if options.target is not None:
-            results.advice = least_cost(
+            results.attempts = least_cost(
                 Study(searched, results.time, study_loops),
                 kind=results.kind,
                 target=options.target,
@@ -264,11 +263,9 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
     return work
 
 
-def _order_fields(order: Order) -> Row:
-    claimed = None
-    if not isinstance(order.method, OwnMethod):
-        claimed = order.method.order
-    return {"method": order.method.key, "claimed": claimed, "measured": order.measured}
+def _order_fields(method: Method, measured: float | None) -> Row:
+    claimed = None if isinstance(method, OwnMethod) else method.order
+    return {"method": method.key, "claimed": claimed, "measured": measured}
 
 
 def _seconds(point: Point) -> str:

@@ -55,8 +55,8 @@ def placed(
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return []
     axes = LogLog.fitting(series, width, height)
-    drawn = [point for point in points if 0 < point.error(kind) < math.inf]
-    return [(*axes.cell(point.force_evaluations, point.error(kind)), point) for point in drawn]
+    drawn = [point for point in points if 0 < point.errors[kind] < math.inf]
+    return [(*axes.cell(point.force_evaluations, point.errors[kind]), point) for point in drawn]
 
 
 def nearest(places: Placed, x: int, y: int) -> Point | None:
@@ -82,10 +82,10 @@ def accuracy_series(
     """Return points as letters, x if useless, ~ if limited by rounding; orders as dots."""
 
     def series(ink: int, mark: str, *some: Point) -> Series:
-        return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
+        return Series(ink, mark, [cost_of(p, cost) for p in some], [p.errors[kind] for p in some])
 
     def flawed(ink: int, some: Sequence[Point]) -> list[Series]:
-        return [series(ink, MARKS[flaw], p) for p in some if (flaw := p.flaw(kind))]
+        return [series(ink, MARKS[flaw], p) for p in some if (flaw := p.flaws[kind])]
 
     lines: list[Series] = []
     flaws: list[Series] = []
@@ -105,11 +105,11 @@ def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Seri
 
     It is measured: the energy of a method of order p may be right to a higher one (RK4: 5).
     """
-    valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
+    valid = [p for p in ours if not p.flaws[kind] and p.errors[kind] and cost_of(p, cost)]
     if len(valid) < 2:
         return {}
     costs = np.array([cost_of(point, cost) for point in valid])
-    errors = np.array([point.error(kind) for point in valid])
+    errors = np.array([point.errors[kind] for point in valid])
     order = -round(float(np.polyfit(np.log(costs), np.log(errors), 1)[0]))
     middle = len(valid) // 2
     ends = np.array([costs.min(), costs.max()])

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Sequence
+from itertools import groupby
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.runge_kutta import RK4
-from pendu_tui.engine.studies.accuracy import REASONS, Cheapest, Cost, ErrorKind, Point, ranges
+from pendu_tui.engine.studies.accuracy import REASONS, Cheapest, Cost, ErrorKind, Point
 from pendu_tui.engine.studies.section import OrbitKind
 from pendu_tui.tui.words.numbers import counted
 
@@ -29,8 +30,8 @@ def few(number: float) -> str:
 
 def point_words(point: Point, kind: ErrorKind, note: str) -> str:
     """Write a point's method, h, error and force evaluations, and a note."""
-    error = f"{kind} error {point.error(kind):.1e}"
-    if flaw := point.flaw(kind):
+    error = f"{kind} error {point.errors[kind]:.1e}"
+    if flaw := point.flaws[kind]:
         error += f" ({REASONS[flaw]})"
     swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
     text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
@@ -60,12 +61,12 @@ def factor_words(found: Sequence[Cheapest]) -> str:
 
 def _spans(found: Sequence[Cheapest]) -> str:
     spans = []
-    for method, some in ranges(found):
-        first, last = _power(some[0].target), _power(some[-1].target)
-        if first == last:
-            spans.append(f"{method.label} at {first}")
+    for method, some in groupby(found, key=lambda one: one.method):
+        powers = [_power(one.target) for one in some]
+        if len(powers) == 1:
+            spans.append(f"{method.label} at {powers[0]}")
         else:
-            spans.append(f"{method.label} from {first} to {last}")
+            spans.append(f"{method.label} from {powers[0]} to {powers[-1]}")
     return ", ".join(spans)
 
 

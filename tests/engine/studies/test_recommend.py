@@ -18,7 +18,9 @@ LOOPS = compiled if available() else PlainLoops  # the same bits
 
 
 def recommended(scene, time, kind, target):
-    return least_cost(Study(scene, time, LOOPS), kind, target).point
+    best = least_cost(Study(scene, time, LOOPS), kind, target)[0]
+    assert best.succeeded
+    return best.point
 
 
 def largest_error(scene, point, kind):
@@ -45,14 +47,14 @@ def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     point = recommended(SCENES[name], time, kind, target)
     largest = largest_error(SCENES[name], point, kind)
     # 10,000 comparisons are every step of these runs, so not even rounding differs
-    assert largest == pytest.approx(point.error(kind), rel=1e-9)
+    assert largest == pytest.approx(point.errors[kind], rel=1e-9)
     assert largest <= target
 
 
 def test_a_target_near_the_rounding_floor_is_reached():
     point = recommended(DRIFT, 20.0, "theta", 2e-13)
     assert point.method is R
-    assert point.theta_error <= 2e-13
+    assert point.errors["theta"] <= 2e-13
 
 
 @pytest.mark.slow
@@ -60,12 +62,12 @@ def test_a_target_near_the_rounding_floor_is_reached():
 @pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-9), ("energy", 1e-6)])
 def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
     study = Study(with_all_methods(DRIFT), 20.0, LOOPS)
-    cost = least_cost(study, kind, target).point.force_evaluations
+    cost = least_cost(study, kind, target)[0].cost
 
     def reaches(method, steps):
         """Whether it and what is up to 10 % finer do: near a resonance, an error may cross zero."""
         ladder = [math.ceil(steps * finer) for finer in (1, 1.02, 1.05, 1.1)]
-        return all(study.run(method, each, 10_000).error(kind) <= target for each in ladder)
+        return all(study.run(method, each, 10_000).errors[kind] <= target for each in ladder)
 
     for method in study.scene.cast:
         steps = math.ceil(0.6 * cost / method.force_evaluations)
@@ -85,7 +87,7 @@ def test_a_method_far_dearer_than_another_is_given_up():
 
 def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
     study = Study(replace(DRIFT, cast=(V, R)), 10.0, LOOPS)
-    best, other = least_cost(study, "theta", 1e-4).attempts
+    best, other = least_cost(study, "theta", 1e-4)
     assert (best.method, best.times, other.method) == (R, 1.0, V)
     ratio = other.point.force_evaluations / best.point.force_evaluations
     assert 1 < other.times == ratio
@@ -100,20 +102,21 @@ def test_if_no_method_reaches_the_target_each_has_its_reason():
     assert euler.why_not == "not within 1000 evaluations"
 
 
-def test_a_method_that_is_given_up_needs_about_what_its_order_predicts():
+def test_a_method_is_given_up_only_if_its_order_predicts_twice_the_limit():
     scene = replace(DRIFT, cast=(V,))
-    (attempt,) = reach(Study(scene, 2.0, LOOPS), "theta", 1e-9, 5_000)
-    about = float(attempt.why_not.removeprefix("needs about ").removesuffix(" evaluations"))
     needed = recommended(scene, 2.0, "theta", 1e-9).force_evaluations
-    assert attempt.point.force_evaluations < 5_000 < needed
-    assert about == pytest.approx(needed, rel=0.1)
+    for share, reached in ((0.7, False), (0.45, False), (1.05, True)):
+        (attempt,) = reach(Study(scene, 2.0, LOOPS), "theta", 1e-9, round(share * needed))
+        assert attempt.succeeded == reached
+        tried = attempt.point.force_evaluations / needed
+        assert tried == pytest.approx(share, rel=0.1) if share > 0.5 else tried < 0.1
 
 
 def test_an_error_that_still_falls_with_the_order_is_not_rounding():
     study = Study(SCENES["gentle"], 20.0, LOOPS)
     falls, stays = (study.run(R, 2**power) for power in (17, 19))
-    assert study.may_be_rounding(falls)
-    assert (falls.flaws.theta, stays.flaws.theta) == (None, "rounding")
+    assert study.flaw("theta", falls.errors["theta"], falls.steps) == "rounding"
+    assert (falls.flaws["theta"], stays.flaws["theta"]) == (None, "rounding")
 
 
 @pytest.mark.parametrize(("time", "most"), [(1e-6, 10_000), (1e6, 10)])
@@ -125,6 +128,6 @@ def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
 @pytest.mark.parametrize("kind", ["theta", "energy"])
 def test_no_recommended_step_is_longer_than_half_a_swing(kind):
     scene = replace(DRIFT, theta=0.02, cast=(V, R))
-    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, 1e-2).attempts:
+    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, 1e-2):
         assert attempt.succeeded
         assert attempt.point.z <= math.pi

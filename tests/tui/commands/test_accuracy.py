@@ -33,7 +33,7 @@ def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tm
     study = Study(SCENES["drift"], 5.0)
     for row in advice["attempts"][:3]:
         again = study.run(method_of(row["method"]), round(5.0 / row["h"]), 10_000)
-        assert (again.h, again.z, again.theta_error) == (row["h"], row["z"], row["error"])
+        assert (again.h, again.z, again.errors["theta"]) == (row["h"], row["z"], row["error"])
     file = tmp_path / "points.csv"
     # the same without Numba and in other processes
     assert pendu(*QUICK, "-o", file, "--no-compiled", "--workers", "2").code == 0

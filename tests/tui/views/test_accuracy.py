@@ -56,8 +56,8 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
     async with accuracy_view() as (_, pane, _live):
         for point in measured(SCENES["drift"], 5.0, RUNGS):
             shown = pane.points[point.method.key, point.steps]
-            assert shown.error("theta") == point.error("theta")
-            assert shown.error("energy") == point.error("energy")
+            assert shown.errors["theta"] == point.errors["theta"]
+            assert shown.errors["energy"] == point.errors["energy"]
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
         assert {*MARKS.values(), "@"} == {"@", "x", "~"} <= set(str(pane.border_subtitle))
@@ -88,7 +88,7 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         await complete(pilot, pane)
         expected = Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0])
         shown = pane.points["velocity_verlet", RUNGS[0]]
-        assert shown.theta_error == expected.theta_error
+        assert shown.errors == expected.errors
 
 
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
