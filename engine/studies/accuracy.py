@@ -35,11 +35,10 @@ ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
-Flaw = Literal["lost", "rounding", "diverged"]
+Flaw = Literal["lost", "rounding"]
 REASONS: dict[Flaw, str] = {
-    "lost": "as far off as the swing is wide, or as the energy is large",
+    "lost": "no digit is right",
     "rounding": "made of rounding: a smaller h no longer reduces it",
-    "diverged": "the numbers overflowed",
 }
 Errors = Mapping[ErrorKind, float]
 """The largest errors in theta [rad] against the exact swing, and in energy, relative, of all steps;
@@ -101,7 +100,7 @@ class Study:
         errors, overflowed = self._errors(method, steps, comparisons)
         flaws = {kind: self.flaw(kind, error, steps) for kind, error in errors.items()}
         if overflowed:
-            flaws = dict.fromkeys(errors, "diverged")
+            flaws = dict.fromkeys(errors, "lost")
         if "rounding" in flaws.values():
             falling = self._falling(method, steps, comparisons, errors)
             flaws |= {kind: None for kind in falling if flaws[kind] == "rounding"}
@@ -308,7 +307,7 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
 
 
 def _reaches(point: Point, kind: ErrorKind, target: float) -> bool:
-    return point.flaws[kind] in (None, "rounding") and point.errors[kind] <= target
+    return point.flaws[kind] != "lost" and point.errors[kind] <= target
 
 
 NUDGE = 1e-9  # relative; small even near the separatrix, but far above the exact swing's error

@@ -111,12 +111,13 @@ def _work(method: Method) -> int:
 
 def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most: int) -> Attempt:
     """Multiply the steps until the target is reached, then bisect, then confirm."""
+    too_dear = f"not within {most} evaluations"
     most_steps = _affordable(study, method, most)
     fastest = max(study.scene.w0, abs(study.scene.omega))  # rad/s
     too_few = math.ceil(study.time * fastest / math.pi) - 1  # a step of more than half a swing
     steps = min(most_steps, math.ceil(study.time * fastest))
     if not steps:
-        return Attempt(method, None, f"no usable h within {most} evaluations")
+        return Attempt(method, None, too_dear)
     best = point = study.run(method, steps)
     in_vain = 0  # times that rounding kept the error from falling
     while (error := point.errors[kind]) > target:
@@ -134,12 +135,10 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             factor = 2.0
         elif flaw is None:  # the order of the method predicts the steps
             needed = (error / target) ** (1 / max(1, method.order))
-            if needed * steps > 2 * most_steps and error < FITTED_BELOW:
-                about = method.evaluations(round(needed * steps))
-                return Attempt(method, point, f"needs about {about:.1e} evaluations")
+            is_hopeless |= needed * steps > 2 * most_steps and error < FITTED_BELOW
             factor = min(max(needed, 1.1), factor)
         if is_hopeless:
-            return Attempt(method, point, _not_within(point))
+            return Attempt(method, point, too_dear)
         too_few = steps
         steps = min(most_steps, math.ceil(steps * factor))
         point = study.run(method, steps)
@@ -149,7 +148,9 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             steps = middle
         else:
             too_few = middle
-    return _confirmed(study, method, kind, target, steps=steps, most_steps=most_steps)
+    return _confirmed(
+        study, method, kind, target, steps=steps, most_steps=most_steps, too_dear=too_dear
+    )
 
 
 def _confirmed(
@@ -160,6 +161,7 @@ def _confirmed(
     *,
     steps: int,
     most_steps: int,
+    too_dear: str,
 ) -> Attempt:
     """Confirm a run with more comparisons, and with slightly more steps; else take more steps."""
     for _ in range(20):
@@ -170,8 +172,4 @@ def _confirmed(
         if steps == most_steps:
             break
         steps = min(most_steps, math.ceil(steps * (1 + TOLERANCE)))
-    return Attempt(method, point, _not_within(point))
-
-
-def _not_within(point: Point) -> str:
-    return f"not within {point.force_evaluations} evaluations"
+    return Attempt(method, point, too_dear)

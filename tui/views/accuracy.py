@@ -31,7 +31,7 @@ from pendu_tui.tui.words.studies import COSTS, front_words, point_words
 Placed = list[tuple[int, int, Point]]
 """Column and row in the chart, and the point drawn there."""
 
-MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
+MARKS: dict[Flaw, str] = {"lost": "x", "rounding": "~"}
 """The marks of points whose error says nothing about the order."""
 
 ERROR_LABELS: dict[ErrorKind, str] = {
