@@ -47,14 +47,8 @@ class ByMethod(dict[str, T], Generic[T]):
         return self[matches[0].key]
 
 
-def _fresh(force: Any, q: Any) -> Any:
-    """Return what the force returns, copied if it is an array: the force may use it again."""
-    value = force(q)
-    return value.copy() if hasattr(value, "copy") else value
-
-
 def _public(method: Method) -> Method:
-    """Return the method with `phases` that check their arguments and copy forces."""
+    """Return the method for forces that may use an array again, if it takes any force."""
 
     @wraps(method.phases)
     def phases(force: Any, phase: Any, h: float) -> Iterator[Any]:
@@ -63,9 +57,12 @@ def _public(method: Method) -> Method:
                 f"{method.label} is made for the scenes of the lab, not for any force and arrays; "
                 "use a method of METHODS with general=True."
             )
-        if not _number("h", h):
-            raise InputError("h = 0 leads nowhere; use a step above zero, or below to go back.")
-        return method.phases(partial(_fresh, force), phase, h)
+
+        def fresh(q: Any) -> Any:
+            value = force(q)
+            return value.copy() if hasattr(value, "copy") else value
+
+        return method.phases(fresh, phase, h)
 
     return replace(method, phases=phases)
 
@@ -142,9 +139,7 @@ def _stops(scene: Scene, time: float, every: int) -> list[int]:
     steps = round(min(time, 1e15) / scene.h)
     if steps < 1:
         raise InputError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
-    if not isinstance(every, int) or every < 1:
-        raise InputError(f"every = {every!r} is not a whole number of steps above zero.")
-    if steps / every * len(scene.cast) > MAX_READINGS:
+    if steps / _whole("every", every) * len(scene.cast) > MAX_READINGS:
         raise InputError(f"{steps} steps are too many to keep; use every={steps // 10_000}.")
     return [*range(0, steps, every), steps]
 
@@ -180,11 +175,10 @@ class Judged:
             verdict += f": its numbers end at {self.diverged_at:g} {time_unit}".rstrip()
         lines = [f"verdict       {verdict}"]
         if self.slope is not None and self.uncertainty is not None:
+            relative = f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}"
             absolute = f"{self.slope * self.scale:+.2e} ± {self.uncertainty * self.scale:.0e}"
-            trend = (
-                f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}, absolute {absolute}"
-            )
-            lines.append(f"trend         {trend} {energy_unit}".rstrip() + f" {per}")
+            absolute = f"absolute {absolute} {energy_unit}".rstrip()
+            lines.append(f"trend         {relative}, {absolute} {per}")
             share = self.share or 0.0
             band = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
             bound = f"relative {self.bound:.1e} {per} at 99 %; over this record {band} the band"
@@ -208,9 +202,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
 
     t, e = _series(times, energies)
     finite = int(np.isfinite(e).cumprod().sum())
-    diverged_at = None
-    if finite < len(e):
-        diverged_at = float(t[finite])
+    diverged_at = float(t[finite]) if finite < len(e) else None
     e = _finite("energies", e[: max(finite, 1)])
     judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
@@ -243,8 +235,6 @@ def measure(step: "Phases") -> "Measured":
     from pendu_tui.engine.methods.measure import measured_function
     from pendu_tui.engine.methods.own import OwnMethodError
 
-    if not callable(step):
-        raise InputError(f"{step!r} is no function; give a generator function (force, phase, h).")
     try:
         return measured_function(step)
     except OwnMethodError as error:
@@ -278,9 +268,9 @@ class Limit:
     """Where a method loses a swing; z = h·sqrt(g/L)."""
 
     linear: float | None  # z: the limit of small swings; 0: none is stable, None: no one number
-    z: float | None  # the smallest at which the swing is lost; None: held up to z = 3.2
-    h: float | None  # s, the same for this scene
-    reason: str  # over the top, grows, loses or chaotic; "" if it is held
+    z: float | None = None  # the smallest at which the swing is lost; None: held up to z = 3.2
+    h: float | None = None  # s, the same for this scene
+    reason: str = ""  # over the top, grows, loses or chaotic; "" if it is held
 
 
 def limits(
@@ -302,17 +292,14 @@ def limits(
     theta = amplitude(chosen)
     if theta is None or not chosen.equations.turns:
         raise InputError("limits are those of a pendulum that swings; use another start or scene.")
-    if not isinstance(steps, int) or steps < 1:
-        raise InputError(f"steps = {steps!r} is not a whole number above zero.")
-    grid = ladder_of(chosen, [theta], None, steps)
-    rows = []
+    grid = ladder_of(chosen, [theta], None, _whole("steps", steps))
+    found = []
     for row in table(chosen, grid, grid.cells()):
-        limit = Limit(linear=row.method.linear_limit, z=None, h=None, reason="")
+        limit = Limit(row.method.linear_limit)
         if failure := row.failure:
-            h = failure.z / chosen.w0
-            limit = replace(limit, z=failure.z, h=h, reason=failure.reason)
-        rows.append(limit)
-    return ByMethod(chosen.cast, rows)
+            limit = Limit(limit.linear, failure.z, failure.z / chosen.w0, failure.reason)
+        found.append(limit)
+    return ByMethod(chosen.cast, found)
 
 
 def recommend(
@@ -339,12 +326,8 @@ def recommend(
     if chosen.theta == chosen.omega == 0:
         raise InputError("the pendulum hangs at rest; use another theta or omega.")
     check_name("kind of error", error, ("theta", "energy", "final"))
-    wanted = _number("target", target)
-    seconds, _ = usual(chosen)
-    if time is not None:
-        seconds = _number("time", time)
-    if wanted <= 0 or seconds <= 0:
-        raise InputError("target and time must be above zero.")
+    seconds, _ = usual(chosen, time=None if time is None else _positive("time", time))
+    wanted = _positive("target", target)
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted)
     successes = [attempt for attempt in attempts if attempt.succeeded]
     if not successes:
@@ -359,8 +342,6 @@ def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, fl
     if isinstance(scene, str):
         check_name("scene", scene, SCENES)
         scene = SCENES[scene]
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene = {scene!r} is neither a name nor a Scene.")
     for name in numbers:
         check_name("number", name, NUMBERS)
     scene = scene.altered(**{name: _number(name, value) for name, value in numbers.items()})
@@ -377,14 +358,7 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 def _cast(methods: Methods) -> Cast:
     given = methods.split(",") if isinstance(methods, str) else methods
-    if not isinstance(given, Iterable):
-        raise InputError(
-            f"methods = {methods!r} is not a list of methods; use for example 'rk4,verlet'."
-        )
-    given = [*given]
-    own = [each for each in given if isinstance(each, Method) and each.key not in METHODS]
-    names = [getattr(each, "key", str(each)) for each in given]
-    return all_named(names, (*own, *listed.METHODS))
+    return all_named([each.key if isinstance(each, Method) else each for each in given])
 
 
 def _number(name: str, value: Any) -> float:
@@ -396,17 +370,28 @@ def _number(name: str, value: Any) -> float:
     raise InputError(f"{name} = {value!r:.60} is not a finite number.")
 
 
+def _positive(name: str, value: Any) -> float:
+    number = _number(name, value)
+    if number <= 0:
+        raise InputError(f"{name} = {number:g} is not above zero.")
+    return number
+
+
+def _whole(name: str, value: int) -> int:
+    if not isinstance(value, int) or value < 1:
+        raise InputError(f"{name} = {value!r} is not a whole number above zero.")
+    return value
+
+
 def _array(name: str, values: Any) -> "Floats":
     import numpy as np
 
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must be a list of numbers, or an array.") from None
-    if not array.size:
-        raise InputError(f"{name} is empty; give one for each sample.")
-    if array.ndim != 1:
-        raise InputError(f"{name} must be a list of numbers; their shape is {array.shape}.")
+        array = np.empty(0)
+    if array.ndim != 1 or not array.size:
+        raise InputError(f"{name} must be a list of numbers or an array, one for each sample.")
     return array
 
 
@@ -440,15 +425,10 @@ def _series(
 
 def _size(energies: Any, scale: float | str) -> float:
     """Return the energy that errors are relative to."""
-    if isinstance(scale, str) and scale not in ("std", "first"):
-        raise InputError(f"scale = {scale!r} is none of std, first and a number.")
-    if not isinstance(scale, str):
-        size = _number("scale", scale)
-    elif scale == "first":
-        size = abs(float(energies[0]))
-    else:
+    if scale == "std":
         largest = float(abs(energies).max()) or 1.0
         return float((energies / largest).std()) * largest or largest
+    size = abs(float(energies[0])) if scale == "first" else _number("scale", scale)
     if size <= 0:
         raise InputError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size
