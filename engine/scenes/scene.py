@@ -9,15 +9,11 @@ from typing import Any
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST, Cast
 from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
-from pendu_tui.engine.models.model import ExactMotion, Model
+from pendu_tui.engine.models.model import ExactMotion, Model, Number
 from pendu_tui.engine.quantities import ENERGY_ERROR
 
 MAX_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
-
-
-def _names(model: type[Model]) -> list[str]:
-    return [parameter.name for parameter in model.parameters]
 
 
 def check_h(h: float, w0: float, forwards: bool = False) -> None:
@@ -30,15 +26,23 @@ def check_h(h: float, w0: float, forwards: bool = False) -> None:
         )
 
 
-def _check_range(name: str, value: float, w0: float = math.inf) -> None:
-    """Raise InputError unless a number lies within its limits for this w0 [rad/s]."""
-    low = NUMBERS[name].min
-    high = min(NUMBERS[name].max, NUMBERS[name].max_over_w0 * w0)
-    if not low <= value <= high:  # also refuses nan
-        unit = NUMBERS[name].unit
-        raise InputError(
-            f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}."
-        )
+def _check_range(number: Number, value: float, w0: float = math.inf) -> None:
+    """Raise InputError unless a value of the number lies within its limits for this w0 [rad/s]."""
+    high = min(number.max, number.max_over_w0 * w0)
+    if not number.min <= value <= high:  # also refuses nan
+        limits = f"{number.min:g} to {high:g} {number.unit}"
+        raise InputError(f"{number.name} = {value:g} {number.unit} is out of range; use {limits}.")
+
+
+def _complete(model: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Return a model's parameters in its order, with defaults for those that are not given."""
+    own = {each.name: each.default for each in MODELS[model].parameters}
+    for name, value in given.items():
+        if name not in own and value:
+            owners = [key for key, other in MODELS.items() if NUMBERS.get(name) in other.parameters]
+            why = f"the model {model} has no {name}; {' or '.join(owners)} has"
+            raise InputError(f"{why}: choose a scene of that model.")
+    return {name: given.get(name, default) for name, default in own.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,37 +98,22 @@ class Scene:
     shot: Shot = field(default=Shot(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "parameters", self._complete(self.parameters))
+        object.__setattr__(self, "parameters", _complete(self.model, self.parameters))
         for each in COMMON:
             if each.name != "h":  # its limits depend on w0
-                _check_range(each.name, getattr(self, each.name))
-        known = self.model in MODELS
-        if known:
-            for each in MODELS[self.model].parameters:
-                _check_range(each.name, self.parameters[each.name], self.w0)
+                _check_range(each, getattr(self, each.name))
+        for each in MODELS[self.model].parameters:
+            _check_range(each, self.parameters[each.name], self.w0)
         check_h(self.h, self.w0, forwards=True)
         if not 0 < self.speed < math.inf:
             raise InputError(
                 f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time."
             )
         for method in self.cast:
-            if known and self.model not in method.models:
+            if self.model not in method.models:
                 suited = " or ".join(method.models)
                 why = f"{method.label} is not for the model {self.model}"
                 raise InputError(f"{why}; it is for {suited}: choose a scene of that model.")
-
-    def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
-        """Return the parameters in the model's order, with defaults; unchanged without a model."""
-        if self.model not in MODELS:
-            return dict(given)
-        own = {each.name: each.default for each in MODELS[self.model].parameters}
-        for name, value in given.items():
-            if name not in own and value:
-                owners = [key for key, model in MODELS.items() if name in _names(model)]
-                suited = " or ".join(owners)
-                why = f"the model {self.model} has no {name}"
-                raise InputError(f"{why}; {suited} has: choose a scene of that model.")
-        return {name: given.get(name, default) for name, default in own.items()}
 
     @property
     def equations(self) -> Model:
