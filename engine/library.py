@@ -202,7 +202,9 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
 
     t, e = _series(times, energies)
     finite = int(np.isfinite(e).cumprod().sum())
-    diverged_at = float(t[finite]) if finite < len(e) else None
+    diverged_at = None
+    if finite < len(e):
+        diverged_at = float(t[finite])
     e = _finite("energies", e[: max(finite, 1)])
     judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
@@ -326,7 +328,9 @@ def recommend(
     if chosen.theta == chosen.omega == 0:
         raise InputError("the pendulum hangs at rest; use another theta or omega.")
     check_name("kind of error", error, ("theta", "energy", "final"))
-    seconds, _ = usual(chosen, time=None if time is None else _positive("time", time))
+    seconds, _ = usual(chosen)
+    if time is not None:
+        seconds = _positive("time", time)
     wanted = _positive("target", target)
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted)
     successes = [attempt for attempt in attempts if attempt.succeeded]

@@ -132,7 +132,9 @@ class Study:
         """Return whether an error is as large as the swing, or below the floor of its roundings."""
         if error >= self.sizes[kind]:
             return "lost"
-        return "rounding" if error <= self._floors[kind] * math.sqrt(steps) else None
+        if error <= self._floors[kind] * math.sqrt(steps):
+            return "rounding"
+        return None
 
     def _falling(
         self, method: Method, steps: int, comparisons: int, errors: Errors
@@ -179,7 +181,9 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
 def usual(scene: Scene, all: bool = False, time: float | None = None) -> tuple[float, list[int]]:
     """Return a time [s], by default ten small swings, and a ladder for the usual cast or `all`."""
     time = time or float(f"{10 * math.tau / scene.w0:.2g}")
-    largest, smallest, rungs = ALL_LADDER if all else Z_LADDER
+    largest, smallest, rungs = Z_LADDER
+    if all:
+        largest, smallest, rungs = ALL_LADDER
     return time, ladder(time, min(largest / scene.w0, time), smallest / scene.w0, rungs)
 
 

@@ -74,10 +74,8 @@ def least_cost(
         show(len(attempts) / len(study.scene.cast))
     attempts.sort(key=lambda attempt: attempt.cost)
     least = attempts[0].cost
-    return [
-        replace(attempt, times=attempt.cost / least) if attempt.succeeded else attempt
-        for attempt in attempts
-    ]
+    reached = [replace(each, times=each.cost / least) for each in attempts if each.succeeded]
+    return reached + attempts[len(reached) :]
 
 
 def reach(
@@ -129,18 +127,14 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             in_vain += 1
         if in_vain == 2 or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.errors[kind]:.1e}")
-        is_hopeless = steps == most_steps
-        factor = 4.0
-        if flaw == "rounding":
-            factor = 2.0
-        elif flaw is None:  # the order of the method predicts the steps
-            needed = (error / target) ** (1 / max(1, method.order))
-            is_hopeless |= needed * steps > 2 * most_steps and error < FITTED_BELOW
-            factor = min(max(needed, 1.1), factor)
-        if is_hopeless:
+        factor = 2.0 if flaw else (error / target) ** (1 / max(1, method.order))
+        is_hopeless = not flaw and factor * steps > 2 * most_steps and error < FITTED_BELOW
+        if is_hopeless or steps == most_steps:
             return Attempt(method, point, too_dear)
+        if flaw == "lost":
+            factor = 4.0
         too_few = steps
-        steps = min(most_steps, math.ceil(steps * factor))
+        steps = min(most_steps, math.ceil(steps * min(max(factor, 1.1), 4.0)))
         point = study.run(method, steps)
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))

@@ -264,7 +264,9 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
 
 
 def _order_fields(method: Method, measured: float | None) -> Row:
-    claimed = None if isinstance(method, OwnMethod) else method.order
+    claimed = None
+    if not isinstance(method, OwnMethod):
+        claimed = method.order
     return {"method": method.key, "claimed": claimed, "measured": measured}
 
 

@@ -91,7 +91,7 @@ def test_a_method_that_takes_rates_integrates_friction_too():
         lockstep.advance(300)
         own, listed = lockstep.sample().readings
         assert (own.theta, own.omega) == (listed.theta, listed.omega)
-    with pytest.raises(InputError, match="is for pendulum and linear"):
+    with pytest.raises(InputError, match="is for pendulum or linear"):
         SCENES["damped"].with_cast((load(VERLET),))
 
 
