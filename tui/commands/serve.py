@@ -54,8 +54,9 @@ def run(options: argparse.Namespace) -> int:
             file.write_bytes(pickle.dumps(settings))
             asyncio.run(LabServer(file, options).run())
     except (OSError, OverflowError, UnicodeError) as error:
-        why = f"cannot listen on {options.host} port {options.port}: {getattr(error, 'strerror', error)}"
-        raise UserError(f"{why}; choose another --port or --host.") from None
+        where = f"{options.host} port {options.port}"
+        why = getattr(error, "strerror", None) or error
+        raise UserError(f"cannot listen on {where}: {why}; use another --port or --host.") from None
     return Exit.FINE
 
 
