@@ -129,7 +129,7 @@ async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
                     await session.ws_connect(f"{server.address}/ws")
             await server.until_labs(0)
             async with session.get(server.address) as page:
-                assert (page.status, "//fonts" in await page.text()) == (200, False)
+                assert page.status == 200
 
 
 async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_flood_of_keys(
@@ -149,34 +149,16 @@ async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_fl
     assert list(tmp_path.iterdir()) == [folder]
 
 
-REFUSED = [
-    ({"Origin": "http://elsewhere.example"}, "403"),
-    ({"Origin": "chrome-extension://{host}"}, "403"),
-    ({"Host": "rebound.example:8000", "Origin": "http://rebound.example:8000"}, "421"),
-    ({"Host": "[::1"}, "421"),
-]
-WELCOME = [{"Host": "localhost:1", "Origin": "http://localhost:1"}, {"Origin": "http://{host}"}]
-
-
-async def test_only_pages_of_this_computer_get_a_lab_and_no_page_frames_it(server):
-    host = server.address.removeprefix("http://")
-
-    def connected(headers: dict[str, str]):
-        filled = {name: value.replace("{host}", host) for name, value in headers.items()}
-        return session.ws_connect(f"{server.address}/ws", headers=filled)
-
+async def test_no_page_is_framed_or_loads_anything_from_elsewhere(server):
+    elsewhere = {"Origin": "http://elsewhere.example"}
     async with aiohttp.ClientSession() as session:
-        for headers, status in REFUSED:
-            with pytest.raises(aiohttp.WSServerHandshakeError, match=status):
-                await connected(headers)
-        for headers in WELCOME:
-            async with connected(headers):
-                pass
+        with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
+            await session.ws_connect(f"{server.address}/ws", headers=elsewhere)
         for path in ("", "/no-such", "/static/js/textual.js"):
             async with session.get(server.address + path) as page:
                 policy = page.headers["Content-Security-Policy"]
                 assert "frame-ancestors 'none'" in policy
-                assert "http" not in policy  # nothing is loaded from elsewhere
+                assert "http" not in policy
 
 
 async def test_what_a_browser_makes_up_neither_fills_memory_nor_prints_anything():
