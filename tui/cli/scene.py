@@ -8,7 +8,7 @@ import argparse
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, fields, replace
 from functools import cache
@@ -18,7 +18,7 @@ from typing import Any, get_type_hints
 
 from pendu_tui.engine import scenes
 from pendu_tui.engine.inputs import InputError, check_name, number, seconds
-from pendu_tui.engine.methods import METHODS, Cast, Method, all_named
+from pendu_tui.engine.methods import METHODS, Cast, all_named
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import (
@@ -134,12 +134,13 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     Fields before the tables belong to all.  Raises UserError with line and field.
     """
     text, given = _read(path)
-    if not given:
-        why = f"{path} describes no scene; give fields of scenes --json."
+    tables = given.pop("scene", [given])
+    if not (
+        isinstance(tables, list)
+        and all(isinstance(each, dict) and (each or given) for each in tables)
+    ):
+        why = f"{path} describes no scene; give fields of scenes --json, each below [[scene]]."
         raise UserError(why, Exit.INPUT_UNREADABLE)
-    tables = given.pop("scene", [{}])
-    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        raise UserError(f"{path}: begin each with [[scene]].", Exit.INPUT_UNREADABLE)
     heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
     heads += [0] * len(tables)
     found: dict[str, Scene] = {}
@@ -174,32 +175,29 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
 
 def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
     """Return the scene of a table; the user's own methods are in the folder."""
-    found = _values("scene", given, _SCENE)
+    found = _values(given, _SCENE)
     base = Scene()
     if listed := found.pop("from", ""):
-        with _at("from"):
-            check_name("scene", listed, SCENES)
+        _check("from", "scene", listed, SCENES)
         base = SCENES[listed]
     model = found.get("model", base.model)
-    with _at("model"):
-        check_name("model", model, MODELS)
+    _check("model", "model", model, MODELS)
     if "methods" in found:
         with _at("methods"):
             found["cast"] = _cast(found.pop("methods"), folder)
     elif model != base.model:
         found["cast"] = _cast_for(model)
-    texts = {name: found.pop(name) for name in ("name", "watch", "speed", "shot") if name in found}
+    shot = found.pop("shot", None)
+    texts = {name: found.pop(name) for name in ("name", "watch", "speed") if name in found}
     try:
-        scene = base.altered(**found)
-        speed = texts.get("speed", scene.speed)
-        scene = replace(scene, name=scene.name, speed=speed)
+        scene = replace(base.altered(**found), **texts)
     except InputError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise _FieldError(error, *named[:1]) from None
-    if "shot" in texts:
+    if shot is not None:
         with _at("shot"):
-            texts["shot"] = _shot(texts["shot"], scene)
-    return replace(scene, **texts)
+            scene = replace(scene, shot=_shot(shot, scene))
+    return scene
 
 
 def _cast_for(model: str) -> Cast:
@@ -209,14 +207,12 @@ def _cast_for(model: str) -> Cast:
 
 
 def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
-    shot = Shot(**_values("shot", given, _SHOT))
-    with _at("view"):
-        check_name("view", shot.view, ["lab", "phase", "stability", "accuracy"])
-    with _at("quantity"):
-        check_name("quantity", shot.quantity, [each.name for each in scene.equations.charted()])
-    with _at("front"):
-        for key in shot.front:
-            check_name("method", key, [method.key for method in scene.cast])
+    shot = Shot(**_values(given, _SHOT))
+    _check("view", "view", shot.view, ("lab", "phase", "stability", "accuracy"))
+    charted = (each.name for each in scene.equations.charted())
+    _check("quantity", "quantity", shot.quantity, charted)
+    for key in shot.front:
+        _check("front", "method", key, (method.key for method in scene.cast))
     if shot.moment is None and (shot.question or shot.returns):
         why = "it needs a moment; use for example moment = 12.5."
         raise _FieldError(why, "question" if shot.question else "returns")
@@ -230,14 +226,19 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
     return shot
 
 
-def _values(what: str, given: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, Any]:
+def _check(field: str, what: str, name: str, known: Iterable[str]) -> None:
+    with _at(field):
+        check_name(what, name, known)
+
+
+def _values(given: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of the fields of a scene or shot."""
     import msgspec
 
     found: dict[str, Any] = {}
     for name, value in given.items():
         with _at(name):
-            check_name(f"field of a {what}", name, types)
+            check_name("field", name, types)
             try:
                 if name in _READERS:
                     value = _READERS[name](str(value))
@@ -284,17 +285,14 @@ def scene_text(scene: Scene) -> str:
     default = Shot()
     shot = {each.name: getattr(scene.shot, each.name) for each in fields(Shot)}
     shot = {name: value for name, value in shot.items() if value != getattr(default, name)}
-    methods = list(map(_method_text, scene.cast))
+    methods = []
+    for method in scene.cast:
+        file = getattr(method, "file", "")  # of the user's own
+        methods.append(f"{Path(file).absolute()}:{method.key}" if file else method.key)
     lines = _lines({**scene.fields(), "methods": methods, "speed": scene.speed})
     if shot:
         lines += ["", "[shot]", *_lines(shot)]
     return "\n".join([*lines, ""])
-
-
-def _method_text(method: Method) -> str:
-    """Return a method's key, or FILE.py:KEY of a user's own."""
-    file = getattr(method, "file", "")
-    return f"{Path(file).absolute()}:{method.key}" if file else method.key
 
 
 def _lines(table: Mapping[str, Any]) -> list[str]:

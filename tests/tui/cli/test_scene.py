@@ -46,7 +46,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("h = 0.1\nthetta = 1", "line 2: there is no field of a scene"),
+        ("h = 0.1\nthetta = 1", "line 2: there is no field 'thetta': did you mean theta?"),
         ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("theta = 170", "line 1: theta: 170 is 27.1 turns: 170deg or 170rad?"),
@@ -62,7 +62,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
             "h = 0.1\nshot = 1",
             "line 2: shot: Expected `object`, got `int`; use for example [shot]",
         ),
-        ("[shot]\nvew = 'phase'", "line 2: there is no field of a shot 'vew': did you mean view?"),
+        ("[shot]\nvew = 'phase'", "line 2: there is no field 'vew': did you mean view?"),
         ("[shot]\nview = 'phse'", "line 2: there is no view 'phse': did you mean phase?"),
         ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
