@@ -62,11 +62,10 @@ def own_methods(options: argparse.Namespace) -> tuple[OwnMethod, ...]:
 
 
 def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
-    """Return the method in FILE.py:FUNCTION[,letter=m], with a letter that no other has."""
+    """Return the method in FILE.py:FUNCTION, with a letter that no other has."""
     if text.endswith(".py"):
         text += f":{Path(text).stem}"
-    name, _, letter = text.partition(",letter=")
-    path, _, key = name.rpartition(":")
+    path, _, key = text.rpartition(":")
     if not path:
         raise InputError(f"{text!r} is not FILE.py:FUNCTION.")
     if not (key.isidentifier() and key.isascii() and len(key) <= 30):
@@ -78,10 +77,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
         raise InputError(f"there is a method {key} already; give your function another name.")
     letters = {method.letter for method in taken}
     wishes = (*key.lower(), *key.upper(), *string.ascii_uppercase)
-    free = [each for each in wishes if each.isalpha() and each not in letters]
-    letter = letter or free[0]
-    if letter in letters or letter not in string.ascii_letters + string.digits or len(letter) > 1:
-        raise InputError(f"{letter!r} is taken or no letter; use letter={free[0]}.")
+    letter = next(each for each in wishes if each.isalpha() and each not in letters)
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(MAX_SOURCE + 1)

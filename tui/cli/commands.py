@@ -218,16 +218,15 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 }
 """The commands by name, in the order of pendu-tui --help."""
 
+IN_LAB = "pendu-tui live, and there F3 and the key x"
+EXIT_CODE = "the exit code, or the pytest plugin and pytest --junit-xml"
+WORKERS = "--workers N, or --dask ADDRESS for other machines"
 DROPPED = {
-    "stability --section": "pendu-tui live, and there F3 and the key x",
-    "stability --starts": "pendu-tui live, and there F3 and the key x",
+    **dict.fromkeys(("stability --section", "stability --starts"), IN_LAB),
     "stability --map": "-o map.csv; pendu-tui live draws it with F5",
-    "run --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
-    "judge --junit": "the exit code, or the pytest plugin and pytest --junit-xml",
+    **dict.fromkeys(("run --junit", "judge --junit"), EXIT_CODE),
     "run --resume": "several lists that are shorter",
-    "run --executor": "--workers N, or --dask ADDRESS for other machines",
-    "stability --executor": "--workers N, or --dask ADDRESS for other machines",
-    "accuracy --executor": "--workers N, or --dask ADDRESS for other machines",
+    **{f"{name} --executor": WORKERS for name in ("run", "stability", "accuracy")},
     "accuracy --budget": "--target, whose table has the cost of each method",
     "accuracy --safety": "a smaller --target",
     "export --format": "CSV, which DuckDB, polars and pandas read",

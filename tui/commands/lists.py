@@ -2,11 +2,11 @@
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
-from pendu_tui.engine.methods import METHODS, Cast, Method, family_of, simplified
+from pendu_tui.engine.methods import METHODS, Method, family_of
 from pendu_tui.engine.methods.method import no_order, yes
 from pendu_tui.engine.scenes import GROUPS, MAX_METHODS, SCENES
 from pendu_tui.tui.cli.cast import cast_of
@@ -54,11 +54,14 @@ def methods(options: argparse.Namespace) -> int:
         for method, row in zip(cast, rows, strict=True)
         if method.general
     }
+    notes = [NOTE, *(f"{key}: {why}" for key, why in wrong.items() if why)]
+    if options.names:
+        notes += [f"\n{method_card(method)}" for method in cast]
     report = Report(
         name="methods",
         columns=columns,
         rows=list(_by_family(rows)),
-        notes=[NOTE, *_notes(cast, wrong, bool(options.names))],
+        notes=notes,
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
@@ -68,21 +71,6 @@ def methods(options: argparse.Namespace) -> int:
         why = failure and wrong.get(row["key"])
         checks.append(Check(row["key"], "; ".join(filter(None, (failure, why)))))
     return conclude(options.fail_if, checks, "methods")
-
-
-def _notes(cast: Cast, wrong: Mapping[str, str], with_cards: bool) -> Iterator[str]:
-    """Yield what is wrong with methods, and their cards or their names in the lab."""
-    yield from (f"{key}: {why}" for key, why in wrong.items() if why)
-    if with_cards:
-        yield from (f"\n{method_card(method)}" for method in cast)
-        return
-    labels = [
-        f"{method.label} ({method.key})"
-        for method in cast
-        if simplified(method.label) != simplified(method.key)
-    ]
-    if labels:
-        yield f"in the lab: {', '.join(labels)}"
 
 
 def _gated(row: Row) -> Row:

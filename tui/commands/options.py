@@ -19,7 +19,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Z_LIMITS
 from pendu_tui.engine.studies import LOST
 from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
-from pendu_tui.tui.cli.checks import FIELDS, JUDGED, MEASURED_NUMBERS, MEASURED_WORDS
+from pendu_tui.tui.cli.checks import JUDGED, MEASURED_NUMBERS, MEASURED_WORDS
 from pendu_tui.tui.cli.commands import COMMANDS
 from pendu_tui.tui.cli.files import FIGURES
 from pendu_tui.tui.cli.options import (
@@ -67,10 +67,8 @@ def cast(default: str) -> Settings:
     return option("KEY,KEY", meaning, choices=Suggestions(KEYS))
 
 
-def gate(names: Iterable[str], meaning: str) -> Settings:
-    """Return --fail-if, whose comparisons have these names."""
-    meaning = f"exit with 1 if the expression is true{meaning}"
-    return option("EXPR", meaning, choices=Suggestions(names))
+def gate(meaning: str) -> Settings:
+    return option("EXPR", f"exit with 1 if the expression is true{meaning}")
 
 
 def with_suffix(*suffixes: str) -> Callable[[str], Path]:
@@ -118,7 +116,7 @@ OPTIONS: dict[str, Settings] = {
     **dict.fromkeys(("replay --methods", "verify --methods"), cast("all of the recording's")),
     "methods --methods": cast("all"),
     "--method": file(
-        "FILE.py:FUNCTION[,letter=m]",
+        "FILE.py:FUNCTION",
         "add your own method: a generator function (force, phase, h), see "
         ".github/docs/methods.md; the file runs with your rights (repeatable)",
         str,
@@ -231,13 +229,11 @@ OPTIONS: dict[str, Settings] = {
     ),
     # gates
     "run --fail-if": gate(
-        (f"{key}.{field}" for key in KEYS for field in (*FIELDS, "verdict")),
-        ", e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows; fields: those of --json",
+        ", e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows; fields: those of --json"
     ),
-    "judge --fail-if": gate((*JUDGED, "verdict"), f"; fields: {', '.join((*JUDGED, 'verdict'))}"),
+    "judge --fail-if": gate(f"; fields: {', '.join((*JUDGED, 'verdict'))}"),
     "methods --fail-if": gate(
-        (*MEASURED_NUMBERS, *MEASURED_WORDS),
-        " of a method, as measured; fields: " + ", ".join((*MEASURED_NUMBERS, *MEASURED_WORDS)),
+        f"; fields, as measured: {', '.join((*MEASURED_NUMBERS, *MEASURED_WORDS))}"
     ),
     # records of other programs
     "judge --time": option(

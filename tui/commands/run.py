@@ -40,7 +40,7 @@ from pendu_tui.tui.commands.report import (
     scene_line,
 )
 from pendu_tui.tui.words.insight import irregular, milestone_insight
-from pendu_tui.tui.words.numbers import counted, file_size, z_text
+from pendu_tui.tui.words.numbers import counted, z_text
 
 MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
 MAX_POINTS = 20_000  # samples for a figure
@@ -79,8 +79,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     is_whole = sample.step == steps
     rows = rows_of(lockstep, sample, is_whole)
     if options.record:
-        size = file_size(options.record.stat().st_size)
-        warn(f"recorded {sample.t:g} s, {size}: {options.record}")
+        warn(f"wrote {options.record}")
     if not is_whole:
         keep_older(options.output)
     publish(_report(lockstep, samples, rows, wall_seconds), options)

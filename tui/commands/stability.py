@@ -21,7 +21,6 @@ from pendu_tui.engine.studies.stability import (
     Part,
     Row,
     amplification,
-    amplitude,
     ladder_of,
     map_of,
     table,
@@ -173,15 +172,7 @@ def _words(scene: Scene) -> Iterator[str]:
     yield "\nPendulum: the z from which a swing is lost within so many steps; more steps lower it."
     yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
-    swing = amplitude(scene)
-    if swing is None:
-        yield "The scene's own start does not swing, so it has no row."
-    elif not math.isclose(swing, scene.theta):
-        start = f"{math.degrees(scene.theta):.4g} deg"
-        if scene.omega:
-            start += f" with {scene.omega:g} rad/s"
-        degrees = f"{math.degrees(swing):.4g} deg"
-        yield f"The start at {start} swings as far as one from rest at {degrees}."
+    yield "The scene's own amplitude is among them, if it swings."
 
 
 def _columns(scene: Scene, steps: int) -> list[Column]:

@@ -73,17 +73,14 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert isinstance(last, OwnMethod)
     assert (last.key, last.symplectic, last.source) == ("kick_drift", True, SOURCE)
     assert cast_from(*own, "--methods", "kick,rk4") == (last, RK4)
-    lettered = cast_from("--method", "mine.py:kick_drift,letter=Q")
-    assert lettered[:-1] == USUAL_CAST
-    assert lettered[-1].letter == "Q"
+    assert cast_from(*own) == (*USUAL_CAST, last)
+    assert last.letter not in {method.letter for method in METHODS}
 
 
 @pytest.mark.parametrize(
     ("text", "code", "words"),
     [
         ("mine.py", 2, "mine.py has no function 'mine'; it has kick_drift, rk4"),
-        ("mine.py:kick_drift,letter=r", 2, "'r' is taken"),
-        ("mine.py:kick_drift,letter=QQ", 2, "'QQ' is taken or no letter"),
         ("mine.py:größer", 2, "cannot be a method's name"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),
         ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
