@@ -34,6 +34,7 @@ COMMANDS = {
     "doctor": "doctor",
 }
 SCHEMAS = {
+    **dict.fromkeys(("accuracy", "accuracy --cost seconds", "accuracy --all"), "accuracy/2"),
     "run of a list": "runs/1",
     "judge": "judge/2",
     "judge of a few energies": "judge/2",

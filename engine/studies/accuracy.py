@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
 from itertools import product
-from statistics import fmean, linear_regression
+from statistics import fmean
 from typing import Literal
 
 from pendu_tui.engine.methods import GENERAL, Cast, Method
@@ -24,7 +24,7 @@ from pendu_tui.engine.run.loops import (
     available,
     count_evaluations,
 )
-from pendu_tui.engine.scenes import Z_LIMITS, Scene
+from pendu_tui.engine.scenes import Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
 Clock = Callable[[], float]  # s
@@ -32,7 +32,6 @@ COMPARISONS = 400  # with the exact swing in a run: at least so many (below 800)
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
 Z_LADDER = (0.6, 0.0015, 12)  # from about ten to four thousand steps a small swing
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
-ORDER_STEPS = tuple(2**power for power in range(4, 15))
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
 Flaw = Literal["lost", "rounding"]
@@ -215,35 +214,6 @@ def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, M
     """
     steps, method = task
     return _cached_study(scene, time, loops).run(method, steps)
-
-
-def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> dict[Method, float | None]:
-    """Return each method's order: the slope of log theta error over log h, up to a period.
-
-    None: fewer than three errors to fit.
-
-    Over longer times RK4 reads 5 and more: its phase error a·h⁴·t is overtaken by b·h⁵·t²/2, since
-    it loses energy at a rate of h⁵ and the frequency depends on energy.  Near the separatrix, where
-    it does so steeply, RK4 reads 5 within a period.  Symplectic Euler reads 2 from theta = 0, where
-    its angles are velocity Verlet's.
-    """
-    study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
-    usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
-    return {method: _order(study, method, usable) for method in scene.cast}
-
-
-def _order(study: Study, method: Method, ladder: Sequence[int]) -> float | None:
-    """Return the least-squares slope of log theta error over log h, of the four smallest h."""
-    fitted = []
-    for steps in ladder:
-        point = study.run(method, steps, ORDER_STEPS[0])
-        error = point.errors["theta"]
-        flaw = point.flaws["theta"] or study.flaw("theta", error, steps)  # also if it still falls
-        if flaw is None and error < FITTED_BELOW:
-            fitted.append((math.log(point.h), math.log(error)))
-    if len(fitted) < 3:
-        return None
-    return linear_regression(*zip(*fitted[-4:], strict=True)).slope
 
 
 Cost = Literal["evaluations", "seconds"]

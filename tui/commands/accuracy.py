@@ -5,12 +5,10 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import product, starmap
+from itertools import product
 from operator import methodcaller
 from typing import Any
 
-from pendu_tui.engine.methods import Method
-from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.scenes import Scene, check_h
@@ -24,7 +22,6 @@ from pendu_tui.engine.studies.accuracy import (
     front,
     ladder,
     measured_point,
-    orders,
     timed,
     usual,
     with_all_methods,
@@ -87,7 +84,6 @@ class Results:
     time: float  # s
     options: argparse.Namespace
     points: list[Point] = field(default_factory=list)
-    orders: dict[Method, float | None] = field(default_factory=dict)
     attempts: list[Attempt] = field(default_factory=list)  # with a target, the best first
 
     def __post_init__(self) -> None:
@@ -100,6 +96,7 @@ class Results:
         series = accuracy_series(self.points, self.kind, self.cost, cast)
         return Report(
             name="accuracy",
+            version=2,
             title=f"{scene_line(self.scene)}, over {self.time:g} s\n{ERROR_LABELS[self.kind]}\n",
             columns=self._columns(),
             rows=self._rungs(),
@@ -115,7 +112,6 @@ class Results:
                     | {"saves_over_rk4": place.saves}
                     for place in front(self.points, self.kind, self.cost)
                 ],
-                "orders": list(starmap(_order_fields, self.orders.items())),
                 "recommendation": self._advice_fields() if self.attempts else None,
                 "interrupted": interrupted,
             },
@@ -166,12 +162,6 @@ class Results:
         flaws = {point.flaws[self.kind] for point in self.points}
         yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
         yield "n/step: force evaluations"
-        measured = [
-            f"{method.label} {order:.2f}"
-            for method, order in self.orders.items()
-            if order is not None
-        ]
-        yield f"order of the theta error over at most one period: {', '.join(measured) or '-'}"
         yield ""
         columns, rows = CHART_SIZE
         columns = min(console(columns).width, columns)
@@ -250,7 +240,6 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
                 point = timed(point, scene, clock, timed_loops)
             results.points.append(point)
             work.step(point.steps)
-        results.orders = orders(scene, results.time, study_loops)
         if options.target is not None:
             results.attempts = least_cost(
                 Study(searched, results.time, study_loops),
@@ -261,13 +250,6 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
                 loops=timed_loops,
             )
     return work
-
-
-def _order_fields(method: Method, measured: float | None) -> Row:
-    claimed = None
-    if not isinstance(method, OwnMethod):
-        claimed = method.order
-    return {"method": method.key, "claimed": claimed, "measured": measured}
 
 
 def _seconds(point: Point) -> str:

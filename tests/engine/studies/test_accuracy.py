@@ -1,4 +1,4 @@
-"""Speed against accuracy: errors against the exact swing, costs counted, orders as claimed."""
+"""Speed against accuracy: errors against the exact swing, costs counted."""
 
 import dataclasses
 import math
@@ -21,7 +21,6 @@ from pendu_tui.engine.studies.accuracy import (
     front,
     ladder,
     measured,
-    orders,
     rounding_floor,
     timed,
     usual,
@@ -31,24 +30,6 @@ E, S, V, R = USUAL_CAST
 BM6 = method_of("blanes_moan_6")
 LOOPS = compiled if available() else PlainLoops  # the same bits
 DRIFT = SCENES["drift"]
-
-
-@pytest.mark.parametrize("name", ["drift", "gentle", "large-swing"])
-def test_the_measured_orders_are_the_claimed_ones(name):
-    for method, order in orders(SCENES[name], 20.0).items():
-        # 0.05 is the worst of these three scenes; the claim itself is a whole number
-        assert order == pytest.approx(method.order, abs=0.1)
-
-
-@pytest.mark.parametrize(
-    ("name", "time", "method", "order"),
-    [
-        ("near-separatrix", 20.0, R, 5),
-        ("spin", 5.0, S, 2),  # from the bottom it has the angles of Verlet
-    ],
-)
-def test_some_starts_read_a_higher_order_than_the_methods(name, time, method, order):
-    assert orders(SCENES[name], time)[method] == pytest.approx(order, abs=0.1)
 
 
 @given(st.floats(0.1, 1e4), st.floats(1e-3, 1), st.floats(1e-3, 1), st.integers(2, 30))
@@ -148,12 +129,11 @@ def test_seconds_are_the_shortest_of_five_of_many_steps_with_their_spread():
     assert (found.seconds, found.spread) == pytest.approx((3.0 / 200, 1.0))
 
 
-def test_a_scene_at_rest_has_no_errors_and_no_order():
+def test_a_scene_at_rest_has_no_errors():
     rest = DRIFT.altered(theta=0.0)
     points = list(measured(rest, 1.0, [10, 20]))
     assert [(p.steps, p.method) for p in points] == [*product([10, 20], USUAL_CAST)]
     assert {error for point in points for error in point.errors.values()} == {0.0}
-    assert orders(rest, 1.0) == dict.fromkeys(USUAL_CAST)
 
 
 def test_only_if_all_methods_can_be_compiled_are_they_timed_so():
