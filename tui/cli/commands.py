@@ -87,7 +87,7 @@ Ctrl+C ends it.
         "speed against accuracy: which method, which h, at what cost",
         (
             *("SCENE", "--all", "--time", "--h-values", "--error", "--cost"),
-            *("--target", "--no-compiled", "WORKERS", "FORM", "--force"),
+            *("--target", "WORKERS", "FORM", "--force"),
         ),
         """\
   pendu-tui accuracy --target 1e-6 --time 100
@@ -119,7 +119,7 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
         "run a scene without the screen and judge each method; for CI",
         (
             *("SCENE", "--time", "--record", "--sample-every", "--fail-if"),
-            *("--no-compiled", "FORM", "--force", "WORKERS"),
+            *("FORM", "--force", "WORKERS"),
         ),
         """\
   pendu-tui run --time 100
@@ -221,10 +221,12 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 IN_LAB = "pendu-tui live, and there F3 and the key x"
 EXIT_CODE = "the exit code, or the pytest plugin and pytest --junit-xml"
 WORKERS = "--workers N, or --dask ADDRESS for other machines"
+COMPILED = "no option: compiled loops give the same bits"
 DROPPED = {
     **dict.fromkeys(("stability --section", "stability --starts"), IN_LAB),
     "stability --map": "-o map.csv; pendu-tui live draws it with F5",
     **dict.fromkeys(("run --junit", "judge --junit"), EXIT_CODE),
+    **{f"{name} --no-compiled": COMPILED for name in ("run", "accuracy")},
     "run --resume": "several lists that are shorter",
     **{f"{name} --executor": WORKERS for name in ("run", "stability", "accuracy")},
     "accuracy --budget": "--target, whose table has the cost of each method",

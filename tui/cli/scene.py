@@ -30,22 +30,22 @@ from pendu_tui.engine.scenes import (
     Shot,
 )
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.cli.cast import cast_of, own_method_at
+from pendu_tui.tui.cli.cast import cast_of, check_fits, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
 
 
-def scenes_of(options: argparse.Namespace, lesson: bool = False) -> list[Scene]:
+def scenes_of(options: argparse.Namespace) -> list[Scene]:
     """Return all combinations of the numbers that the options give; the last changes fastest.
 
-    Of a file with a `lesson`, the first scene.  Raises InputError for an unknown name and for bad
-    numbers in any combination, and OwnMethodError for a bad function.
+    Raises InputError for an unknown name and for bad numbers in any combination, and OwnMethodError
+    for a bad function.
     """
     if options.scene and options.scene_option:
         raise UserError(
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
-    scene = scene_named(name, lesson) if name else DEFAULT_SCENE
+    scene = scene_named(name) if name else DEFAULT_SCENE
     scene = scene.with_cast(cast_of(options, scene.cast, model=scene.model))
     given = {name: getattr(options, name) for name in NUMBERS}
     axes = {
@@ -57,26 +57,24 @@ def scenes_of(options: argparse.Namespace, lesson: bool = False) -> list[Scene]:
     return [scene.altered(**dict(zip(axes, each, strict=True))) for each in combinations]
 
 
-def scene_of(options: argparse.Namespace, lesson: bool = False) -> Scene:
-    """Return the scene that options without lists describe, as `scenes_of` does."""
-    (scene,) = scenes_of(options, lesson)
+def scene_of(options: argparse.Namespace) -> Scene:
+    """Return the scene that options without lists describe, whose methods fit a screen."""
+    (scene,) = scenes_of(options)
+    check_fits(scene.cast)
     return scene
 
 
-def scene_named(name: str, lesson: bool = False) -> Scene:
-    """Return a listed scene or that of a file, of a `lesson` the first.  Raises InputError."""
+def scene_named(name: str) -> Scene:
+    """Return a listed scene or that of a file, of a lesson the first.  Raises InputError."""
     if name.endswith(".toml"):
-        first, *others = read_scenes(Path(name)).values()
-        if others and not lesson:
-            raise UserError(f"{name} is a lesson of {len(others) + 1} scenes; only the lab pages.")
-        return first
+        return next(iter(read_scenes(Path(name)).values()))
     check_name("scene", name, SCENES)
     return SCENES[name]
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:
     """Return the scene of the options.  Raises UserError if it cannot be mapped."""
-    scene = scene_of(options)
+    (scene,) = scenes_of(options)
     if why := scene.why_not_mapped:
         raise UserError(why)
     return scene

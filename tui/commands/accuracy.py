@@ -231,7 +231,7 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
     study_loops: LoopsOf = loops.TieredLoops
     timed_loops: LoopsOf = loops.compiled
     # seconds compare methods only if all or none of them are compiled
-    if options.no_compiled or (clock and not compilable(scene.cast)):
+    if clock and not compilable(scene.cast):
         study_loops = timed_loops = loops.PlainLoops
     tasks = list(product(rungs, scene.cast))
     with work_of(options, "steps", len(scene.cast) * sum(rungs)) as work:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.recordings.events import remember
-from pendu_tui.tui.cli.cast import cast_of, check_fits, own_methods
+from pendu_tui.tui.cli.cast import cast_of, own_methods
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import resolve
@@ -21,8 +21,7 @@ from pendu_tui.tui.terminal.options import terminal_options_of
 
 
 def live(options: argparse.Namespace) -> int:
-    scene = scene_of(options, lesson=True)
-    check_fits(scene.cast)
+    scene = scene_of(options)
     launch.check(options)
     lab = Live(scene, options.speed or scene.speed)
     if options.equal_cost:
@@ -81,7 +80,6 @@ def replay(options: argparse.Namespace) -> int:
 
 def snapshot(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    check_fits(scene.cast)
     display = terminal_options_of(options, os.environ, "utf-8")
     path = options.output or Path(f"{scene.name}.svg")
     with whole_file(path, options.force) as file:

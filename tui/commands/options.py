@@ -188,7 +188,6 @@ OPTIONS: dict[str, Settings] = {
         "N", "steps for each swing (%(default)s)", above_zero(count, 2**31), default=10_000
     ),
     "--max-steps": option("N", "simulate at most N steps of each recording", count),
-    "--no-compiled": flag("do not use Numba (same results)"),
     "--workers": option(
         "N", "compute in N processes on this machine (%(default)s)", count, default=1
     ),

@@ -15,7 +15,6 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
-from pendu_tui.engine.run.loops import LoopsOf
 from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
@@ -71,7 +70,7 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
         check_fits(scene.cast)
         check_target(options.record, options.force)
     steps = steps_for(scene, options.time)
-    lockstep = lockstep_of(scene, steps, options.no_compiled)
+    lockstep = lockstep_of(scene, steps)
     began = time.perf_counter()
     samples = _simulate(lockstep, options, steps)
     wall_seconds = time.perf_counter() - began
@@ -89,12 +88,10 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     return conclude(options.fail_if, [Check(scene.name, gate(by_method(rows)))])
 
 
-def lockstep_of(scene: Scene, expected_steps: int, is_plain: bool) -> Lockstep:
-    """Return the lockstep of a run, compiled if that pays, unless it is to be plain."""
-    chosen: LoopsOf = partial(loops.TieredLoops, expected_steps=expected_steps)
-    if is_plain:
-        chosen = loops.PlainLoops
-    return Lockstep(scene, loops=chosen, judged=True)
+def lockstep_of(scene: Scene, expected_steps: int) -> Lockstep:
+    """Return the lockstep of a run, compiled if that pays."""
+    tiered = partial(loops.TieredLoops, expected_steps=expected_steps)
+    return Lockstep(scene, loops=tiered, judged=True)
 
 
 def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample]:
@@ -270,9 +267,9 @@ def verdict_of(row: Row) -> str:
     return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))
 
 
-def _rows_of_list(time: float, expected_steps: int, is_plain: bool, scene: Scene) -> list[Row]:
+def _rows_of_list(time: float, expected_steps: int, scene: Scene) -> list[Row]:
     """Return the rows of one run of a list, which begin with its numbers; for a worker."""
-    lockstep = lockstep_of(scene, expected_steps, is_plain)
+    lockstep = lockstep_of(scene, expected_steps)
     watchdog()  # in a worker, too
     for sample in simulate(scene, time, None, MAX_BATCH, lockstep=lockstep):
         last = sample
@@ -293,7 +290,7 @@ def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate) -> Exit:
         steps = sum(steps_for(scene, options.time) for scene in scenes)
     kept: list[Row] = []
     checks: list[Check] = []
-    run = partial(_rows_of_list, options.time, steps, options.no_compiled)
+    run = partial(_rows_of_list, options.time, steps)
     with work_of(options, "runs", len(scenes)) as work:
         for rows in work.run(run, scenes):
             kept += rows

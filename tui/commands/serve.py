@@ -19,7 +19,6 @@ from urllib.parse import urlsplit
 
 from pendu_tui.recordings.files import check_target, new_path
 from pendu_tui.recordings.system import ENDING, shell_command
-from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.terminal.options import terminal_options_of
@@ -40,7 +39,6 @@ def run(options: argparse.Namespace) -> int:
     if Server is object:
         raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.")
     scene = scene_of(options)
-    check_fits(scene.cast)
     folder: Path | None = options.record
     if folder is not None:
         folder.mkdir(exist_ok=True)

@@ -32,8 +32,7 @@ def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tm
         again = study.run(method_of(row["method"]), round(5.0 / row["h"]), 10_000)
         assert (again.h, again.z, again.errors["theta"]) == (row["h"], row["z"], row["error"])
     file = tmp_path / "points.csv"
-    # the same without Numba and in other processes
-    assert pendu(*QUICK, "-o", file, "--no-compiled", "--workers", "2").code == 0
+    assert pendu(*QUICK, "-o", file, "--workers", "2").code == 0
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
     assert [float(row["theta_error"]) for row in rows] == [point["theta_error"] for point in points]
     assert list(rows[0]) == list(points[0])

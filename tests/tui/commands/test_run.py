@@ -125,7 +125,7 @@ def test_a_run_that_is_stopped_finishes_its_recording_and_keeps_an_older_one(tmp
 def stopped(path, name: str) -> tuple[int, str, str]:
     """Send a signal to a run once it has recorded 100 kB."""
     pipe = subprocess.PIPE
-    line = ["run", "--time", "1e7", "--no-compiled", "--force", "--record", str(path)]
+    line = ["run", "--time", "1e7", "--force", "--record", str(path)]
     process = subprocess.Popen([*PENDU, *line], stdout=pipe, stderr=pipe, text=True)
     part = path.with_name("run.mcap.part")
     deadline = time.monotonic() + 60  # s; a second is usual
