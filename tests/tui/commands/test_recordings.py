@@ -10,6 +10,7 @@ from mcap.writer import Writer
 
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
+from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, start, two_runs
 from tests.tui.command_line import pendu
 
