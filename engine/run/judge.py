@@ -54,7 +54,7 @@ class LookPoint(NamedTuple):
 def stride(period: float, h: float) -> int:
     """Return how many steps of h [s] lie between two look points.
 
-    `period` [s] is the exact motion's, or 2 pi/w0 if it has none.
+    `period` [s] is that of the fastest oscillation.
     """
     return max(1, round(period / levels.LOOKS / abs(h)))
 
@@ -131,7 +131,7 @@ class Judge:
     def __init__(
         self, h: float, period: float, method: Method, model: Model, start: LookPoint
     ) -> None:
-        """`h` [s] is the method's step; `period` [s] as in `stride`."""
+        """`h` [s] is the method's step; `period` [s] the exact motion's, or 2 pi/w0 without one."""
         self.judgement = Judgement()
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
@@ -343,7 +343,7 @@ class Judges:
     """
 
     def __init__(self, cast: Cast, model: Model, period: float) -> None:
-        """`period` [s] is that of `stride`."""
+        """`period` [s] as of `Judge`."""
         self.milestones: list[Milestone] = []
         self._cast = cast
         self._model = model

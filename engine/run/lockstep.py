@@ -159,7 +159,9 @@ class Lockstep:
 
     def _restart(self) -> None:
         """Count look points from here on."""
-        self._stride = stride(self._period, self.stepping.h)
+        # a model without turns may vibrate faster than it swings
+        fastest = self._period if self._model.turns else math.tau / self._model.fastest
+        self._stride = stride(fastest, self.stepping.h)
         for track in self._tracks:
             track.look_low = track.look_high = track.error
         if self._judges:

@@ -243,11 +243,13 @@ def test_a_run_is_judged_when_it_is_an_eighth_longer() -> None:
     assert np.median(factors) < 1.16
 
 
-@pytest.mark.parametrize("name", ["drift", "gentle", "crossover", "spin", "damped", "learned"])
+@pytest.mark.parametrize(
+    "name", ["drift", "gentle", "crossover", "spin", "damped", "learned", "stiff-limit"]
+)
 def test_a_run_and_its_energies_alone_do_not_exclude_each_other(name: str) -> None:
     found = list(judgements(SCENES[name], 60.0))
     assert not [method.key for method, of_run, alone in found if exclude(of_run, alone)]
-    assert all(of_run.slope is not None for _, of_run, _ in found)
+    assert all(of_run.slope is not None or of_run.verdict == "failed" for _, of_run, _ in found)
 
 
 @settings(max_examples=10, deadline=None, derandomize=True)  # tests/bench/judging.py: 200
