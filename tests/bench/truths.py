@@ -105,7 +105,8 @@ def course(z: float, low: Any, high: Any) -> str:
     late = slice(14 if thrown else 16, 18)
     ends = np.ptp(low[late]), np.ptp(high[late]), abs(middle[17] - middle[15]) / 2
     if max(ends) < 0.1 * width + 0.01 * abs(middle[17]):
-        return "K" if low[17] <= 0 <= high[17] else "k"
+        # a ragged edge may miss the start for a whole window, and come back
+        return "K" if low[late].min() <= 0 <= high[late].max() else "k"
     if thrown:
         return "w"
     moves = np.diff(middle[8:])

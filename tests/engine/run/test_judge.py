@@ -94,6 +94,7 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number(method, theta, h) 
         (R, Scene(h=1.2 / W0), 6000, ["loses"]),  # everything
         (V, SCENES["chaos-fenced"], 6000, ["chaotic"]),
         (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
+        (E, scene_at("theta=2.5", 1.2), 6000, ["bounded"]),  # back at its start again and again
     ],
 )
 def test_what_leaves_or_is_lost_is_told_at_the_end(method, scene, steps, ends) -> None:
