@@ -1,4 +1,4 @@
-"""Judge the methods of a run by their energy errors, and note the run's milestones.
+"""Judge the methods of a run by their energy errors.
 
 The lockstep shows each method to its judge at look points, a fixed number of steps apart, so a
 verdict depends on the scene, the stepping and the step alone.  The core judges the energy error in
@@ -13,11 +13,10 @@ bins.  What is known of a method adds evidence:
 
 import copy
 import math
-from collections.abc import Sequence
-from itertools import pairwise, permutations
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.tangent import Stretching, at_bottom
 from pendu_tui.engine.models.model import Model
 from pendu_tui.engine.run import levels
@@ -30,8 +29,6 @@ from pendu_tui.engine.run.verdicts import (
     LOSES,
     UNDECIDED,
     Judgement,
-    Milestone,
-    MilestoneKind,
     Progress,
 )
 
@@ -333,86 +330,3 @@ class _Orbit(Stretching):
         proved = self.is_regular and periods >= levels.MIN_PERIODS
         seen = self.steps >= levels.LONG and self.log < regular + levels.REGULAR_SEPARATION
         return BOUNDED if proved or seen else UNDECIDED
-
-
-class Judges:
-    """A judge for each method since the last change of the stepping, and the run's milestones.
-
-    Errors cross where the largest error so far of a method that gains or loses energy passes that
-    of a bounded one.  With other pairs it might pass back.
-    """
-
-    def __init__(self, cast: Cast, model: Model, period: float) -> None:
-        """`period` [s] as of `Judge`."""
-        self.milestones: list[Milestone] = []
-        self._cast = cast
-        self._model = model
-        self._period = period
-        self._judges: list[Judge] = []
-        # pairs of a leaving method and a bounded one whose error is still the larger
-        self._below: frozenset[tuple[int, int]] = frozenset()
-
-    @property
-    def judgements(self) -> list[Judgement]:
-        """The judgements since the last change of the stepping, in the order of the cast."""
-        return [judge.judgement for judge in self._judges]
-
-    def copy(self) -> Self:
-        """Return other judges that go on from here."""
-        other = copy.copy(self)
-        other.milestones = self.milestones.copy()
-        other._judges = [judge.copy() for judge in self._judges]
-        return other
-
-    def restart(self, steps: Sequence[float], points: Sequence[LookPoint | None]) -> None:
-        """Judge anew from these look points on, each method with its own step size [s]."""
-        self._below = frozenset()
-        self._judges = [
-            Judge(
-                h=h,
-                period=self._period,
-                method=method,
-                model=self._model,
-                start=point or LookPoint(0, 0.0, 0.0, 0.0),
-            )
-            for method, h, point in zip(self._cast, steps, points, strict=True)
-        ]
-        for judge, point in zip(self._judges, points, strict=True):
-            if point is None:
-                judge.fail(0)
-
-    def look(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
-        """Show each judge its method at a step of the lockstep; None: its numbers have ended."""
-        for method, judge, point in zip(self._cast, self._judges, points, strict=True):
-            if point is None:
-                continue
-            previous = judge.judgement.verdict
-            judge.look(point)
-            now = judge.judgement
-            if now.verdict != previous:
-                verdict = Milestone("verdict", method, step, t, point.error, now.verdict)
-                self.milestones.append(verdict._replace(trend=now.trend, lyapunov=now.lyapunov))
-        self._note_crossings(step, t, points)
-
-    def _note_crossings(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
-        for (index, leaving), (other, bounded) in permutations(enumerate(self._judges), 2):
-            leaves = leaving.judgement.verdict in LEAVES
-            stays = bounded.judgement.verdict == BOUNDED and bounded.peak > levels.ROUNDING
-            if not (leaves and stays):
-                continue
-            pair = (index, other)
-            point = points[index]
-            if leaving.peak <= bounded.peak:
-                self._below |= {pair}
-            elif point and pair in self._below:
-                self._below -= {pair}
-                crossing = Milestone("errors cross", self._cast[index], step, t, point.error)
-                self.milestones.append(crossing._replace(other=self._cast[other]))
-
-    def note(self, kind: MilestoneKind, index: int, step: int, t: float, error: float) -> None:
-        """Note what happens to a method once in a run."""
-        self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
-
-    def fail(self, index: int, steps: int) -> None:
-        """Note that a method's numbers have ended, so many of its steps after the restart."""
-        self._judges[index].fail(steps)

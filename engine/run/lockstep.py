@@ -2,14 +2,23 @@
 
 import copy
 import math
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Mapping
+from itertools import permutations
+from typing import Any, NamedTuple
 
 from pendu_tui.engine.models.model import NO_EXTRA
-from pendu_tui.engine.run.judge import Judges, LookPoint, stride
+from pendu_tui.engine.run.judge import Judge, LookPoint, stride
+from pendu_tui.engine.run.levels import ROUNDING
 from pendu_tui.engine.run.loops import Advance, Advanced, LoopsOf, PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
+from pendu_tui.engine.run.verdicts import (
+    BOUNDED,
+    FAILED,
+    LEAVES,
+    Judgement,
+    Milestone,
+    MilestoneKind,
+)
 from pendu_tui.engine.scenes import Scene
 
 
@@ -118,9 +127,11 @@ class Lockstep:
         ]
         exact = scene.exact()
         self._period = exact.period or math.tau / model.w0
-        self._judges: Judges | None = None
-        if judged:
-            self._judges = Judges(scene.cast, model, self._period)
+        self.milestones: list[Milestone] = []  # up to this step; none without judges
+        self._judged = judged
+        self._judges: list[Judge] = []
+        # pairs of a leaving method and a bounded one whose error is still the larger
+        self._below: frozenset[tuple[int, int]] = frozenset()
         self._bottom = math.tau * round(scene.theta / math.tau)  # rad
         for track in self._tracks:
             track.is_watched = judged and model.turns and exact.regime == "libration"
@@ -130,7 +141,8 @@ class Lockstep:
         """Return another lockstep that goes on from here."""
         other = copy.copy(self)
         other._tracks = [copy.copy(track) for track in self._tracks]
-        other._judges = self._judges and self._judges.copy()
+        other._judges = [judge.copy() for judge in self._judges]
+        other.milestones = self.milestones.copy()
         return other
 
     @property
@@ -141,12 +153,7 @@ class Lockstep:
     @property
     def judgements(self) -> list[Judgement]:
         """Judgements since the last change of the stepping, by method; none without judges."""
-        return self._judges.judgements if self._judges else []
-
-    @property
-    def milestones(self) -> Sequence[Milestone]:
-        """What the methods have done in this run up to this step; nothing without judges."""
-        return self._judges.milestones if self._judges else ()
+        return [judge.judgement for judge in self._judges]
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from the next step on; `Stepping.check` has approved it."""
@@ -164,11 +171,19 @@ class Lockstep:
         self._stride = stride(fastest, self.stepping.h)
         for track in self._tracks:
             track.look_low = track.look_high = track.error
-        if self._judges:
-            self._judges.restart(
-                self.stepping.own, [self._look_point(track) for track in self._tracks]
-            )
+        if self._judged:
+            self._judge_anew()
         self._next_stop = self._following_stop()
+
+    def _judge_anew(self) -> None:
+        self._below = frozenset()
+        self._judges = []
+        for method, track, h in zip(self.scene.cast, self._tracks, self.stepping.own, strict=True):
+            start = self._look_point(track)
+            judge = Judge(h=h, period=self._period, method=method, model=self._model, start=start)
+            if track.diverged_at is not None:
+                judge.fail(0)
+            self._judges.append(judge)
 
     def advance(self, n: int) -> None:
         """Take n steps."""
@@ -188,10 +203,10 @@ class Lockstep:
             if done < n * track.parts:
                 track.diverged_at = self._t_base + (begin + done + 1) * h
                 track.is_watched = False
-                if self._judges:
-                    self._judges.fail(index, begin + done)
+                if self._judged:
+                    self._judges[index].fail(begin + done)
                     step = self.step + math.ceil((done + 1) / track.parts)
-                    self._judges.note(FAILED, index, step, track.diverged_at, track.error)
+                    self._note(FAILED, index, step=step, t=track.diverged_at)
         self.step += n
 
     def _walk(self, track: _Track, h: float, begin: int, n: int) -> int:
@@ -205,12 +220,12 @@ class Lockstep:
             moved = track.advance(track.phase, h, stride, self._limit)
             if moved.done:
                 done += moved.done
-                self._note(track, moved, self._t_base + (begin + done) * h)
+                self._take_in(track, moved, self._t_base + (begin + done) * h)
             if moved.done < stride:
                 break
         return done
 
-    def _note(self, track: _Track, moved: Advanced, t: float) -> None:
+    def _take_in(self, track: _Track, moved: Advanced, t: float) -> None:
         track.phase = moved.phase
         track.energy = moved.energy
         track.error, low, high = self._reference.errors(t, moved.energy, moved.low, moved.high)
@@ -229,18 +244,50 @@ class Lockstep:
         if is_look_point and self._model.turns:
             for track in self._tracks:
                 track.reduce()
-        if is_look_point and self._judges:
-            self._judges.look(
-                self.step, self.t, [self._look_point(track) for track in self._tracks]
-            )
-            for track in self._tracks:
-                track.look_low = track.look_high = track.error
+        if is_look_point and self._judged:
+            self._look()
         self._note_tops()
         self._next_stop = self._following_stop()
 
-    def _look_point(self, track: _Track) -> LookPoint | None:
-        if track.diverged_at is not None:
-            return None
+    def _look(self) -> None:
+        """Show each judge its method, and note new verdicts."""
+        for index, (track, judge) in enumerate(zip(self._tracks, self._judges, strict=True)):
+            if track.diverged_at is not None:
+                continue
+            previous = judge.judgement.verdict
+            judge.look(self._look_point(track))
+            track.look_low = track.look_high = track.error
+            now = judge.judgement
+            if now.verdict != previous:
+                self._note(
+                    "verdict", index, verdict=now.verdict, trend=now.trend, lyapunov=now.lyapunov
+                )
+        self._note_crossings()
+
+    def _note_crossings(self) -> None:
+        """Note where the largest error of a method that leaves passes that of a bounded one.
+
+        With other pairs it might pass back.
+        """
+        for (index, leaving), (other, bounded) in permutations(enumerate(self._judges), 2):
+            leaves = leaving.judgement.verdict in LEAVES
+            stays = bounded.judgement.verdict == BOUNDED and bounded.peak > ROUNDING
+            if not (leaves and stays):
+                continue
+            pair = {(index, other)}
+            if leaving.peak <= bounded.peak:
+                self._below |= pair
+            elif self._below & pair:
+                self._below -= pair
+                self._note("errors cross", index, other=self.scene.cast[other])
+
+    def _note(self, kind: MilestoneKind, index: int, **more: Any) -> None:
+        """Note what a method does, at the present step if `more` says no other."""
+        more = {"step": self.step, "t": self.t, **more}
+        error = self._tracks[index].error
+        self.milestones.append(Milestone(kind, self.scene.cast[index], energy_error=error, **more))
+
+    def _look_point(self, track: _Track) -> LookPoint:
         theta, omega, _ = self._model.observe(track.phase)
         return LookPoint(
             step=(self.step - self._base_step) * track.parts,
@@ -265,8 +312,7 @@ class Lockstep:
         """Note the methods that have gone over the top, where the exact motion never comes."""
         for index, track in enumerate(self._tracks):
             if track.is_watched and self._below_top(track) < 0:
-                assert self._judges is not None
-                self._judges.note("over the top", index, self.step, self.t, track.error)
+                self._note("over the top", index)
                 track.is_watched = False
 
     def _below_top(self, track: _Track) -> float:
