@@ -138,7 +138,10 @@ def folder() -> Path:
         import platformdirs  # slow to load, and --help needs none
 
         return platformdirs.user_data_path("pendu-tui", False) / "recordings"
-    return Path(os.path.expanduser(chosen))  # noqa: PTH111  # Path's raises for an unknown user
+    expanded = os.path.expanduser(chosen)  # noqa: PTH111  # Path's raises for an unknown user
+    if "://" in expanded or expanded.startswith("~"):
+        raise DiskError("PENDU_RECORDINGS names no folder", chosen)
+    return Path(expanded)
 
 
 def new_path(where: Path | None = None) -> Path:

@@ -12,6 +12,7 @@ from pendu_tui.recordings.files import GOLDEN, DiskError, RecordingError, listin
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
 from tests.recordings.examples import record, start, two_runs
+from tests.tui.command_line import IS_WINDOWS
 
 
 @pytest.fixture(autouse=True)
@@ -34,9 +35,15 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, mon
     assert files.folder() == library
     monkeypatch.setenv("PENDU_RECORDINGS", " ")
     assert files.folder().parts[-2:] == ("pendu-tui", "recordings")
-    for name, path in (("~/runs", Path.home() / "runs"), ("~nosuchuser", Path("~nosuchuser"))):
-        monkeypatch.setenv("PENDU_RECORDINGS", name)
-        assert files.folder() == path
+    monkeypatch.setenv("PENDU_RECORDINGS", "~/runs")
+    assert files.folder() == Path.home() / "runs"
+    no_folders = ["s3://bucket/runs"]
+    if not IS_WINDOWS:  # where any name stands for a folder
+        no_folders.append("~nosuchuser/runs")
+    for no_folder in no_folders:
+        monkeypatch.setenv("PENDU_RECORDINGS", no_folder)
+        with pytest.raises(DiskError, match="names no folder"):
+            files.folder()
 
 
 def test_a_new_recording_has_a_free_name_with_the_time(library, monkeypatch):

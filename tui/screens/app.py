@@ -21,7 +21,7 @@ from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.drawing.picture import PALETTES, Palette
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.terminal.driver import CharacterSetFilter
+from pendu_tui.tui.terminal.driver import CharacterSetFilter, limit_pastes
 from pendu_tui.tui.terminal.options import SMALLEST, USUAL, CharacterSet, TerminalOptions
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (120, "-wide")]
@@ -46,8 +46,11 @@ class PenduApp(App[Exit | BaseException]):
     ]
 
     def __init__(self, screen: LabScreen, terminal: TerminalOptions = USUAL) -> None:
+        if not os.environ.get("NO_COLOR", "?"):
+            del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         # where there is no colour, Textual would use greys
         super().__init__(ansi_color="NO_COLOR" in os.environ or None)
+        limit_pastes()
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme

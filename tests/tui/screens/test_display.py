@@ -2,9 +2,14 @@
 
 from itertools import chain
 
+import pytest
 from rich.color import Color
 
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.picture import PALETTES, TEXT
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views import VIEWS
 from tests.tui.drawn import screen
 from tests.tui.harness import key_of, lab, uncomputed
@@ -51,3 +56,8 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
             theatre.app.action_use_theme(theme)
             await theatre.pilot.pause()
             assert all(colour.is_default for colour in colours(theatre.app))
+
+
+def test_an_empty_no_color_means_nothing(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("NO_COLOR", "")
+    assert not PenduApp(LabScreen(Live(DEFAULT_SCENE))).no_color

@@ -158,6 +158,19 @@ def test_a_method_that_cannot_be_interrupted_ends_the_lab_with_a_sentence(
         assert recording.length > 0.5
 
 
+@pytest.mark.parametrize("paste", ["\x1b[200~text\x1b", "\x1b[200~q\x1b[201~\x1b[200~"])
+def test_a_paste_without_an_end_counts_as_ended_after_2_s(library, paste):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.type(paste)
+        session.run(1.0)
+        session.type(" ")
+        session.run(1.5)
+        assert b"paused" not in session.output
+        session.type(" ")
+        session.wait_for("paused")
+
+
 def test_an_error_ends_the_lab_with_one_sentence_and_its_recording_is_finished(library):
     with lab(library, program=program(mark="raise ZeroDivisionError('in the lab')")) as session:
         session.wait_for(RECORDING)
