@@ -35,8 +35,8 @@ _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _FLAT = {0x09: 0x01, 0x12: 0x02, 0x24: 0x04, 0xC0: 0x40}
 """Both dots of a row of dots, and the left one of them."""
 _DOTTED = bytes(_FLAT.get(dots, dots) for dots in range(256))
-STEPS = 16
-"""Steps of the share of columns in which an ink is shown: finer ones flicker."""
+CELL = 60
+"""What a cell costs its methods together: it is divisible by their number, up to six."""
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
 """Cells of one ink and the blanks behind them, which look the same in any ink."""
 
@@ -289,37 +289,42 @@ class Canvas:
     ) -> None:
         """Give each shared cell to one of its methods, column by column from the left.
 
-        Methods without a cell in the column come first, and of these the one that has a cell in the
-        smallest share of its columns.  In steps of shares: what is added at the end of a chart
-        changes few turns.
+        Of those that the column does not show yet, it is the one with the smallest share of its
+        columns so far, if in all others each gets an equal part.  So no share comes out smaller
+        than the smallest equal part, but for a column.
 
         Flat lines at several heights of a cell become dotted: dashes that meet at their ends would
         look like the steps of one line.
         """
         columns = self.columns
         layers = {ink: self._layers[ink] for ink in alone}
-        in_columns = {ink: self._columns_of(_number(layer)) for ink, layer in layers.items()}
-        room = {ink: columns - each.count(0) for ink, each in in_columns.items()}
-        shown = {ink: self._columns_of(cells) for ink, cells in alone.items()}
-
-        def share(ink: int) -> int:
-            return STEPS * (columns - shown[ink].count(0)) // room[ink]
-
-        cells = [divmod(found.start(), columns)[::-1] for found in _FULL_CELLS.finditer(shared)]
-        for column, row in sorted(cells):
+        seen = {ink: self._columns_of(cells) for ink, cells in alone.items()}
+        room = {ink: CELL * (columns - each.count(0)) for ink, each in seen.items()}
+        parts = room.copy()
+        disputes: list[tuple[int, list[int], list[int]]] = []
+        for column, row in sorted(
+            divmod(found.start(), columns)[::-1] for found in _FULL_CELLS.finditer(shared)
+        ):
             cell = row * columns + column
-            present = {ink: layer[cell] for ink, layer in layers.items() if layer[cell]}
-            turns = [*present]
-            turn = (column + 3 * row // 5) % len(turns)
-            ink = turns[turn]
-            unseen = [each for each in turns[turn:] + turns[:turn] if not shown[each][column]]
-            if unseen:
-                ink = min(unseen, key=share)
-            shown[ink][column] = True
+            present = [ink for ink, layer in layers.items() if layer[cell]]
+            waiting = [ink for ink in present if not seen[ink][column]]
+            disputes.append((cell, present, waiting))
+            for ink in waiting:
+                room[ink] += CELL
+                parts[ink] += CELL // len(waiting)
+        for cell, present, waiting in disputes:
+            row, column = divmod(cell, columns)
+            ink = present[(column + 3 * row // 5) % len(present)]
+            if unseen := [each for each in waiting if not seen[each][column]]:
+                ink = min(unseen, key=lambda each: parts[each] / room[each])
+                for each in waiting:
+                    parts[each] -= CELL // len(waiting)
+                parts[ink] += CELL
+            seen[ink][column] = True
             colours[cell] = ink - NOBODY
-            dots[cell] = present[ink]
-            if len({*present.values()}) > 1:
-                dots[cell] = _DOTTED[present[ink]]
+            dots[cell] = layers[ink][cell]
+            if len({layers[each][cell] for each in present}) > 1:
+                dots[cell] = _DOTTED[dots[cell]]
 
     def _columns_of(self, number: int) -> bytearray:
         """Return a byte for each column of a layer, 0 where all its cells are."""

@@ -149,7 +149,7 @@ def time_chart(
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, height - 2)
     plot = _Plot(Canvas(width, height), x_axis, y_axis)
     if shown.log:
-        plot.limit = math.log10(LARGEST)
+        plot.limit = min(math.log10(LARGEST), y_axis.high)
     plot.draw_marks(changes, levels, shown.has_log_time)
     for run, (low, high) in zip(runs, sides, strict=True):
         plot.draw_curves(run, low, high)
@@ -332,13 +332,20 @@ def _crossings(heights: Floats, times: Floats, repeats: float) -> list[tuple[int
 
 
 def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
-    """Return an axis of all errors but the smallest ones at the start."""
+    """Return an axis of all errors but the smallest ones at the start.
+
+    A curve that leaves the chart within a tenth of it takes no room from the others.
+    """
     limit = math.log10(LARGEST)
-    known = [each[(each > math.log10(FLOOR)) & (each <= limit)] for each in largest.T]
+    curves = largest[:, ~np.isnan(largest).all(axis=0)]
+    stays = (curves <= limit).mean(axis=0) >= 0.1
+    if stays.any():
+        curves = curves[:, stays]
+    known = [each[(each > math.log10(FLOOR)) & (each <= limit)] for each in curves.T]
     known = [each for each in known if len(each)]
     if not known:
         return log_axis(-4, 0, rows)
-    top = limit if (largest > limit).any() else max(each.max() for each in known)
+    top = limit if (curves > limit).any() else max(each.max() for each in known)
     bottom = min(np.sort(each)[len(each) // 40] for each in known)
     return log_axis(float(bottom), float(max([top, *levels.values()])), rows)
 

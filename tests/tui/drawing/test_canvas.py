@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pendu_tui.tui.drawing.canvas import Canvas
@@ -87,18 +87,35 @@ def test_the_order_of_drawing_changes_no_cell_of_methods(points, random):
     assert pictures[0] == pictures[1]
 
 
-HEIGHTS = st.lists(st.integers(0, 4 * ROWS - 1), min_size=2 * COLUMNS, max_size=2 * COLUMNS)
+LINE = st.tuples(
+    st.lists(st.integers(0, 4 * ROWS - 1), min_size=80, max_size=80),
+    st.integers(0, 70),
+    st.integers(8, 80),
+)
 
 
-@given(HEIGHTS, HEIGHTS)
-def test_two_lines_keep_half_of_their_columns_however_they_run(one, other):
-    canvas = Canvas(COLUMNS, ROWS)
-    for ink, heights in enumerate((one, other)):
-        canvas.points(enumerate(heights), ink)
-    columns = [column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 0]
-    others = [column for (_, column), (_, ink) in cells(canvas.picture()).items() if ink == 1]
-    assert len(set(columns)) >= COLUMNS / 2
-    assert len(set(others)) >= COLUMNS / 2
+@example([([1] * 80, 0, 16), ([1] * 80, 0, 80), ([1] * 80, 16, 64)])
+@given(st.lists(LINE, min_size=2, max_size=6))
+def test_no_line_keeps_a_smaller_share_of_its_columns_than_the_smallest_equal_part(lines):
+    """An equal part is one of the methods in the cell; they may begin and end anywhere."""
+    canvas = Canvas(40, ROWS)
+    owners = {}
+    for ink, (heights, begin, size) in enumerate(lines):
+        points = list(enumerate(heights))[begin : begin + size]
+        canvas.points(points, ink)
+        for x, y in points:
+            owners.setdefault((y // 4, x // 2), set()).add(ink)
+    drawn = cells(canvas.picture())
+    shares, parts = [], []
+    for ink in range(len(lines)):
+        columns = {}
+        for (_, column), inks in owners.items():
+            if ink in inks:
+                columns[column] = max(columns.get(column, 0), 1 / len(inks))
+        shown = {column for (_, column), (_, owner) in drawn.items() if owner == ink}
+        shares.append((len(shown) + 1) / len(columns))
+        parts.append(sum(columns.values()) / len(columns))
+    assert min(shares) >= min(parts)
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
     assert plot(window(t, errors, repeats=1.0), 48, 11, seconds=20).picture.text == (
         "     │                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀e\n"
         "    1┤  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
-        "     │⠠⠁⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤s\n"
+        "     │⠐⠄⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤s\n"
         " 1e-2┤⢀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀v\n"
         "     │\n"
         " 1e-4┤                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀r\n"
@@ -185,12 +185,14 @@ def test_a_ghost_is_behind_the_same_methods(times, seen):
     assert inks(picture) == {*seen, FRAME, TEXT}
 
 
-def test_a_line_that_leaves_the_chart_ends_there_with_its_value():
-    errors = np.stack([np.exp(3 * TIMES), 0.1 * TIMES, TIMES, TIMES], axis=1)
+@pytest.mark.parametrize(("rate", "top"), [(3, "1e6┤"), (30, "1┤")])
+def test_a_line_that_leaves_the_chart_ends_with_its_value_and_at_once_takes_no_room(rate, top):
+    errors = np.stack([np.exp(rate * TIMES), 0.1 * TIMES, TIMES, TIMES], axis=1)
     lines = plot(window(TIMES, errors), places=[0, 1], seconds=20).picture.text.splitlines()
-    assert "↑e 1e26" in lines[0]
-    assert any(" 1e6┤" in line for line in lines)
-    assert max(line.rfind("⠁") for line in lines) < lines[0].index("↑") + 3
+    value = f"↑e {errors[-1, 0]:.0e}".replace("e+", "e")
+    row = next(row for row, line in enumerate(lines) if value in line)
+    assert next(line for line in lines if "┤" in line).lstrip().startswith(top)
+    assert max(line.rfind("⠁") for line in lines[: row + 1]) < lines[row].index("↑") + 3
 
 
 def test_a_change_of_the_step_and_a_reference_are_dotted_lines_with_words():
