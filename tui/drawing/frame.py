@@ -44,7 +44,7 @@ def nice(value: float) -> float:
 
 
 _DECADES = sorted(
-    {Fraction(n, d) for n in range(1, 5) for d in range(1, 17)} | {*map(Fraction, (6, 12, 50, 500))}
+    {Fraction(n, d) for n in range(1, 6) for d in range(1, 17)} | {*map(Fraction, (6, 12, 50, 500))}
 )
 """How many decades a row of characters may span."""
 _STEPS = [(float(each), each.numerator * (1 + (each.denominator == 1))) for each in _DECADES]
@@ -55,21 +55,22 @@ FEW_ROWS = 9
 def log_axis(low: float, high: float, rows: int) -> Axis:
     """Return a vertical axis of log10 that covers low to high.
 
-    It is the shortest with powers of ten in the middle of three rows, or of two if rows are few.
+    It is the shortest with powers of ten at the middle of three rows, or of two if rows are few, or
+    one dot beside it.
     """
     need = 3 if rows >= FEW_ROWS else 2
-    axes: list[Axis] = []
     for size, step in _STEPS:
-        top = round(high / size)
-        spare = rows - 1 - top + round(low / size)
-        axes += [_centred(top + above, size, step, rows) for above in range(spare + 1)]
-        if axes and len(axes[-1].labels) >= need:
-            break
-    axis = next((axis for axis in axes if len(axis.labels) >= need), axes[-1])
-    return replace(axis, labels={each: _power(each) for each in axis.labels})
+        first = math.ceil(4 * high / size - 2)
+        last = math.floor(4 * (low / size + rows) - 2)
+        tops = [top for top in range(first, last + 1) if top % 4 != 2]
+        for top in sorted(tops, key=lambda top: top % 4 != 0):
+            axis = _centred(top / 4, size, step, rows)
+            if len(axis.labels) >= need:
+                return replace(axis, labels={each: _power(each) for each in axis.labels})
+    raise AssertionError("no axis spans that many decades")
 
 
-def _centred(top: int, row: float, step: float, rows: int) -> Axis:
+def _centred(top: float, row: float, step: float, rows: int) -> Axis:
     """Return an axis whose rows have multiples of `row` in the middle, `top` times it at the top.
 
     Multiples of `step` are labelled.
@@ -268,12 +269,19 @@ class Frame:
                 free = begin + len(text) + 1
 
     def name_lines(self, ends: Iterable[End]) -> None:
-        """Write each line's letter at its end and, where there is room, its name beside it."""
+        """Write each line's letter at its end and, where there is room, its name beside it.
+
+        On few rows, letters of one row stand side by side, or they would be far from their lines.
+        """
         ends = sorted(ends, key=lambda end: end.row)
         rows = spread([end.row for end in ends], self.rows)
         for end, row in zip(ends, rows, strict=True):
+            near = [row]
+            if self.rows < NAMED[1]:
+                near = sorted(range(self.rows), key=lambda at: abs(at - end.row))
             across = range(end.column, end.column + ROOM)
-            self.canvas.label_where_blank([(at, row) for at in across], end.letter, end.ink)
+            places = [(column, at) for at in near for column in across]
+            self.canvas.label_where_blank(places, end.letter, end.ink)
         if self.canvas.columns >= NAMED[0] and self.rows >= NAMED[1]:
             above = -1
             for end, row, below in zip(ends, rows, [*rows, self.rows][1:], strict=True):

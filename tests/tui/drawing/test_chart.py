@@ -105,16 +105,16 @@ def test_speed_against_accuracy():
     picture = loglog_chart(series, 48, 14, x_label="force evaluations", y_label="theta error [rad]")
     assert picture.text == (
         "theta error [rad]\n"
-        "    1┤   e⠒⠒⠤e⠤⠤⣀e⣀⣀⡀\n"
-        "     │              ⠈e⠉⠉⠉e⠒⠒e⠤⠤⠤e\n"
-        "     │           r\n"
-        " 1e-4┤    ⠄⡀     ⠈⠉⠒⠤r\n"
-        "     │      ⠁⠂⠄⡀      ⠉⠒⠢r⡀\n"
-        "     │          ⠁⠂⠄⡀      ⠈⠑r⢄⡀\n"
-        " 1e-8┤              ⠁⠁⠂⠄⡀     ⠈⠑r⠤⣀\n"
-        "     │                   ⠈⠐⠠⢀      ⠉r⠤⣀\n"
-        "     │                       ⠈⠐⠠⢀      ⠉r\n"
-        "1e-12┤                           ⠈⠐ order 4\n"
+        "    1┤   e⠒⠒⠤e⠤⠤⣀e⣀⣀\n"
+        "     │              ⠉e⠉⠉⠒e⠒⠒e⠤⠤⠤e\n"
+        "     │\n"
+        "     │    ⡀      r⠒⠤⣀\n"
+        " 1e-5┤     ⠁⠂⠄⡀      r⠒⠤⢄r\n"
+        "     │         ⠁⠂⠄⡀      ⠈⠒⠤r\n"
+        "     │             ⠁⠂⠄⡀      ⠉⠒⠤r\n"
+        "     │                 ⠁⠂⠠⢀      ⠉⠒⠤r\n"
+        "1e-10┤                     ⠈⠐⠠⢀      ⠉⠒⠤r\n"
+        "     │                         ⠈⠐⠠ order 4\n"
         "     └┬───────────┬────────────┬───────────┬────\n"
         "      10         100          1e3         1e4\n"
         "                               force evaluations"
@@ -176,6 +176,19 @@ def test_names_stand_beside_their_lines_where_there_is_room():
     assert all(abs(row - letter) <= 2 for row, letter in zip(rows, letters, strict=True))
     for room in ((59, 16), (70, 9)):
         assert "RK4" not in plot(data, *room, names=names).picture.text
+
+
+def test_on_few_rows_letters_stand_side_by_side_where_their_lines_end():
+    errors = 10.0 ** -np.array([0.0, 2.0, 2.1, 6.0]) * np.ones((len(TIMES), 4))
+    chart = plot(window(TIMES, errors), 40, 6)
+    for place, letter in enumerate("esvr"):
+        (row,) = (at for (at, _), cell in cells(chart.picture).items() if cell == (letter, place))
+        line = {
+            at
+            for (at, column), (_, ink) in cells(chart.picture).items()
+            if ink == place and column < 36
+        }
+        assert line == {row}
 
 
 @pytest.mark.parametrize(("times", "seen"), [(1, {0}), (10, {0, FAINT})])
