@@ -44,8 +44,8 @@ THETA = Quantity(
     "rad",
     recorded="always",
     in_gate=True,
-    head=Head("theta", 11, "theta [rad]", 16),
-    sentence="angle from the downward vertical [rad], -5 turns +0.89: five turns back and 0.89",
+    head=Head("theta", 11, "theta [rad]", 13),
+    sentence="angle from the downward vertical [rad], beyond a turn, too",
 )
 OMEGA = Quantity(
     "omega",

@@ -26,7 +26,7 @@ from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN, Picture, Row,
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.numbers import angle, decimal, scientific
+from pendu_tui.tui.words.numbers import decimal, scientific
 
 WIDE = 120  # columns, from which heads are written in full, in every scene
 
@@ -65,14 +65,6 @@ def _verdict(line: TableLine, width: int) -> str:
     return next((text for text in texts if len(text) <= width), verdict.word)
 
 
-def _angle(line: TableLine, width: int) -> str:
-    return angle(line.reading.theta, width, min(width - 8, 5))
-
-
-def _omega(line: TableLine, width: int) -> str:
-    return decimal(line.reading.omega, width, max(width - 8, 3))
-
-
 VERDICT = Column(9, Head("verdict", 10, "verdict", 13), _verdict)
 COLUMNS = (
     VERDICT,
@@ -80,8 +72,8 @@ COLUMNS = (
     Column(7, LARGEST.head, lambda line, w: scientific(line.largest, w, 1, "-")),
     Column(5, TREND.head, lambda line, w: scientific(line.judgement.trend, w)),
     Column(3, THETA_ERROR.head, lambda line, w: scientific(line.theta_error, w, 1, "-")),
-    Column(4, THETA.head, _angle),
-    Column(2, OMEGA.head, _omega),
+    Column(4, THETA.head, lambda line, w: decimal(line.reading.theta, w, min(w - 8, 5))),
+    Column(2, OMEGA.head, lambda line, w: decimal(line.reading.omega, w, max(w - 8, 3))),
     Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width]),
     Column(1, EVALUATIONS.head, lambda line, w: f"{line.method.force_evaluations}"),
 )

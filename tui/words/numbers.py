@@ -36,18 +36,6 @@ def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
     return next((text.rjust(width) for text in texts if len(text) <= width), "#" * width)
 
 
-def angle(theta: float, width: int, decimals: int) -> str:
-    """Write an angle [rad]; beyond a turn, where 14 fit, as turns and a rest: "-5 turns +0.89"."""
-    if width < 14 or not math.tau < abs(theta) < math.inf:
-        return decimal(theta, width, max(decimals, 1))
-    turns = round(theta / math.tau)
-    text = f"{decimal(turns, width - 6, 0).strip()} turns"
-    if abs(turns) == 1:
-        text = f"{turns:+d} turn"
-    whole = f"{text} {theta - turns * math.tau:+.2f}"
-    return min(whole, text, key=lambda each: len(each) > width).rjust(width)
-
-
 def start(theta: float, omega: float) -> str:
     """Write start values: "57.3° 0 rad/s"."""
     return f"{math.degrees(theta):.4g}° {omega:.4g} rad/s"
@@ -97,7 +85,9 @@ def file_size(count: int) -> str:
 
 
 def factor(value: float) -> str:
-    """Write a factor in full: "4", "262144", "0.125"."""
+    """Write a factor in full: "4", "262144", "-1/8"."""
+    if abs(value) < 1 and (1 / value).is_integer():
+        return f"{'-' * (value < 0)}1/{abs(1 / value):.0f}"
     if 1e3 <= abs(value) < 1e9:
         return f"{value:.0f}"
     return f"{value:.4g}"

@@ -54,7 +54,7 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
     live.set_speed(0.25)
     live.history.sample = live.sample._replace(t=725.0)
     assert status(live, 80) == (
-        " LIVE  backwards  0.25×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 72 s"
+        " LIVE  backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 72 s"
     )
     live = taped()
     live.start(DEFAULT_SCENE.altered(theta=3.0))

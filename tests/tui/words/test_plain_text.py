@@ -72,7 +72,7 @@ def test_sentences_and_events_of_a_scene_fit_the_smallest_pane(scene):
     ("change", "words"),
     [
         (lambda live: live.pause(True), "is paused at 1.00 s of run 1"),
-        (lambda live: live.set_speed(0.5), "runs at 0.5× speed"),
+        (lambda live: live.set_speed(0.5), "runs at 1/2× speed"),
         (lambda live: live.change(Stepping(-0.05)), "time runs backwards"),
         (lambda live: live.change(Stepping(0.2, equal_cost=True)), "z = 0.626; at equal cost"),
         (lambda live: live.start(SCENES["spin"]), "at 0° 8 rad/s; one turn takes 0.98 s"),
