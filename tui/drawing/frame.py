@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.picture import FRAME, TEXT, Picture
+from pendu_tui.tui.drawing.picture import FRAME, TEXT, Ink, Picture, Row
 
 Floats = NDArray[np.float64]
 Value = TypeVar("Value", float, Floats)
-Ticks = list[tuple[float, str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,14 +108,7 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
         (row, step) for row, step in sizes if round(high / row) - round(low / row) < rows
     )
     axis = _centred(round(high / row), row, step, rows)
-    return replace(axis, labels={each: _label(each, step) for each in axis.labels})
-
-
-def _label(value: float, step: float) -> str:
-    decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
-    if decimals < 5:
-        return f"{value:.{decimals}f}"
-    return f"{value * 10.0**decimals:.0f}e-{decimals}" if value else "0"
+    return replace(axis, labels={each: compact(each) for each in axis.labels})
 
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
@@ -126,9 +118,8 @@ def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
     """
     units = ((3600, "h"), (60, "min"))
     size, unit = next((each for each in units if end - start >= 5 * each[0]), (1, "s"))
-    step = nice((end - start) / size / max(columns / 10, 1))
-    values = _multiples(start / size, end / size, step)
-    labels = {value * size: f"{value:.6g}" for value in values}
+    ticks = number_ticks(start / size, end / size, max(columns / 10, 1))
+    labels = {value * size: text for value, text in ticks.items()}
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
@@ -160,26 +151,19 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     return Axis(low, high, labels)
 
 
-def number_ticks(low: float, high: float, most: int) -> Ticks:
-    """Return positions and labels of about `most` numbers."""
-    values = _multiples(low, high, nice((high - low) / most))
-    return [(value, compact(value)) for value in values]
+def number_ticks(low: float, high: float, most: float) -> dict[float, str]:
+    """Return labels by position of about `most` numbers."""
+    return {value: compact(value) for value in _multiples(low, high, nice((high - low) / most))}
 
 
-def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """Return positions and labels of about `most` angles, in pi or, below pi/4 apart, in rad."""
+def theta_ticks(low: float, high: float, most: int) -> dict[float, str]:
+    """Return labels by position of about `most` angles, in pi or, below pi/4 apart, in rad."""
     share = (high - low) / math.pi / most
     if share <= 0.1:
-        turns = (-math.tau, 0.0, math.tau) if wrap else (0.0,)
-        return [
-            (value + turn, label)
-            for turn in turns
-            for value, label in number_ticks(low - turn, high - turn, most)
-            if not wrap or abs(value) <= math.pi
-        ]
+        return number_ticks(low, high, most)
     step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share), nice(share))
     values = _multiples(low / math.pi, high / math.pi, step)
-    return [(value * math.pi, in_pi(value, wrap)) for value in values]
+    return {value * math.pi: in_pi(value) for value in values}
 
 
 def _multiples(low: float, high: float, step: float) -> list[float]:
@@ -193,10 +177,8 @@ def compact(value: float) -> str:
     return f"{value:.6g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
 
 
-def in_pi(turns: float, wrap: bool = False) -> str:
-    """Write quarters of pi: "-pi", "3pi/4"; `wrap` turns them to -pi to pi."""
-    if wrap and abs(turns) > 1:
-        turns = round(math.remainder(turns, 2), 12)
+def in_pi(turns: float) -> str:
+    """Write quarters of pi: "-pi", "3pi/4"."""
     if turns == 0:
         return "0"
     divisor = next(each for each in (1, 2, 4) if turns * each % 1 == 0)
@@ -221,16 +203,15 @@ class End(NamedTuple):
 
 
 class Frame:
-    """A canvas with two axes; `margin` rows are free above the field and below the labels."""
+    """Two axes at the left of a field and below it, with `room` for letters at its right."""
 
-    def __init__(self, canvas: Canvas, x_axis: Axis, y_axis: Axis, margin: int = 0) -> None:
-        self.canvas = canvas
+    def __init__(self, x_axis: Axis, y_axis: Axis, columns: int, rows: int, room: int = 0) -> None:
         self.x_axis = x_axis
         self.y_axis = y_axis
-        self.margin = margin
+        self.columns = columns
+        self.rows = rows
+        self.width = columns + room
         self.left = y_axis.label_width + 1
-        self.columns = columns_beside(y_axis.label_width, canvas.columns)
-        self.rows = canvas.rows - 2 - 2 * margin
 
     def right(self, x: Floats) -> Floats:
         """Return distances from the left edge of the field, in characters, at most its width."""
@@ -241,32 +222,41 @@ class Frame:
         return self.rows * np.clip(self.y_axis.share(y), 0.0, 1.0)
 
     def column(self, x: float) -> int:
-        """Return the column of a value on the canvas."""
-        return self.left + min(max(int(self.columns * self.x_axis.share(x)), 0), self.columns - 1)
+        """Return the column of a value in the field."""
+        return min(max(int(self.columns * self.x_axis.share(x)), 0), self.columns - 1)
 
     def row(self, y: float) -> int:
-        """Return the row of a value on the canvas."""
-        up = min(max(int(self.rows * self.y_axis.share(y)), 0), self.rows - 1)
-        return self.margin + self.rows - 1 - up
+        """Return the row of a value in the field."""
+        return self.rows - 1 - min(max(int(self.rows * self.y_axis.share(y)), 0), self.rows - 1)
 
-    def draw_axes(self) -> None:
-        canvas = self.canvas
-        left = self.left
-        bottom = self.margin + self.rows
-        for row in range(self.margin, bottom):
-            canvas.label(left - 1, row, "│", FRAME)
-        canvas.label(left - 1, bottom, "└".ljust(self.columns + ROOM + 1, "─"), FRAME)
-        for value, text in self.y_axis.labels.items():
-            canvas.label(0, self.row(value), text.rjust(left - 1), TEXT)
-            canvas.label(left - 1, self.row(value), "┤", FRAME)
-        free = 0  # the first column after the previous label
+    def around(self, field: Iterable[Row]) -> list[Row]:
+        """Put the axes around the rows of the field, with labels on them."""
+        labels = {self.row(value): text for value, text in self.y_axis.labels.items()}
+        rows: list[Row] = []
+        for at, row in enumerate(field):
+            label = labels.get(at, "").rjust(self.left - 1)
+            rows.append([(label, TEXT), ("┤" if at in labels else "│", FRAME), *row])
+        below: list[tuple[str, Ink]] = [("└".rjust(self.left), FRAME)]
+        end = 0
         for value, text in self.x_axis.labels.items():
-            column = self.column(value)
-            begin = min(column - (len(text) - 1) // 2, canvas.columns - len(text))
-            if begin >= free:
-                canvas.label(column, bottom, "┬", FRAME)
-                canvas.label(begin, bottom + 1, text, TEXT)
-                free = begin + len(text) + 1
+            label = f" {text} "
+            begin = self.column(value) - len(label) // 2
+            begin = min(max(begin, 0), self.width - len(label))
+            if begin >= end:
+                below += ("─" * (begin - end), FRAME), (label, TEXT)
+                end = begin + len(label)
+        return [*rows, [*below, ("─" * (self.width - end), FRAME)]]
+
+
+class LineChart(Frame):
+    """A frame whose field is a canvas with lines, each with a letter at its end."""
+
+    def __init__(self, x_axis: Axis, y_axis: Axis, columns: int, rows: int) -> None:
+        super().__init__(x_axis, y_axis, columns, rows, room=ROOM)
+        self.canvas = Canvas(self.width, rows)
+
+    def picture(self) -> list[Row]:
+        return self.around(self.canvas.picture().rows)
 
     def name_lines(self, ends: Iterable[End]) -> None:
         """Write each line's letter at its end and, where there is room, its name beside it.
@@ -282,7 +272,7 @@ class Frame:
             across = range(end.column, end.column + ROOM)
             places = [(column, at) for at in near for column in across]
             self.canvas.label_where_blank(places, end.letter, end.ink)
-        if self.canvas.columns >= NAMED[0] and self.rows >= NAMED[1]:
+        if self.left + self.width >= NAMED[0] and self.rows >= NAMED[1]:
             above = -1
             for end, row, below in zip(ends, rows, [*rows, self.rows][1:], strict=True):
                 above = max(self._write_name(end, above, below), row)
@@ -290,7 +280,7 @@ class Frame:
     def _write_name(self, end: End, above: int, below: int) -> int:
         """Write a name near the end of its line, between two rows; return the row, or -1."""
         text = f" {end.name} "
-        last = end.column - self.left - len(text)
+        last = end.column - len(text)
         for begin in range(last - 1, 2 * self.columns // 3 - len(text), -1):
             beside = end.rows[:, max(begin, 0) : begin + len(text)]
             top = np.fmin.reduce(beside[0], initial=np.inf)
@@ -300,7 +290,7 @@ class Frame:
                 rows = [*under, *over] if len(under) > len(over) else [*over, *under]
                 row: int
                 for row in rows:
-                    if self.canvas.label_where_blank([(self.left + begin, row)], text, end.ink):
+                    if self.canvas.label_where_blank([(begin, row)], text, end.ink):
                         return row
         return -1
 

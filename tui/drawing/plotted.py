@@ -11,12 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.frame import (
-    ROOM,
     Axis,
     Floats,
-    Frame,
+    LineChart,
     columns_beside,
     linear_axis,
     log_axis,
@@ -47,8 +45,8 @@ class Series:
         return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
-class LogLog(Frame):
-    """Two logarithmic axes that fit some series, with a line of words above and one below."""
+class LogLog(LineChart):
+    """Two logarithmic axes that fit some series, below a line of words and above one."""
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> "LogLog":
@@ -58,9 +56,9 @@ class LogLog(Frame):
         if not len(points):
             points = np.array([(0.0, -4.0), (1.0, 0.0)])
         (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-        y_axis = log_axis(bottom, top, height - 4)
+        y_axis = log_axis(bottom, top, height - 3)
         columns = columns_beside(y_axis.label_width, width)
-        return cls(Canvas(width, height), log_x_axis(left, right, columns), y_axis, margin=1)
+        return cls(log_x_axis(left, right, columns), y_axis, columns, height - 3)
 
     def curve(self, series: Series) -> tuple[list[float], list[float]]:
         """Return x and y in characters from the lower left corner; references are clipped."""
@@ -74,8 +72,8 @@ class LogLog(Frame):
         return self.right(x).tolist(), self.up(y).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return the column and row of a point."""
-        return self.column(math.log10(x)), self.row(math.log10(y))
+        """Return the column and row of a point in the picture."""
+        return self.left + self.column(math.log10(x)), 1 + self.row(math.log10(y))
 
 
 def loglog_chart(
@@ -89,18 +87,14 @@ def loglog_chart(
         return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
     axes = LogLog.fitting(series, width, height)
     canvas = axes.canvas
-    axes.draw_axes()
-    canvas.label(0, 0, y_label, TEXT)
-    canvas.label(0, height - 1, x_label.rjust(width), TEXT)
     curves = [(one, *axes.curve(one)) for one in series]
     for ink in dict.fromkeys(one.ink for one, *_ in curves):
         some = [(x, y, one.dotted) for one, x, y in curves if one.ink == ink]
-        lines = plotted(some, axes.columns + ROOM, axes.rows)
-        canvas.braille(axes.left, axes.margin, lines, ink)
+        canvas.braille(0, 0, plotted(some, axes.width, axes.rows), ink)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
-        last = width - len(one.mark)
+        last = axes.width - len(one.mark)
         cells = [
-            (min(axes.left + int(right), last), max(axes.rows - int(up), 1))
+            (min(int(right), last), max(axes.rows - 1 - int(up), 0))
             for right, up in zip(x, y, strict=True)
         ]
         if not one.dotted:
@@ -108,12 +102,14 @@ def loglog_chart(
                 canvas.label(column, row, one.mark, one.ink)
         elif cells:
             column, row = cells[-1]
-            rows = [at for at in (row, row - 1, row + 1) if 1 <= at <= axes.rows]
+            rows = [at for at in (row, row - 1, row + 1) if 0 <= at < axes.rows]
             near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
             names = f" {one.mark}", one.mark
             if not any(canvas.label_where_blank(near, name, QUIET) for name in names):
                 canvas.label(column, row, one.mark, QUIET)
-    return canvas.picture()
+    above = y_label[:width].ljust(width)
+    below = x_label[:width].rjust(width)
+    return Picture([[(above, TEXT)], *axes.picture(), [(below, TEXT)]])
 
 
 def plotted(
@@ -169,15 +165,14 @@ def record_chart(
     trend = errors.mean() + (slope or 0.0) * (times[[0, -1]] - times.mean())
     edges = [trend + sigmas * (deviation or 0.0) for sigmas in (-2, 2)]
     span = np.concatenate([errors, *edges])
-    y_axis = linear_axis(float(span.min()), float(span.max()), height - 4)
+    rows = height - 2
+    y_axis = linear_axis(float(span.min()), float(span.max()), rows)
     first = float(times[0])
     last = float(times[-1])
     columns = columns_beside(y_axis.label_width, width)
-    labels = dict(number_ticks(first, last, max(columns // 12, 1)))
+    labels = number_ticks(first, last, max(columns // 12, 1))
     labels[max(labels)] += f" {unit}".rstrip()
-    frame = Frame(Canvas(width, height), Axis(first, last, labels), y_axis, margin=1)
-    frame.draw_axes()
-    frame.canvas.label(0, 0, title[:width], TEXT)
+    chart = LineChart(Axis(first, last, labels), y_axis, columns, rows)
     across = np.linspace(first, last, columns)
     dotted = [(QUIET, np.linspace(edge[0], edge[1], columns)) for edge in edges]
     if slope is not None:
@@ -186,10 +181,9 @@ def record_chart(
         (ENERGY, *_spans(times, errors, DOTS * columns), False),
         *((ink, across, values, True) for ink, values in dotted),
     ):
-        curve = (frame.right(x).tolist(), frame.up(y).tolist(), is_dotted)
-        rows = plotted([curve], frame.columns + ROOM, frame.rows)
-        frame.canvas.braille(frame.left, frame.margin, rows, ink)
-    return frame.canvas.picture()
+        curve = (chart.right(x).tolist(), chart.up(y).tolist(), is_dotted)
+        chart.canvas.braille(0, 0, plotted([curve], chart.width, rows), ink)
+    return Picture([[(title[:width].ljust(width), TEXT)], *chart.picture()])
 
 
 def _spans(times: Floats, errors: Floats, count: int) -> tuple[Floats, Floats]:

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.methods import Cast
-from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.frame import (
     Axis,
     End,
     Floats,
-    Frame,
+    LineChart,
     columns_beside,
     linear_axis,
     log_axis,
@@ -137,17 +136,18 @@ def time_chart(
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     runs = _runs(window, cast, shown, ghost)
     levels = _levels(shown)
+    rows = height - 1
     label_width = 5  # enough for decades
     if not shown.log:
-        y_axis = _linear_y_axis(runs, levels, height - 2)
+        y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
     columns = columns_beside(label_width, width)
     x_axis = _time_axis(window, shown, columns, shown.has_log_time)
     edges, times = _moments(x_axis, columns, shown.has_log_time)
     sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
     if shown.log:
-        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, height - 2)
-    plot = _Plot(Canvas(width, height), x_axis, y_axis)
+        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
+    plot = _Plot(x_axis, y_axis, columns, rows)
     if shown.log:
         plot.limit = min(math.log10(LARGEST), y_axis.high)
     plot.draw_marks(changes, levels, shown.has_log_time)
@@ -157,11 +157,17 @@ def time_chart(
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
-        plot.draw_crossings(high, times, window.repeats, height - 2)
+        plot.draw_crossings(high, times, window.repeats)
     plot.name_lines(plot.ends(runs[0], low, high, names))
-    ends = (x_axis.low, x_axis.high)
-    told = (shown.places(cast), plot.left, times.tolist(), values, ends, shown.has_log_time)
-    return TimePlot(plot.canvas.picture(), *told)
+    return TimePlot(
+        Picture(plot.picture()),
+        places=shown.places(cast),
+        left=plot.left,
+        times=times.tolist(),
+        values=values,
+        ends=(x_axis.low, x_axis.high),
+        log_time=shown.has_log_time,
+    )
 
 
 def _runs(
@@ -182,7 +188,7 @@ def _runs(
     return runs
 
 
-class _Plot(Frame):
+class _Plot(LineChart):
     """The axes of a chart over time, whose values are logarithms if `limit` is one."""
 
     limit = LARGEST
@@ -190,22 +196,20 @@ class _Plot(Frame):
     def draw_marks(
         self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
     ) -> None:
-        """Draw the axes, the changes of the step and the levels."""
-        self.draw_axes()
+        """Draw the changes of the step and the levels."""
         canvas = self.canvas
         for x, text in changes:
             value = math.log10(max(x, FLOOR)) if log_time else x
             if self.x_axis.low < value < self.x_axis.high:
-                at = 2 * (self.left + self.columns * self.x_axis.share(value))
-                canvas.line(at, 0, at, 4 * self.rows, FRAME, dotted=True)
+                at = 2 * self.columns * self.x_axis.share(value)
+                canvas.line(at, 0, at, canvas.height, FRAME, dotted=True)
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
                 canvas.label(begin, self.rows - 1, text, QUIET)
         for text, level in levels.items():
-            down = 4 * self.rows * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
-            end = 2 * (self.left + self.columns)
-            canvas.line(2 * self.left, down, end, down, EXACT, dotted=True)
+            down = canvas.height * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
+            canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
             row = min(max(int(down) // 4 - 1, 0), self.rows - 1)
-            canvas.label(self.left + 1, row, text, EXACT)
+            canvas.label(1, row, text, EXACT)
 
     def draw_curves(self, run: _Run, low: Floats, high: Floats) -> None:
         """Draw each curve up to where it leaves the chart."""
@@ -215,7 +219,7 @@ class _Plot(Frame):
         for place, ink in enumerate(run.inks):
             x, y = _outline(bottom[:, place], top[:, place])
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
-            self.canvas.path(2 * (self.left + x) + 1.5, down, ink)
+            self.canvas.path(2 * x + 1.5, down, ink)
 
     def _beyond(self, low: Floats, high: Floats) -> Mask:
         return (high > self.limit) | (low < -LARGEST)
@@ -227,11 +231,11 @@ class _Plot(Frame):
         gone[:1] = False
         return gone
 
-    def draw_crossings(self, high: Floats, times: Floats, repeats: float, rows: int) -> None:
+    def draw_crossings(self, high: Floats, times: Floats, repeats: float) -> None:
         """Mark where one error passes another for good."""
-        row = (self.y_axis.high - self.y_axis.low) / rows
+        row = (self.y_axis.high - self.y_axis.low) / self.rows
         for column, value in _crossings(high / row, times, repeats):
-            self.canvas.label(self.left + column, self.row(value * row), CROSSING, TEXT)
+            self.canvas.label(column, self.row(value * row), CROSSING, TEXT)
 
     def ends(self, run: _Run, low: Floats, high: Floats, names: Sequence[str]) -> Iterator[End]:
         """Yield the ends of curves; where one has left the chart, write its value instead."""
@@ -246,11 +250,11 @@ class _Plot(Frame):
             if beyond[at, place]:
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
                 left = int(np.flatnonzero(beyond[:, place] & ~self._gone(low, high)[:, place])[-1])
-                self._write_value(self.left + left + 1, letter, value, ink)
+                self._write_value(left + 1, letter, value, ink)
                 continue
             name = names[run.places[place]] if names else ""
             row = float(rows[:, at, place].mean()) - 0.5
-            yield End(self.left + at + 1, row, ink, letter, name, rows[:, :, place])
+            yield End(at + 1, row, ink, letter, name, rows[:, :, place])
 
     def _write_value(self, column: int, letter: str, value: float, ink: int) -> None:
         """Write what a curve has come to where it left the chart."""

@@ -24,7 +24,7 @@ from pendu_tui.tui.playback.live import has_own
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.error_table import Column, ErrorTable
 from pendu_tui.tui.views.view import Chooser, Memo, StudyView
-from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
+from pendu_tui.tui.views.viewport import LEFT, Viewport, amplitude, reach
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
     from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
@@ -61,8 +61,8 @@ class PhasePane(Chooser[State]):
 
     @property
     def _cells(self) -> tuple[int, int]:
-        # at least one, while the pane is being hidden
-        return max(self.room.width, 1), max(self.room.height - 1, 1)
+        # of the field; at least one, while the pane is being hidden
+        return max(self.room.width - LEFT, 1), max(self.room.height - 2, 1)
 
     @property
     def viewport(self) -> Viewport:
@@ -88,6 +88,7 @@ class PhasePane(Chooser[State]):
         from pendu_tui.tui.views.portrait import (
             Portrait,
             caption,
+            framed,
             method_points,
             phase_picture,
             ring_text,
@@ -101,7 +102,8 @@ class PhasePane(Chooser[State]):
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
         plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
-        return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
+        below = caption(source, self.aim, self.room.width)
+        return Picture([*framed(portrait.viewport, plot), below])
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         scene = source.scene
@@ -180,7 +182,7 @@ class PhasePane(Chooser[State]):
     def _cell(self, event: events.MouseEvent) -> tuple[int, int] | None:
         x, y = event.get_content_offset_capture(self)
         columns, rows = self._cells
-        return (x, y) if x in range(columns) and y in range(rows) else None
+        return (x - LEFT, y) if x - LEFT in range(columns) and y in range(rows) else None
 
 
 STARTS = 300  # orbits of a section
@@ -234,7 +236,7 @@ class SectionPane(PhasePane):
         return Section(viewport, model, method, ink)
 
     def _map(self, source: Source) -> Picture:
-        from pendu_tui.tui.views.portrait import orbit_of
+        from pendu_tui.tui.views.portrait import framed, orbit_of
         from pendu_tui.tui.words.studies import orbit_words
 
         method = self.cast[self.index]
@@ -251,7 +253,8 @@ class SectionPane(PhasePane):
         where = "start"
         if self.aim:
             where = f"{self.aim.theta:g}, {self.aim.omega:g}"
-        return Picture((*plot.rows, [(f"{where}: {orbit_words(method, kind)}", TEXT)]))
+        words = f"{where}: {orbit_words(method, kind)}"
+        return Picture([*framed(self.viewport, plot), [(words, TEXT)]])
 
     def forget(self) -> None:
         self._section.forget()

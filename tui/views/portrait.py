@@ -17,7 +17,7 @@ from pendu_tui.engine.scenes import Line
 from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
 from pendu_tui.engine.studies.section import OrbitKind, Points, kind_of, orbit, spread
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.frame import in_pi, nice, number_ticks, theta_ticks
+from pendu_tui.tui.drawing.frame import Axis, Frame, in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.picture import (
     EXACT,
     FAINT,
@@ -32,12 +32,12 @@ from pendu_tui.tui.drawing.picture import (
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.terminal.options import FPS
-from pendu_tui.tui.views.viewport import Viewport
+from pendu_tui.tui.views.viewport import LEFT, Viewport
 from pendu_tui.tui.words.numbers import energy_share, motion_text, regime
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Mask = NDArray[np.bool_]  # (dots down, dots right)
-Word = tuple[int, int, str, int]  # column, row, text, ink
+Word = tuple[int, int, str]  # column, row, text
 Floats = NDArray[np.float64]
 SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
 BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
@@ -65,9 +65,7 @@ class Portrait:
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
         levels = model.level(theta, omega, np.cos)
         separatrix = _dots(_border((levels < 0) & model.has_separatrix))
-        words = axes(viewport)
-        if model.has_separatrix:
-            words += _names(viewport, model.w0)
+        words = _names(viewport, model.w0) if model.has_separatrix else []
         ground = Canvas(viewport.columns, viewport.rows)
         ground.scatter(*_dots(_border(_bands(levels))), FRAME)
         ground.scatter(*separatrix, QUIET)
@@ -130,7 +128,7 @@ def phase_picture(
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*on_screen(viewport, *closed), point.ink)
     draw_points(canvas, viewport, points)
-    write_words(canvas, portrait.words)
+    _write_words(canvas, portrait.words)
     return canvas.picture()
 
 
@@ -259,36 +257,26 @@ def place_text(model: Model, state: State, width: int) -> str:
     return text[:width]
 
 
-def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
+def _write_words(canvas: Canvas, words: Sequence[Word]) -> None:
     """Write words where they cover no point, ring or orbit; trails show between them."""
-    for column, row, text, ink in words:
+    for column, row, text in words:
         below = canvas.inks_at(column, row, len(text))
         if any(EXACT <= each < FAINT for each in below):
             continue
         for at, character in enumerate(text, column):
             if character != " " or all(each < EXACT for each in canvas.inks_at(at, row)):
-                canvas.label(at, row, character, ink)
+                canvas.label(at, row, character, QUIET)
 
 
-def axes(viewport: Viewport) -> list[Word]:
-    """Return numbers along the left edge (rad/s) and the lower one (pi or rad)."""
-    columns = viewport.columns
-    bottom = viewport.rows - 1
-    low = viewport.omega_at(4.0 * bottom)
-    high = viewport.omega_at(0.0)
-    words: list[Word] = [
-        (0, math.floor(viewport.y(omega) / 4), f"{label} "[:columns], TEXT)
-        for omega, label in number_ticks(low, high, max(bottom // 2, 1))
-    ]
-    # pi may be at the very edge
-    left = viewport.theta_at(0.0)
-    right = viewport.theta_at(2.0 * columns + 1)
-    for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
-        middle = math.floor((theta - left) / viewport.theta_per_dot / 2)
-        begin = max(min(middle - len(label) // 2, columns - len(label)) - 1, 0)
-        text = f" {label} " if begin else f"{label} "  # with blanks between it and the curves
-        words.append((begin, bottom, text[: columns - begin], TEXT))
-    return words
+def framed(viewport: Viewport, field: Picture) -> list[Row]:
+    """Put axes around a picture of phase space."""
+    columns, rows = viewport[:2]
+    x_axis = Axis(*viewport.across, theta_ticks(*viewport.across, min(columns // 9 + 1, 8)))
+    labels = number_ticks(*viewport.up, max(rows // 2, 1))
+    y_axis = Axis(
+        *viewport.up, {at: text.rjust(LEFT - 1) for at, text in labels.items() if len(text) < LEFT}
+    )
+    return Frame(x_axis, y_axis, columns, rows).around(field.rows)
 
 
 def _names(viewport: Viewport, w0: float) -> list[Word]:
@@ -309,8 +297,8 @@ def _names(viewport: Viewport, w0: float) -> list[Word]:
         if theta == 0:
             column -= len(text) // 2 + 1
         room = viewport.columns - column
-        if column > 0 and len(text.rstrip()) <= room and 0 <= row < viewport.rows - 1:
-            words.append((column, row, text[:room], QUIET))
+        if column > 0 and len(text.rstrip()) <= room and 0 <= row < viewport.rows:
+            words.append((column, row, text[:room]))
     return words
 
 
@@ -340,8 +328,7 @@ GAP = 2  # dots between orbits of a section
 
 
 def starts(viewport: Viewport, count: int) -> Points:
-    across = viewport.theta_at(0.0), viewport.theta_at(2.0 * viewport.columns)
-    return spread(count, across, (viewport.omega_at(4.0 * viewport.rows), viewport.omega_at(0.0)))
+    return spread(count, viewport.across, viewport.up)
 
 
 class Section:
@@ -385,7 +372,6 @@ class Section:
         if crosshair is not None:
             draw_crosshair(canvas, viewport, crosshair)
         draw_points(canvas, viewport, [PhasePoint(*start, self._ink, self._method.letter)])
-        write_words(canvas, axes(viewport))
         return canvas.picture()
 
 

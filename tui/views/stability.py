@@ -30,7 +30,7 @@ from pendu_tui.engine.studies.stability import (
     is_lost,
     pieces,
 )
-from pendu_tui.tui.drawing.frame import number_ticks
+from pendu_tui.tui.drawing.frame import Axis, Frame, number_ticks
 from pendu_tui.tui.drawing.picture import (
     NOBODY,
     TEXT,
@@ -48,7 +48,7 @@ from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Chooser, StudyView
 
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
-MARGIN = 4  # for the labels of the amplitudes
+LEFT = 6  # columns of the axis and its labels
 SHADES = 16  # of lost swings, by when; and as many of held ones, by error
 
 Scores = NDArray[np.float64]
@@ -75,44 +75,33 @@ def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:
 
 
 def panel(
-    grid: Grid,
-    cells: Cells,
-    index: int,
-    columns: int,
-    rows: int,
+    frame: Frame,
+    values: Scores,
+    method: Method,
+    ink: int,
     palette: Palette,
     *,
+    title: str,
     here: tuple[float, float] | None = None,
-    w0: float | None = None,
-    note: str = "",
+    w0: float = 1.0,
 ) -> list[Row]:
-    """Draw one method's panel: its title, `rows` of the map, and the axis.
+    """Draw one method's panel: a title, the map of its scores (z, theta), and the axes.
 
-    `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
+    The frame's axes are h = z/w0 [s] and theta [rad]; `here` is a (z, theta) to mark.
     """
-    method = grid.methods[index]
-    width = columns - MARGIN
-    values = scores(cells[:, index], grid.steps)
-    lines = _blocks(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
-    signs = list(theory(method, grid, rows))
+    lines = _blocks(worst(values, frame.columns, 2 * frame.rows), ink, palette)
+    signs = list(theory(method, frame.rows))
     if here:
         signs.append((*here, HERE))
     for z, theta, sign in signs:
-        if place := _place(grid, z, theta, width, rows):
-            row, column = place
-            _, ink = lines[row][column]
-            lines[row][column] = sign, ink + Style(color=palette.text, reverse=sign == HERE)
-    degrees = _degrees(grid, width, rows)
-    map_rows = [
-        [(f"{degrees.get(row, ''):>3} ", NOBODY), *_joined(line)] for row, line in enumerate(lines)
-    ]
-    axis = " " * MARGIN + _axis(grid, width, w0)
-    name = f"{'':{MARGIN}}{mark(index, method)} "
-    title = f"{name}{method.label}: {note}".rstrip(": ")
-    if len(title) > columns:
-        title = name + note
-    head = (title[:columns].ljust(columns), Style(bold=True))
-    return [[head], *map_rows, [(axis, NOBODY)]]
+        if z / w0 <= frame.x_axis.high:
+            line = lines[frame.row(theta)]
+            column = frame.column(z / w0)
+            _, ink_below = line[column]
+            line[column] = sign, ink_below + Style(color=palette.text, reverse=sign == HERE)
+    width = frame.left + frame.columns
+    head = title[:width].ljust(width)
+    return [[(head, Style(bold=True))], *frame.around([*map(_joined, lines)])]
 
 
 def _blocks(values: Scores, ink: int, palette: Palette) -> list[list[tuple[str, Style]]]:
@@ -138,40 +127,18 @@ def _style(front: str, back: str) -> Style:
     return Style(color=front, bgcolor=back)
 
 
-def _joined(line: Sequence[tuple[str, Style]]) -> Iterator[Cell]:
-    for (text, ink), cells in groupby(line):
-        yield text * len(list(cells)), ink
+def _joined(line: Sequence[Cell]) -> Row:
+    return [(text * len(list(cells)), ink) for (text, ink), cells in groupby(line)]
 
 
-def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
-    degrees = {}
-    for each in range(0, 180, 45 if rows >= 5 else 90):
-        if place := _place(grid, grid.z[0], math.radians(each), width, rows):
-            degrees[place[0]] = each
-    return degrees
-
-
-def _axis(grid: Grid, width: int, w0: float | None) -> str:
-    symbol = "h"
-    if w0 is None:
-        symbol, w0 = "z", 1.0
-    line = ""
-    for value, text in number_ticks(grid.z[0] / w0, grid.z[-1] / w0, max(width // 6, 2)):
-        place = _place(grid, value * w0, float(grid.theta[0]), width, 1)
-        if place is not None and len(line) <= place[1] <= width - len(text) - 2:
-            line = line.ljust(place[1]) + text
-    return f"{line} {symbol}".ljust(width)
-
-
-def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
+def theory(method: Method, rows: int) -> Iterator[tuple[float, float, str]]:
     """Yield theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
 
     Greene's threshold belongs to the standard map: symplectic Euler, and velocity Verlet but for
     half a kick. Verlet's catching orbit jumps between q and -q, z² sin q = 4 q.
     """
-    count = len(grid.theta)
-    middles = (np.arange(rows)[::-1] + 0.5) / rows * count - 0.5
-    for theta in np.interp(middles, np.arange(count), grid.theta).tolist():
+    for row in range(rows):
+        theta = (row + 0.5) / rows * math.pi
         if method in (SYMPLECTIC_EULER, VELOCITY_VERLET):
             yield GREENE_Z, theta, THRESHOLD
         if method == VELOCITY_VERLET and theta < math.pi / 2:
@@ -197,87 +164,60 @@ def colour(score: float, ink: int, palette: Palette) -> str:
     return mixed(palette.colour(ink), palette.background, 0.6 * (2 - score))
 
 
-def legend(steps: int, palette: Palette, columns: int = 80) -> list[Row]:
+def legend(steps: int, palette: Palette) -> list[Row]:
     ink = ink_of(VELOCITY_VERLET, ())
     shades = [0.999 * part / 7 for part in range(8)]
     bright = [("▀", _style(*[colour(1 + each, ink, palette)] * 2)) for each in shades]
     dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
-    held: list[Cell] = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
-    lost: list[Cell] = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
-    lines: list[Cell] = [(f"{LIMIT} linear limit   {THRESHOLD} global chaos above   ", NOBODY)]
-    orbit: list[Cell] = [(f"{CATCHING} stable 2-cycle   y: amplitude [°]", NOBODY)]
-    if columns >= 80:
-        return [held + lost, lines + orbit]
-    return [held, lost, lines, orbit]
-
-
-def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
-    """Return the indices (z, theta) of the map's cell nearest to a character's middle."""
-    z = int((column + 0.5) / columns * len(grid.z))
-    theta = int((rows - row - 0.5) / rows * len(grid.theta))
-    return z, theta
-
-
-def _place(grid: Grid, z: float, theta: float, columns: int, rows: int) -> tuple[int, int] | None:
-    """Return (row, column) of the character over (z, theta); None outside the map."""
-    if not (grid.z[0] <= z <= grid.z[-1] and grid.theta[0] <= theta <= grid.theta[-1]):
-        return None
-    across = (np.interp(z, grid.z, np.arange(len(grid.z))) + 0.5) / len(grid.z)
-    up = (np.interp(theta, grid.theta, np.arange(len(grid.theta))) + 0.5) / len(grid.theta)
-    return min(rows - 1, int((1 - up) * rows)), min(columns - 1, int(across * columns))
+    held: list[Cell] = [("held: error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
+    lost: list[Cell] = [("lost: step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
+    signs = f"{LIMIT} linear limit   {THRESHOLD} global chaos above   {CATCHING} stable 2-cycle"
+    return [held + lost, [(signs, NOBODY)]]
 
 
 PASSES = (300, 10_000)
 """Steps of each swing: first a quick map, then the final one."""
 
 
+MAX_Z = 3.0
+
+
 def _grid(cast: Cast) -> Grid:
     theta = (np.arange(48) + 0.5) * math.pi / 48
-    return Grid(theta, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1], cast)
+    return Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
 
 
-def _outcome(cell: Any) -> str:
-    fate = FATES[cell["fate"]]
-    return fate.replace("holds, wobbling", "held, larger wobble").replace("holds", "held")
-
-
-def note(cell: Any) -> str:
+def outcome(cell: Any) -> str:
+    """Write "held, error 2e-2" or "over the top, step 41"."""
     if cell["fate"] == UNKNOWN:
-        return "…"
+        return "not computed yet"
+    fate = FATES[cell["fate"]].replace("holds", "held")
     if cell["fate"] == CHAOTIC:
-        return _outcome(cell)
+        return fate
     if is_lost(cell):
-        return f"{_outcome(cell)}, step {cell['steps'] + 1}"
-    return f"{_outcome(cell)}, {cell['error']:.0e}"
+        return f"{fate}, step {cell['steps'] + 1}"
+    return f"{fate}, error {cell['error']:.0e}".replace("e-0", "e-")
 
 
 def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: float) -> str:
     """Return the outcome of a method at a place, and the nearest h with another outcome."""
     z, theta = place
     row = cells[:, index, theta]
-    cell = row[z]
     degrees = math.degrees(grid.theta[theta])
-    where = f"{grid.methods[index].label} at h {grid.z[z] / w0:.3g} s, {degrees:.3g}°:"
-    if cell["fate"] == UNKNOWN:
-        return f"{where} not computed yet"
-    outcome = _outcome(cell)
-    here = "held"
-    there = "lost"
-    if is_lost(cell):
-        here, there = there, here
-        if cell["fate"] != CHAOTIC:
-            outcome = f"lost at step {cell['steps'] + 1}, {outcome}"
-    else:
-        outcome += f", energy error {cell['error']:.1e}"
+    where = f"{grid.methods[index].label} at h {grid.z[z] / w0:.3g} s, {degrees:.3g}°"
+    text = f"{where}: {outcome(row[z])}"
+    if row[z]["fate"] == UNKNOWN:
+        return text
+    words = "held", "lost"
+    here, there = words[:: -1 if is_lost(row[z]) else 1]
     known = row["fate"] != UNKNOWN
     other = np.flatnonzero(known & (np.isin(row["fate"], HELD) != (here == "held")))
-    if not len(other) and not known.all():
-        missing = {"lost": "loss", "held": "h that holds"}[there]
-        return f"{where} {outcome}; no {missing} found yet"
-    if not len(other):
-        return f"{where} {outcome}; {here} at every h on this map"
-    nearest = grid.z[other[np.abs(other - z).argmin()]]
-    return f"{where} {outcome}; {there} at h {nearest / w0:.3g} s"
+    if len(other):
+        nearest = grid.z[other[np.abs(other - z).argmin()]]
+        return f"{text}; {there} at h {nearest / w0:.3g} s"
+    if known.all():
+        return f"{text}; {here} at every h on this map"
+    return f"{text}; not {there} at any h so far"
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
@@ -344,10 +284,10 @@ class StabilityPane(Chooser[tuple[int, int]]):
             self._begin(self.cast)
             self.compute(pieces, self.grid, PASSES)
         self.write_titles(self._title)
-        columns, rows = self._panel_size
-        if columns <= 2 * MARGIN:
+        frame = self._frame
+        if frame.columns <= 0:
             return Picture()
-        panels = [self._panel(index, columns, rows) for index in self.places]
+        panels = [self._panel(index, frame) for index in self.places]
         words = ""
         if self.places and (aim := self.aim(self.index)):
             words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
@@ -355,36 +295,43 @@ class StabilityPane(Chooser[tuple[int, int]]):
         below = [*self.words(f"{self._state}{words}"), blank, blank][:2]
         return Picture([*side_by_side(panels, 2), *below, *self._legend])
 
-    def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
+    def _panel(self, index: int, frame: Frame) -> list[Row]:
         here = self.here(index)
         if self.cursor is not None:
             here = self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]
+        method = self.cast[index]
+        title = f"{mark(index, method)} "
         words = ""
         if aim := self.aim(index):
-            words = note(self.cells[aim[0], index, aim[1]])
+            words = outcome(self.cells[aim[0], index, aim[1]])
+        if len(title + method.label + words) + 2 <= frame.left + frame.columns:
+            title += f"{method.label}: "
         return panel(
-            self.grid,
-            self.cells,
-            index,
-            columns,
-            rows,
+            frame,
+            scores(self.cells[:, index], self.grid.steps),
+            method,
+            inks(self.cast)[index],
             palette(self.app.theme),
+            title=(title + words).rstrip(": "),
             here=here,
             w0=self.source.scene.w0,
-            note=words,
         )
 
     @property
-    def _panel_size(self) -> tuple[int, int]:
-        """Columns of a panel and rows of its map; two panels are side by side."""
+    def _frame(self) -> Frame:
+        """The axes of each panel; two panels are side by side."""
         lines = -(-len(self.places) // 2) or 1
-        rows = (self.room.height - 2 - len(self._legend)) // lines - 2
-        return (self.room.width - 2) // 2, max(1, rows)
+        rows = max((self.room.height - 2 - len(self._legend)) // lines - 2, 1)
+        columns = (self.room.width - 2) // 2 - LEFT
+        max_h = MAX_Z / self.source.scene.w0
+        x_axis = Axis(0.0, max_h, number_ticks(0.0, max_h, max(columns // 9, 2)))
+        step = 45 if rows >= 5 else 90
+        degrees = {math.radians(each): str(each) for each in range(0, 180, step)}
+        return Frame(x_axis, Axis(0.0, math.pi, degrees), columns, rows)
 
     @property
     def _legend(self) -> list[Row]:
-        # it may use the columns of the frame, too
-        lines = legend(self.grid.steps, palette(self.app.theme), self.room.width + 2)
+        lines = legend(self.grid.steps, palette(self.app.theme))
         return lines[: max(self.room.height // 7, 1)]
 
     def action_move(self, right: int, up: int) -> None:
@@ -401,17 +348,20 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.start_at(float(self.grid.theta[theta]), 0.0, h)
 
     def place_under(self, event: events.MouseEvent) -> tuple[int, int] | None:
-        columns, rows = self._panel_size
+        frame = self._frame
         x, y = event.get_content_offset_capture(self)
-        across, column = divmod(x, columns + 2)
-        down, row = divmod(y, rows + 2)
-        inside = across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows
-        number = 2 * down + across
-        is_mapped = inside and self.cast == self.grid.methods
+        across, right = divmod(x, frame.left + frame.columns + 2)
+        below, down = divmod(y, frame.rows + 2)
+        column = right - frame.left
+        row = down - 1
+        number = 2 * below + across
+        is_inside = across in (0, 1) and 0 <= column < frame.columns and 0 <= row < frame.rows
+        is_mapped = is_inside and self.cast == self.grid.methods
         if not is_mapped or number not in range(len(self.places)):
             return None
         self.described = self.cast[self.places[number]].key
-        return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)
+        z = int((column + 0.5) / frame.columns * len(self.grid.z))
+        return z, int((frame.rows - row - 0.5) / frame.rows * len(self.grid.theta))
 
 
 class StabilityView(StudyView):

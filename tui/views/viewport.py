@@ -15,6 +15,7 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene
 
+LEFT = 8  # columns of the axis and its labels, beside phase space
 STEP = 1.1
 """From one reach to the next: the drawing changes its scale at most 25 times in a run."""
 
@@ -157,6 +158,16 @@ class Viewport(NamedTuple):
         if self.wrap and abs(theta) > math.pi:
             return math.remainder(theta, math.tau)
         return theta
+
+    @property
+    def across(self) -> tuple[float, float]:
+        """The first and last angle [rad]; pi may be at the very edge."""
+        return self.theta_at(0.0), self.theta_at(2.0 * self.columns + 1)
+
+    @property
+    def up(self) -> tuple[float, float]:
+        """The lowest and highest angular velocity [rad/s]."""
+        return self.omega_at(4.0 * self.rows), self.omega_at(0.0)
 
     @property
     def theta_span(self) -> float:

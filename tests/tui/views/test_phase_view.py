@@ -9,6 +9,7 @@ from textual import events
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.views.phase import DOTS, AreaTable, PhasePane
+from pendu_tui.tui.views.viewport import LEFT
 from tests.tui.harness import lab, until
 
 DRIFT = SCENES["drift"]
@@ -41,7 +42,7 @@ async def test_a_click_in_the_lab_starts_all_there_with_the_step_in_force_and_u_
         await theatre.run(1)
         await theatre.press("plus")
         expected = shown(theatre).viewport.at_cell(40, 3)
-        await theatre.pilot.click(shown(theatre), offset=(41, 4))
+        await theatre.pilot.click(shown(theatre), offset=(41 + LEFT, 4))
         assert (*state(theatre), theatre.source.scene.h) == (*expected, 0.1)
         assert all((r.theta, r.omega) == tuple(expected) for r in theatre.source.sample.readings)
         await theatre.press("u")
@@ -52,10 +53,10 @@ async def test_the_pointer_is_described_with_its_orbit_and_letting_go_inside_sta
     async with phase_view() as (theatre, pane):
         plain = plot(pane)
         assert "exact period 2.13914 s" in pane.text
-        columns, rows = pane.room.width, pane.room.height - 1
-        await theatre.pilot.hover(pane, offset=(1 + columns // 2, 1 + rows // 2))
+        columns, rows = pane._cells
+        await theatre.pilot.hover(pane, offset=(1 + LEFT + columns // 2, 1 + rows // 2))
         assert "theta 0  omega 0  E/Es 0  libration" in pane.text
-        await theatre.pilot.hover(pane, offset=(1 + columns // 3, 1))
+        await theatre.pilot.hover(pane, offset=(1 + LEFT + columns // 3, 1))
         assert "  rotation" in pane.text.splitlines()[-1]
         assert plot(pane) != plain
         await theatre.pilot.mouse_down(pane, offset=(30, 8))
@@ -63,7 +64,7 @@ async def test_the_pointer_is_described_with_its_orbit_and_letting_go_inside_sta
         await theatre.pilot.mouse_up(offset=(0, 0))
         assert plot(pane) == plain
         assert theatre.source.scene == DRIFT
-        expected = pane.viewport.at_cell(33, 6)
+        expected = pane.viewport.at_cell(33 - LEFT, 6)
         x, y = pane.content_region.offset
         for kind, at in (
             (events.MouseDown, (x + 30, y + 8)),
@@ -96,14 +97,14 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
 async def test_the_wheel_zooms_around_the_pointer():
     async with phase_view() as (theatre, pane):
         before = pane.viewport
-        state = before.at_cell(30, 5)
+        state = before.at_cell(30 - LEFT, 5)
         what = dict.fromkeys(("button", "shift", "meta", "ctrl", "delta_x", "delta_y"), 0)
         x, y = pane.content_region.offset
         where = {"screen_x": x + 30, "screen_y": y + 5}
         pane.post_message(events.MouseScrollUp(pane, 31, 6, **what, **where))
         await theatre.pilot.pause()
         assert pane.viewport.theta_span < before.theta_span
-        after = pane.viewport.at_cell(30, 5)
+        after = pane.viewport.at_cell(30 - LEFT, 5)
         assert after.theta == pytest.approx(state.theta, abs=pane.viewport.theta_per_dot)
         assert after.omega == pytest.approx(state.omega, abs=pane.viewport.omega_per_dot)
         await theatre.press("escape")

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.studies import stability as fates
 from pendu_tui.engine.studies.stability import CELL, GROWS, HOLDS, LOSES, UNKNOWN, Grid
+from pendu_tui.tui.drawing.frame import Axis, Frame
 from pendu_tui.tui.drawing.picture import PALETTES, Picture
 from pendu_tui.tui.screens.lines import limit_warning
 from pendu_tui.tui.views import stability as drawing
@@ -31,39 +32,44 @@ def half_lost() -> np.ndarray:
 DARK = PALETTES["dark"]
 
 
+FRAME = Frame(Axis(0.0, 3.0, {1.0: "1", 2.0: "2"}), Axis(0.0, math.pi, {math.pi / 2: "90"}), 30, 6)
+
+
 def panel(cells, index, **options) -> str:
-    return Picture(drawing.panel(GRID, cells, index, 34, 6, DARK, **options)).text
+    values = drawing.scores(cells[:, index], STEPS)
+    method = USUAL_CAST[index]
+    rows = drawing.panel(FRAME, values, method, index, DARK, title=method.label, **options)
+    return Picture(rows).text
 
 
 def test_the_characters_alone_tell_held_from_lost_and_theory_is_where_it_belongs():
     assert panel(half_lost(), 3) == (
-        "    4 r RK4\n"
-        "    ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        "135 ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        "    ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        " 90 ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        " 45 ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        "    ▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
-        "              1         2 z"
+        "RK4\n"
+        "     │▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "     │▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "   90┤▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "     │▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "     │▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "     │▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀╱╱╱╱╱╱╱╱╱╱╱╱╱│╱\n"
+        "     └───────── 1 ─────── 2 ────────"
     )
-    verlet = panel(half_lost(), 2, here=(0.55, math.radians(75)), note="held").splitlines()
-    assert verlet[0] == "    3 v Velocity Verlet: held"
+    verlet = panel(half_lost(), 2, here=(0.55, math.radians(75))).splitlines()
     # Greene's z = 0.986, the linear limit 2, the catching orbit: z = 2.328 at 75 degrees
-    assert verlet[4] == " 90 ▀▀▀▀▀@▀▀▀┊▀▀▀▀▀╱╱╱╱╱│╱╱•╱╱╱╱╱╱"
-    assert verlet[5] == " 45 ▀▀▀▀▀▀▀▀▀┊▀▀▀▀▀╱╱╱╱╱│•╱╱╱╱╱╱╱╱"
+    assert verlet[4] == "     │▀▀▀▀▀@▀▀▀┊▀▀▀▀▀╱╱╱╱╱│╱╱•╱╱╱╱╱╱"
+    assert verlet[5] == "     │▀▀▀▀▀▀▀▀▀┊▀▀▀▀▀╱╱╱╱╱│•╱╱╱╱╱╱╱╱"
     blank = panel(GRID.unknown(), 0).splitlines()
-    assert all(line[4:].strip() == "" for line in blank[1:-1])
+    assert all(line[6:].strip() == "" for line in blank[1:-1])
 
 
 def test_where_one_of_two_pixels_is_lost_the_other_is_in_front():
     cells = half_lost()
     cells[15:, :, 0::2] = np.array((STEPS, 1e-6, HOLDS), CELL)  # the lower pixel of each row
-    assert panel(cells, 0).splitlines()[3][4:] == 15 * "▀" + 15 * "▄"
+    assert panel(cells, 0).splitlines()[3][6:] == 15 * "▀" + 15 * "▄"
 
 
 def test_theory_is_drawn_for_the_methods_that_it_is_about():
     limit, threshold, catching = drawing.LIMIT, drawing.THRESHOLD, drawing.CATCHING
-    signs = {m.key: {sign for _, _, sign in drawing.theory(m, GRID, 6)} for m in GENERAL}
+    signs = {m.key: {sign for _, _, sign in drawing.theory(m, 6)} for m in GENERAL}
     assert signs["velocity_verlet"] == {limit, threshold, catching}
     assert signs["symplectic_euler"] == {limit, threshold}
     assert signs["explicit_euler"] == set()
@@ -131,12 +137,12 @@ LOST = cells(*[(0, 2.0, fates.GROWS)] * 5)
 @pytest.mark.parametrize(
     ("outcomes", "z", "sentence"),
     [
-        (LADDER, 1, "0.5 s, 90°: held, energy error 2.0e-02; lost at h 1 s"),
-        (LADDER, 3, "1 s, 90°: lost at step 41, over the top; held at h 0.75 s"),
-        (LADDER, 4, "1.25 s, 90°: lost at step 4, grows; held at h 0.75 s"),
-        (HELD, 0, "0.25 s, 90°: held, energy error 1.0e-03; held at every h on this map"),
-        (LOST, 0, "0.25 s, 90°: lost at step 1, grows; lost at every h on this map"),
-        (BEGUN, 0, "0.25 s, 90°: held, energy error 1.0e-03; no loss found yet"),
+        (LADDER, 1, "0.5 s, 90°: held, error 2e-2; lost at h 1 s"),
+        (LADDER, 3, "1 s, 90°: over the top, step 41; held at h 0.75 s"),
+        (LADDER, 4, "1.25 s, 90°: grows, step 4; held at h 0.75 s"),
+        (HELD, 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
+        (LOST, 0, "0.25 s, 90°: grows, step 1; lost at every h on this map"),
+        (BEGUN, 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),
         (LADDER_GRID.unknown(), 0, "0.25 s, 90°: not computed yet"),
     ],
 )
