@@ -135,22 +135,8 @@ def time_chart(
     if width < MIN_COLUMNS or height < MIN_ROWS:
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     runs = _runs(window, cast, shown, ghost)
-    levels = _levels(shown)
-    rows = height - 1
-    label_width = 5  # enough for decades
-    if not shown.log:
-        y_axis = _linear_y_axis(runs, levels, rows)
-        label_width = y_axis.label_width
-    columns = columns_beside(label_width, width)
-    x_axis = _time_axis(window, shown, columns, shown.has_log_time)
-    edges, times = _moments(x_axis, columns, shown.has_log_time)
-    sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
-    if shown.log:
-        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
-    plot = _Plot(x_axis, y_axis, columns, rows)
-    if shown.log:
-        plot.limit = min(math.log10(LARGEST), y_axis.high)
-    plot.draw_marks(changes, levels, shown.has_log_time)
+    plot, times, sides = _plot(runs, window, shown, width, height - 1)
+    plot.draw_marks(changes)
     for run, (low, high) in zip(runs, sides, strict=True):
         plot.draw_curves(run, low, high)
     low, high = sides[0]
@@ -165,9 +151,32 @@ def time_chart(
         left=plot.left,
         times=times.tolist(),
         values=values,
-        ends=(x_axis.low, x_axis.high),
-        log_time=shown.has_log_time,
+        ends=(plot.x_axis.low, plot.x_axis.high),
+        log_time=plot.log_time,
     )
+
+
+def _plot(
+    runs: "list[_Run]", window: Window, shown: Shown, width: int, rows: int
+) -> "tuple[_Plot, Floats, list[tuple[Floats, Floats]]]":
+    """Return the axes, the time [s] of each column, and each run's values in the columns."""
+    levels = _levels(shown)
+    label_width = 5  # enough for decades
+    if not shown.log:
+        y_axis = _linear_y_axis(runs, levels, rows)
+        label_width = y_axis.label_width
+    columns = columns_beside(label_width, width)
+    x_axis = _time_axis(window, shown, columns, shown.has_log_time)
+    edges, times = _moments(x_axis, columns, shown.has_log_time)
+    sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
+    if shown.log:
+        y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
+    plot = _Plot(x_axis, y_axis, columns, rows)
+    plot.levels = levels
+    plot.log_time = shown.has_log_time
+    if shown.log:
+        plot.limit = min(math.log10(LARGEST), y_axis.high)
+    return plot, times, sides
 
 
 def _runs(
@@ -192,20 +201,20 @@ class _Plot(LineChart):
     """The axes of a chart over time, whose values are logarithms if `limit` is one."""
 
     limit = LARGEST
+    levels: dict[str, float]
+    log_time = False
 
-    def draw_marks(
-        self, changes: Sequence[tuple[float, str]], levels: dict[str, float], log_time: bool
-    ) -> None:
+    def draw_marks(self, changes: Sequence[tuple[float, str]]) -> None:
         """Draw the changes of the step and the levels."""
         canvas = self.canvas
         for x, text in changes:
-            value = math.log10(max(x, FLOOR)) if log_time else x
+            value = math.log10(max(x, FLOOR)) if self.log_time else x
             if self.x_axis.low < value < self.x_axis.high:
                 at = 2 * self.columns * self.x_axis.share(value)
                 canvas.line(at, 0, at, canvas.height, FRAME, dotted=True)
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
                 canvas.label(begin, self.rows - 1, text, QUIET)
-        for text, level in levels.items():
+        for text, level in self.levels.items():
             down = canvas.height * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
             canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
             row = min(max(int(down) // 4 - 1, 0), self.rows - 1)

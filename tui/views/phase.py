@@ -102,8 +102,8 @@ class PhasePane(Chooser[State]):
         portrait = Portrait.of(self.viewport, source.scene.equations)
         points = method_points(source, sample, self.shown, self.ring)
         plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
-        below = caption(source, self.aim, self.room.width)
-        return Picture([*framed(portrait.viewport, plot), below])
+        words = caption(source, self.aim, self.room.width)
+        return Picture([*framed(portrait.viewport, plot), words])
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         scene = source.scene
