@@ -255,11 +255,8 @@ class LabScreen(SizedScreen[None]):
 
     def action_mark(self) -> None:
         assert isinstance(self.source, Live)
-        text = f"Mark at {self.source.sample.t:.2f} s"
-        if self.source.is_marked:
-            text = "Already marked"
         self.source.mark()
-        self.notify(text, timeout=4)
+        self.notify(f"Mark at {self.source.sample.t:.2f} s", timeout=4)
         self.show_now()
 
     # Changes of the run

@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from traceback import walk_tb
 
 from textual.widget import Widget
 
@@ -17,7 +16,7 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
 from pendu_tui.recordings.system import environment
-from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
 from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.lesson import Lesson
@@ -89,24 +88,10 @@ def show(screen: LabScreen, options: argparse.Namespace) -> int:
         app.finish()
     codes = [say_goodbye(source) for source in screen.sources]
     if isinstance(result, BaseException):
-        raise _sentence(result)
+        raise getattr(result, "error", result)  # of a worker
     if result is not None:
         return result
     return max([app.return_code or Exit.FINE, *codes])
-
-
-def _sentence(error: BaseException) -> UserError:
-    """Return the error as a sentence, which names the place of a bug."""
-    error = getattr(error, "error", error)  # of a worker
-    try:
-        return explained(error)
-    except BaseException:
-        code, line = [(frame.f_code, line) for frame, line in walk_tb(error.__traceback__)][-1]
-        return UserError(
-            f"an error in this program ended the lab: {type(error).__name__}: {error} "
-            f"({Path(code.co_filename).name}:{line}); please report it.",
-            Exit.CHECK_FAILED,
-        )
 
 
 def open_lab(live: Live, options: argparse.Namespace, lesson: Lesson | None = None) -> int:
