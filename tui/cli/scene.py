@@ -5,7 +5,6 @@ under [[scene]] are the pages of a lesson; the tour is one.
 """
 
 import argparse
-import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -299,6 +298,8 @@ def _lines(table: Mapping[str, Any]) -> list[str]:
 
 def _toml(name: str, value: Any) -> str:
     """Return a value as TOML, which is JSON but for tables."""
+    import json  # a lab starts without it
+
     if isinstance(value, Line):
         return f"{{{', '.join(_lines(asdict(value)))}}}"
     if name == "theta" and abs(value) > math.tau:
