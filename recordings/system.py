@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
@@ -129,11 +129,11 @@ def stop() -> None:
         os.kill(os.getpid(), signal.SIGSTOP)
 
 
-def when_continued(handler: Callable[..., object]) -> None:
-    """Call a handler after each stop, which signals cause as usual."""
+def stop_as_usual() -> None:
+    """Let signals stop and continue this process, without handlers."""
     if sys.platform != "win32":
         signal.signal(signal.SIGTSTP, signal.SIG_DFL)
-        signal.signal(signal.SIGCONT, handler)
+        signal.signal(signal.SIGCONT, signal.SIG_DFL)
 
 
 def is_stopped(process: int) -> bool:

@@ -4,7 +4,6 @@ import asyncio
 import os
 import re
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,7 +15,7 @@ from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
 from pendu_tui.recordings.files import printable
-from pendu_tui.recordings.system import CAN_STOP, is_gone, stop, when_continued
+from pendu_tui.recordings.system import CAN_STOP, is_gone, stop, stop_as_usual
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.watchdog import watchdog
 from pendu_tui.tui.drawing.picture import PALETTES, Palette
@@ -59,7 +58,6 @@ class PenduApp(App[Exit | BaseException]):
         self.lab = screen
         self._last_notice = ""
         self._watchdog = watchdog()
-        self._was_stopped = False
 
     def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
         """Return the screen as an SVG picture for any viewer."""
@@ -69,7 +67,7 @@ class PenduApp(App[Exit | BaseException]):
         return self.lab
 
     def on_mount(self) -> None:
-        """Handle signals from now on, and repaint after a stop.
+        """Handle signals from now on, and repaint after Ctrl+Z.
 
         Textual's own handlers would run in the middle of whatever Python does.  If that is a write
         to the terminal, their own write would wait for it for ever.
@@ -77,16 +75,8 @@ class PenduApp(App[Exit | BaseException]):
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         if self.is_headless:
             return
-        loop = asyncio.get_running_loop()
-        self._watchdog.guard(loop, self.action_interrupt, self.finish)
-
-        def continued(*_: object) -> None:
-            self._was_stopped = True
-            with suppress(RuntimeError):  # the loop is closed: the program is ending
-                loop.call_soon_threadsafe(self._take_terminal)
-
-        if not self.is_web:
-            when_continued(continued)
+        self._watchdog.guard(asyncio.get_running_loop(), self.action_interrupt, self.finish)
+        stop_as_usual()
 
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it."""
@@ -123,14 +113,6 @@ class PenduApp(App[Exit | BaseException]):
         if CAN_STOP and not self.is_web:
             with self.suspend():
                 stop()
-            self._was_stopped = False
-
-    def _take_terminal(self) -> None:
-        """Take it back after a stop without notice, when a shell may have used it."""
-        if self._was_stopped:
-            with self.suspend():
-                pass
-            self._was_stopped = False
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name

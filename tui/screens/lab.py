@@ -359,11 +359,7 @@ class LabScreen(SizedScreen[None]):
 
     async def action_start_scene(self, name: str) -> None:
         names = [page.name for page in self.lesson.pages]
-        if name in names:
-            await self._turn_to(names.index(name))
-        elif await self.start(scene := SCENES[name]):
-            self.source.set_speed(scene.speed)
-            self._show_shot(scene)
+        await self._turn_to(names.index(name))
 
     async def _turn_to(self, index: int) -> bool:
         """Begin a page; return whether that was possible."""
@@ -452,8 +448,7 @@ class LabScreen(SizedScreen[None]):
     def action_find(self, typed: str = "") -> None:
         from pendu_tui.tui.screens.dialogs import Finder, entries
 
-        pages = {page.name: page for page in self.lesson.pages}
-        found = entries({**SCENES, **pages}.values(), self.active_bindings.values())
+        found = entries(self.lesson.pages, self.active_bindings.values())
         self._ask(Finder(found, typed), self.run_action)
 
     def action_start_values(self) -> None:
