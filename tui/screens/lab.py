@@ -100,9 +100,6 @@ class LabScreen(SizedScreen[None]):
         self.view = source.scene.shot.view
         self._view_in_front = create(self.view, source, shown)
         self._lines: tuple[Pane, ...] = (StatusLine(), SeekBar(), LessonPanel(), InsightLine())
-        for line in self._lines:
-            line.source = source
-            line.sample = source.sample
         self.scenes = Lesson("Scene", SCENES.values())
         self.scenes.look_up(source.scene.name)
         self._before_lesson: tuple[State, str]
@@ -130,6 +127,7 @@ class LabScreen(SizedScreen[None]):
             view.enter(source)
         for line in self._lines:
             line.source = source
+            line.sample = source.sample
 
     def watch_shown(self) -> None:
         if self.is_mounted:  # commands set it earlier

@@ -16,7 +16,7 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
 from pendu_tui.recordings.system import environment
-from pendu_tui.tui.cli.errors import Exit, UserError, warn
+from pendu_tui.tui.cli.errors import Exit, warn
 from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.lesson import Lesson

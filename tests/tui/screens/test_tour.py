@@ -80,9 +80,9 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
 
 async def test_while_a_page_runs_the_other_keys_keep_their_meaning():
     async with lab() as theatre:
-        await theatre.press("T", "space", "1", "2", "4")
+        await theatre.press("T", "space", "1", "2", "3")
         assert theatre.source.playhead.paused
-        assert theatre.stage.shown.hidden == {"rk4"}
+        assert theatre.stage.shown.hidden == {"velocity_verlet"}
         await theatre.press("space", "f3", "question_mark", "escape", "plus")
         await theatre.pilot.pause()
         assert not theatre.source.playhead.paused
