@@ -115,7 +115,6 @@ RK4_LEARNED_FIELD = _by_rk4(
     other_names=("learned vector field",),
     formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
-    used=None,
     note="It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from "
     "1.5, ninefold from 0.2.",
 )
@@ -190,7 +189,6 @@ LEARNED_MAP = _learned(
     force_evaluations=1,
     other_names=("plain learned map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
-    used=None,
     note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy is off by 35 % from 1 "
     "rad, 61 % from 1.5, ninefold from 0.2.",
 )
@@ -208,7 +206,6 @@ LEARNED_SYMPLECTIC_MAP = _learned(
     symplectic=True,
     other_names=("learned symplectic map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
-    used=None,
     note="It keeps area, so it conserves an energy of its own: within 100 s at w0 h = 0.1 the true "
     "one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2.",
 )

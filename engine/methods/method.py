@@ -80,7 +80,7 @@ class Method:
     linear_limit: float | None = None
     other_names: tuple[str, ...] = ()
     reference: str
-    used: str | None  # a program that uses it, with its page in brackets; None if we know of none
+    used: str | None = None  # a program that uses it, with its page in brackets
     note: str = ""  # also tested
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
     takes: Offer = "force"  # what `phases` takes of a model

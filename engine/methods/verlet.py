@@ -210,7 +210,6 @@ VERLET_COMPENSATED = _verlet(
     letter="k",
     numbers="each sum keeps what it rounds off for the next",
     keeps_area=True,
-    used=None,
     note="Each sum takes three more additions.",
 )
 
@@ -220,20 +219,20 @@ PRECISION = (VERLET_FLOAT32, VERLET_COMPENSATED)
 TOLERANCE = 0.1  # rad and rad/s, of a step
 
 
-def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
-    """Return the method with step doubling: h is halved where a step and two halves differ.
+def halving(richardson: bool) -> Phases:
+    """Return velocity Verlet with step doubling: h is halved where a step and two halves differ.
 
-    The result is that of the two halves, or with `richardson` their extrapolation, of order 4 for a
-    method of order 2.  Each step begins with h again.  The difference is hypot(theta, omega), in
-    rad and rad/s.
+    The result is that of the two halves, or with `richardson` their extrapolation, of order 4.
+    Each step begins with h again.  The difference is hypot(theta, omega), in rad and rad/s.
     """
 
     def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
-        whole = next(phases(force, phase, h))
-        halves = next(phases(force, next(phases(force, phase, h / 2)), h / 2))
+        whole = next(velocity_verlet(force, phase, h))
+        middle = next(velocity_verlet(force, phase, h / 2))
+        halves = next(velocity_verlet(force, middle, h / 2))
         theta = halves[0] - whole[0]
         omega = halves[1] - whole[1]
-        if halvings and math.hypot(theta, omega) > tolerance:
+        if halvings and math.hypot(theta, omega) > TOLERANCE:
             return step(force, step(force, phase, h / 2, halvings - 1), h / 2, halvings - 1)
         if richardson:
             return halves[0] + theta / 3, halves[1] + omega / 3
@@ -251,7 +250,7 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
 def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
     return Method(
         **fields,
-        phases=halving(velocity_verlet, TOLERANCE, richardson),
+        phases=halving(richardson),
         formula="a step of velocity Verlet, and two halves: if they differ by more than "
         f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",

@@ -69,12 +69,8 @@ class EnergyReference(NamedTuple):
     true: Callable[[float], float] | None = None  # energy [s⁻²] at a time [s], if not conserved
     least: float = 1e-300  # s⁻²; energies below are mostly rounding, and are replaced by it
 
-    def error(self, energy: float, t: float = 0.0) -> float:
-        """Return (E - E0)/E0, or where energy is not conserved ln(E/E_true) at a time [s]."""
-        return self.errors(t, energy)[0]
-
     def errors(self, t: float, *energies: float) -> list[float]:
-        """Return the error of each energy at a time [s]."""
+        """Return (E - E0)/E0, or where it is not conserved ln(E/E_true), for energies at a time [s]."""
         if self.true is None:
             return [(energy - self.start) / self.scale for energy in energies]
         true = self._log(self.true(t))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.tangent import Stretching
 from pendu_tui.engine.models.model import Model, Phase
+from pendu_tui.engine.run.levels import CHAOTIC_SEPARATION
 from pendu_tui.engine.run.loops import OVERFLOW
 
 Floats = NDArray[np.float64]
@@ -96,7 +97,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     slack = 0.0
     if model.turns:
         slack = max(-math.log(max(abs(model.level(*start)), 1e-16)), 0.0)
-    separated = neighbours.log > least_lyapunov(steps) * max(steps, 1) + slack
+    separated = neighbours.log > CHAOTIC_SEPARATION + math.log(max(steps, 1)) + slack
     chaotic = method.symplectic and separated  # neighbours on spirals separate, too
     rotation = None
     fraction = None
@@ -106,7 +107,8 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     if rotation is not None:
         fraction = nearest_fraction(abs(rotation))
         island = _is_island(points, model.w0, rotation, fraction, spins)
-    error = model.reference(*start).error(model.energy()((float(theta[-1]), float(omega[-1]))))
+    energy = model.energy()((float(theta[-1]), float(omega[-1])))
+    (drift,) = model.reference(*start).errors(0.0, energy)
     return OrbitKind(
         steps=steps,
         moves=moves,
@@ -116,16 +118,8 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
         island=island,
         lyapunov=neighbours.log / max(neighbours.steps, 1),
         chaotic=chaotic,
-        drift=error,
+        drift=drift,
     )
-
-
-def least_lyapunov(steps: int) -> float:
-    """Return the largest Lyapunov number [1/step] of a regular orbit after so many steps.
-
-    It does not hold for starts near the upright position.
-    """
-    return (15 + math.log(max(steps, 1))) / max(steps, 1)
 
 
 def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False) -> float | None:

@@ -140,15 +140,10 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     if method.symplectic and len(index):
         wobbling = index[(watched.width > 1.1 * reach[index]) | (z[index] > method.linear_limit)]
         if len(wobbling):
-            cells["fate"][wobbling] = _unsteady(method, theta[wobbling], z[wobbling], steps)
+            steady = np.where(z[wobbling] > method.linear_limit, ELSEWHERE, WOBBLES)
+            chaotic = is_chaotic(method, theta[wobbling], z[wobbling], min(steps, 2000))
+            cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, steady)
     return cells
-
-
-def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
-    """Return the fates of held swings that are too wide or beyond the linear limit."""
-    chaotic = is_chaotic(method, theta, z, min(steps, 2000))
-    steady = np.where(z > method.linear_limit, ELSEWHERE, WOBBLES)
-    return np.where(chaotic, CHAOTIC, steady)
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,10 +336,9 @@ def amplitude(scene: Scene) -> float | None:
     if scene.omega == 0 and 0 < abs(scene.theta) < math.pi:
         return abs(scene.theta)
     share = scene.equations.energy()((scene.theta, scene.omega)) / (2 * scene.w0_squared)
-    if share >= 1:
+    if not 0 < share < 1:
         return None
-    angle = 2 * math.asin(math.sqrt(share))
-    return angle if 0 < angle < math.pi else None
+    return 2 * math.asin(math.sqrt(share))
 
 
 def ladder_of(

@@ -62,7 +62,7 @@ def _steps(model: Model, theta: float, omega: float) -> tuple[list[float], list[
         angle *= STEP
     energy = model.energy()
     reference = model.reference(theta, omega)
-    return angles, [reference.error(energy(model.rest_phase(angle))) for angle in angles]
+    return angles, reference.errors(0.0, *(energy(model.rest_phase(angle)) for angle in angles))
 
 
 @lru_cache(maxsize=8)
