@@ -234,11 +234,13 @@ def measure(step: "Phases") -> "Measured":
     `step(force, phase, h)` is a generator function that yields the phase (q, p) after one step of
     h, after two, and so on; q'' = force(q).
     """
-    from pendu_tui.engine.methods.measure import measured_function
-    from pendu_tui.engine.methods.own import OwnMethodError
+    from pendu_tui.engine.methods.measure import examined
+    from pendu_tui.engine.methods.own import OwnMethodError, guarded
 
+    name = getattr(step, "__name__", "step")
+    file = getattr(getattr(step, "__code__", None), "co_filename", name)
     try:
-        return measured_function(step)
+        return examined(guarded(step, file), name)
     except OwnMethodError as error:
         raise InputError(str(error)) from None
 

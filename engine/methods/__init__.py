@@ -11,7 +11,6 @@ import copyreg
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
-from itertools import groupby
 
 from pendu_tui.engine.inputs import InputError, nearest
 from pendu_tui.engine.methods import implicit, learned, parts, runge_kutta, splitting, verlet
@@ -66,9 +65,7 @@ def named(name: str, methods: Sequence[Method] = METHODS, model: str | None = No
     suited = [method for method in methods if model is None or model in method.models]
     known = {simplified(each): method.key for method in suited for each in method.names}
     near = nearest(simplified(name), known)
-    families = groupby([method.key for method in suited], family_of)
-    listed = [f"{family}: {', '.join(keys)}" for family, keys in families]
-    advice = f": choose from {'; '.join(listed)}."
+    advice = f"; choose from {', '.join(method.key for method in suited)}."
     if near:
         advice = f": did you mean {known[near]}?"
     raise InputError(f"there is no method {name!r}{advice}")

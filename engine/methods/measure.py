@@ -15,7 +15,7 @@ from typing import Any, cast
 import numpy as np
 
 from pendu_tui.engine.methods.method import SMALL_ERROR, Measured, Phases
-from pendu_tui.engine.methods.own import OwnMethodError, guarded, on_force, own_function
+from pendu_tui.engine.methods.own import OwnMethodError, on_force
 from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models.model import Force, Phase
 from pendu_tui.engine.models.pendulum import Pendulum
@@ -150,19 +150,8 @@ def is_stable(phases: Phases, z: Any) -> Any:
     return (area <= 1 + LINEAR_ROUNDING) & (abs(a + d) <= 1 + area + LINEAR_ROUNDING)
 
 
-def measured_text(source: str, key: str, file: str) -> Measured:
-    """Examine and measure the function `key` of a text.  Raises OwnMethodError."""
-    return _examined(own_function(source, key, file), f"{file}: {key}")
-
-
-def measured_function(function: Phases) -> Measured:
-    """Examine and measure a generator function (force, phase, h).  Raises OwnMethodError."""
-    name = getattr(function, "__name__", "step")
-    file = getattr(getattr(function, "__code__", None), "co_filename", name)
-    return _examined(guarded(function, file), name)
-
-
-def _examined(function: Phases, who: str) -> Measured:
+def examined(function: Phases, who: str) -> Measured:
+    """Examine and measure a guarded function, called `who` in errors.  Raises OwnMethodError."""
     phases = on_force(function)
     try:
         _examine(phases, who)
@@ -176,14 +165,10 @@ def _examine(phases: Phases, who: str) -> None:
     path = _path(phases, START)
     if not np.isfinite(path).all():
         raise OwnMethodError(f"{who} does not stay finite for {STEPS} steps of an ordinary swing.")
-    if _path(phases, START) != path:
-        raise OwnMethodError(
-            f"{who} gives other numbers when it is run again; a method must give the same bits."
-        )
     if _path(phases, path[CUT - 1])[STEPS - CUT - 1] != path[-1]:
         raise OwnMethodError(
-            f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from "
-            f"{CUT} and {STEPS - CUT}; a run is cut anywhere, so start from theta and omega alone."
+            f"{who} gives other numbers when it begins again after {CUT} of {STEPS} steps; a run "
+            "is cut anywhere, so a step must follow from theta and omega alone."
         )
     if not evaluations(phases)[0] > 0:
         raise OwnMethodError(f"{who} never evaluates the force.")

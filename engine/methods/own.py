@@ -8,7 +8,6 @@ import math
 import reprlib
 import sys
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, wraps
 from inspect import CO_GENERATOR, unwrap
@@ -104,7 +103,6 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         reversible=measured.reversible,
         linear_limit=measured.linear_limit,
         reference=f"{file}:{key}",
-        used=None,
         measured=measured,
         source=source,
         file=file,
@@ -166,9 +164,7 @@ def guarded(function: Phases, file: str) -> Phases:
 
     `file` is the name that it is compiled with.  Raises OwnMethodError.
     """
-    inner: Any = None
-    with suppress(ValueError):  # functions that wrap each other in a circle
-        inner = unwrap(function)
+    inner = unwrap(function)
     name = getattr(inner, "__name__", "it")
     code = getattr(inner, "__code__", None)
     if code is None or not code.co_flags & CO_GENERATOR:

@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, TAYLOR_20, Cast, Method, all_named
 from pendu_tui.engine.methods.method import Measured
-from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethod, OwnMethodError, own_method
+from pendu_tui.engine.methods.own import (
+    MAX_SOURCE,
+    OwnMethod,
+    OwnMethodError,
+    own_function,
+    own_method,
+)
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.options import given_by
@@ -113,7 +119,7 @@ def _tried(source: str, key: str, file: str) -> Measured:
 
 def _try(results: "Connection", source: str, key: str, file: str) -> None:
     """Send None, and then the properties or an OwnMethodError."""
-    from pendu_tui.engine.methods.measure import measured_text  # NumPy
+    from pendu_tui.engine.methods.measure import examined  # NumPy
     from pendu_tui.tui.cli.watchdog import watchdog
 
     def tell(sentence: str) -> None:
@@ -124,6 +130,6 @@ def _try(results: "Connection", source: str, key: str, file: str) -> None:
     results.send(None)
     with suppress(KeyboardInterrupt):  # only a user's code raises it
         try:
-            results.send(measured_text(source, key, file))
+            results.send(examined(own_function(source, key, file), f"{file}: {key}"))
         except OwnMethodError as error:
             results.send(error)
