@@ -140,24 +140,18 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: judge([0, 1, 2], [1, 1]), "3 times and 2 energies"),
         (lambda: judge(TIMES[::-1], WAVE), r"times\[1\] is not later"),
         (lambda: judge(TIMES, [math.nan, *WAVE[1:]]), r"energies\[0\] is nan"),
-        (lambda: judge([TIMES], [WAVE]), "times must be a list of numbers"),
-        (lambda: judge([], []), "times must be a list of numbers"),
-        (lambda: judge("t", "E"), "a list of numbers"),
+        *((lambda t=t: judge(t, t), "times must be a list of numbers") for t in ([TIMES], [], "t")),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="last"), "'last' is not a finite number"),
         (lambda: judge(TIMES, WAVE, scale=math.nan), "not a finite number"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
         (lambda: simulate("swing", time=1), "no scene 'swing': did you mean"),
-        (lambda: simulate(time=1, methods="eul"), "explicit_euler or symplectic_euler"),
-        (lambda: simulate(time=1, methods=[]), "name one"),
         (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'"),
-        (lambda: simulate(time=1, methods="respa"), "not for the model pendulum"),
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
         (lambda: simulate(time=1e8), "use every="),
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
-        (lambda: simulate(time=1, friction=0.1), "no friction"),
         (lambda: simulate(time=1, tetha=2.0), "no number 'tetha': did you mean theta"),
         (lambda: recommend(1e-20, time=1, methods="rk4"), "1e-20 over 1 s; RK4: rounding"),
         (lambda: recommend(10), "a target of 10 is as large as the swing; use less than 1"),
@@ -165,7 +159,6 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: recommend(1e-3, time=0), "time = 0 is not above zero"),
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
-        (lambda: limits("stiff-limit"), "not for the model spring"),
         (lambda: limits(steps=0), "steps = 0"),
     ],
 )
@@ -196,32 +189,15 @@ def gravity(q):
     return -q / np.hypot(*q) ** 3
 
 
-def chain(q):
-    return np.diff(q, 2, prepend=0.0, append=0.0)
-
-
-MODE = np.sin(np.pi * 700 * np.arange(1, 1001) / 1001)
-MODE_FREQUENCY = 2 * math.sin(math.pi * 700 / 2002)
-AFTER_10_S = (
-    math.cos(10 * MODE_FREQUENCY) * MODE,
-    -MODE_FREQUENCY * math.sin(10 * MODE_FREQUENCY) * MODE,
-)
 TURN = ([0.8, 0.0], [0.0, 1.5**0.5])  # of an orbit of eccentricity 0.2
 
 
 @pytest.mark.parametrize("key", GENERAL)
-@pytest.mark.parametrize(
-    ("force", "start", "time", "steps", "expected"),
-    [(gravity, TURN, math.tau, 1000, TURN), (chain, (MODE, 0 * MODE), 10.0, 400, AFTER_10_S)],
-    ids=["an orbit", "a chain of 1 000 oscillators"],
-)
-def test_any_force_on_arrays_is_integrated_with_the_order_of_the_method(
-    force, start, time, steps, expected, key
-):
+def test_any_force_on_arrays_is_integrated_with_the_order_of_the_method(key):
     method, errors = METHODS[key], []
-    for n in (steps, 2 * steps):
-        phase = tuple(map(np.array, start))
-        end = next(islice(method.phases(force, phase, time / n), n - 1, None))
-        errors.append(np.abs(np.subtract(end, expected)).max())
-        assert np.array_equal(phase, start)
+    for n in (1000, 2000):
+        phase = tuple(map(np.array, TURN))
+        end = next(islice(method.phases(gravity, phase, math.tau / n), n - 1, None))
+        errors.append(np.abs(np.subtract(end, TURN)).max())
+        assert np.array_equal(phase, TURN)
     assert errors[1] < 2e-9 or math.log2(errors[0] / errors[1]) > method.order - 0.3

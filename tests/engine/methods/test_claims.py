@@ -187,28 +187,6 @@ def test_area_changes_as_the_docstrings_say():
 
 
 @each_method
-def test_the_jacobian_agrees_with_central_differences(method):
-    theta, omega, h, d = 0.7, -1.3, 0.05, 1e-5
-    exact = jacobian(method.on(PENDULUM, cmath.sin), (theta, omega), h)
-    right, left = (method.step(FORCE, (theta + s * d, omega), h) for s in (1, -1))
-    up, down = (method.step(FORCE, (theta, omega + s * d), h) for s in (1, -1))
-    columns = np.subtract([right, up], [left, down]) / (2 * d)
-    # d² and rounding over d, both about 1e-10
-    assert list(exact) == pytest.approx(columns.T.ravel().tolist(), abs=1e-9)
-
-
-@each_method
-@given(theta=st.floats(-3, 3), omega=st.floats(-6, 6))
-def test_a_negative_step_undoes_a_step_where_reversible(method, theta, omega):
-    """The lab reverses time by h -> -h; all methods keep the symmetry omega, h -> -omega, -h."""
-    back = method.step(FORCE, method.step(FORCE, (theta, omega), 0.05), -0.05)
-    if method.reversible:
-        assert back == pytest.approx((theta, omega), abs=1e-14)  # rounding of one step
-    turned = method.step(FORCE, (theta, -omega), 0.05)
-    assert method.step(FORCE, (theta, omega), -0.05) == (turned[0], -turned[1])
-
-
-@each_method
 @pytest.mark.parametrize(
     ("kind", "sin"), [(lambda x: np.full(3, x), np.sin), (complex, cmath.sin), (mp.mpf, mp.sin)]
 )

@@ -51,7 +51,7 @@ def test_however_a_section_is_cut_its_bits_are_the_same():
 def test_small_swings_and_any_of_the_oscillator_turn_by_twice_the_arcsine_of_half_z(z):
     expected, model = 2 * math.asin(z / 2) / math.tau, LinearOscillator(1.0)
     assert kind(SYMPLECTIC, 1e-4, z).rotation == pytest.approx(expected, abs=1e-7)
-    found = kind_of(VERLET, model, z, orbit(VERLET, model, z, (2.0, 0.1), 3000))
+    found = kind_of(VERLET, model, z, orbit(VERLET, model, z, (10.0, 0.1), 3000))
     assert (found.spins, found.rotation) == (False, pytest.approx(expected, abs=1e-7))
 
 
@@ -146,13 +146,6 @@ def test_a_rotation_that_changes_by_more_than_a_ten_thousandth_is_none(change, i
     assert (found is not None) == is_known
     if is_known:
         assert found == pytest.approx(0.13, rel=change)
-
-
-def test_an_oscillator_has_its_rotation_at_any_width():
-    model = LinearOscillator(1.0)
-    found = kind_of(VERLET, model, 0.3, orbit(VERLET, model, 0.3, (10.0, 0.0), 2000))
-    assert found.rotation == pytest.approx(math.acos(1 - 0.3**2 / 2) / math.tau, rel=1e-9)
-    assert not found.spins
 
 
 def test_starts_are_spread_evenly_over_their_rectangle():

@@ -30,7 +30,6 @@ from pendu_tui.engine.studies.stability import (
     PARKED,
     UNKNOWN,
     Grid,
-    Watched,
     amplification,
     amplitude,
     first_failure,
@@ -48,48 +47,6 @@ from pendu_tui.engine.studies.stability import (
 SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
 each_symplectic = pytest.mark.parametrize("method", SYMPLECTIC, ids=lambda method: method.key)
 UNIT = Pendulum(1.0)  # so that h is z
-THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
-
-
-def watched(band=math.inf):
-    start = UNIT.energy(np.sin)((THETA, OMEGA))
-    band, top, off, worst = (np.full_like(start, value) for value in (band, math.pi, 0.0, 0.0))
-    return Watched(start, band, top, off, worst, np.abs(THETA))
-
-
-def stops(method, seen, steps):
-    return watch(method, (THETA, OMEGA), np.full(37, 0.2), seen, steps)
-
-
-def path(method, steps):
-    """The phases after each step, (steps, 2, swings)."""
-    phases = method.phases(UNIT.force(np.sin), (THETA, OMEGA), 0.2)
-    return np.array([*islice(phases, steps)])
-
-
-@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-def test_each_swing_is_the_methods_and_its_extremes_are_kept(method):
-    seen, points = watched(), path(method, 10)
-    ((done, phase),) = stops(method, seen, 10)
-    assert done == 10
-    off = UNIT.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
-    width = np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0))
-    found = np.array([*phase, seen.off, seen.worst, seen.width])
-    last = [*points[-1], off[-1], np.abs(off).max(axis=0), width]
-    assert np.array_equal(found, last)
-
-
-def test_it_stops_at_the_steps_that_pass_the_top_or_leave_the_band():
-    over = np.abs(path(EXPLICIT_EULER, 100)[:, 0]) > math.pi
-    seen, found = watched(), []
-    for done, (theta, _) in stops(EXPLICIT_EULER, seen, 100):
-        found.append(done)
-        seen.top[np.abs(theta) > seen.top] = math.inf
-    assert found == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
-    seen = watched(0.1)
-    done, _ = next(stops(EXPLICIT_EULER, seen, 100))
-    assert 0 < done < found[0]
-    assert (seen.worst > 0.1).any()
 
 
 @given(
@@ -266,15 +223,6 @@ def test_the_wobble_has_a_closed_form_and_none_without_an_ellipse(z, beyond):
         assert wobble(method, z)[:2] == pytest.approx((1.0, 1.0), abs=1e-9)
     for method in SYMPLECTIC:
         assert wobble(method, beyond) == (0.0, 1.0, 1.0)
-
-
-@pytest.mark.parametrize("z", [0.3, 1.9])  # no short cycles
-def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z):
-    phases = islice(SYMPLECTIC_EULER.phases(np.negative, (1.0, 0.0), z), 2000)
-    theta, omega = np.array([(1.0, 0.0), *phases]).T
-    energies = theta**2 + omega**2
-    found = (energies.min(), energies.max(), np.abs(theta).max())
-    assert found == pytest.approx(wobble(SYMPLECTIC_EULER, z), rel=0.01)
 
 
 def largest_omega(scene, method, steps, enough=math.inf):
