@@ -30,7 +30,7 @@ COMMANDS = {
     "recordings": "recordings",
     "scenes": "scenes",
     "methods": "methods",
-    "methods --method": "methods --methods mine --method mine.py:mine",
+    "methods --method": "methods mine --method mine.py:mine",
     "doctor": "doctor",
 }
 SCHEMAS = {

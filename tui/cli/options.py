@@ -12,7 +12,6 @@ from pendu_tui.engine.inputs import InputError, check_name, did_you_mean, number
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
-MAX_RUNGS = 1000  # of a ladder of step sizes
 
 
 class Parser(argparse.ArgumentParser):
@@ -139,7 +138,7 @@ def given_by(option: str) -> Iterator[None]:
 def ladder(text: str) -> tuple[float, float, int]:
     """Return the ends of a ladder of step sizes [s], the larger first, and its rungs: A:B:N."""
     match text.split(":"):
-        case [first, last, many] if count(many) <= MAX_RUNGS:
+        case [first, last, many]:
             low, high = sorted((positive(first), positive(last)))
             return high, low, count(many)
     raise ValueError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")

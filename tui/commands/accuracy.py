@@ -44,7 +44,7 @@ from pendu_tui.tui.commands.report import (
 )
 from pendu_tui.tui.drawing.picture import PALETTES, lines_of
 from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from pendu_tui.tui.words.studies import COSTS, factor_words, few, front_words, length
+from pendu_tui.tui.words.studies import COSTS, few, front_words, length
 
 CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows
 NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread")
@@ -171,8 +171,6 @@ class Results:
         )
         if self.options.all and self.points:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
-            if savings := factor_words(front(self.points, self.kind, "evaluations")):
-                yield savings
         if self.attempts:
             yield from self._advice_notes()
 

@@ -65,7 +65,7 @@ def replay(options: argparse.Namespace) -> int:
     if only is not None and not set(only) & set(played.scene.cast):
         names = ", ".join(method.key for method in only)
         raise UserError(f"--methods: the recording's first run has none of {names}.")
-    played.set_speed(options.speed)
+    played.set_speed(options.speed or 1.0)
     played.looping = options.loop
     played.seek(options.start_at)
     played.pause(options.paused)

@@ -36,7 +36,7 @@ def methods(options: argparse.Namespace) -> int:
     from pendu_tui.engine.run.loops import available
 
     if options.names:
-        options.methods = ",".join((*options.names, *filter(None, [options.methods])))
+        options.methods = ",".join(options.names)
     cast = cast_of(options, () if options.method else METHODS)
     gate = parse(options.fail_if, MEASURED_NUMBERS, words=MEASURED_WORDS)
     rows = [_row(method) for method in cast]

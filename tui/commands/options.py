@@ -61,12 +61,6 @@ def flag(help: str) -> Settings:
     return {"action": "store_true", "help": help}
 
 
-def cast(default: str) -> Settings:
-    """Return --methods, without which there are those of `default`."""
-    meaning = f"these methods, in this order (default: {default}); the start of a name is enough"
-    return option("KEY,KEY", meaning, choices=Suggestions(KEYS))
-
-
 def gate(meaning: str) -> Settings:
     return option("EXPR", f"exit with 1 if the expression is true{meaning}")
 
@@ -104,7 +98,7 @@ OPTIONS: dict[str, Settings] = {
         "|".join(VERBS), "what to do (%(default)s)", nargs="?", choices=VERBS, default="list"
     ),
     "name": option("SCENE", "the scene to show", nargs="?", choices=Suggestions(SCENES)),
-    "names": option("KEY", "as --methods", nargs="*", choices=Suggestions(KEYS)),
+    "names": option("KEY", "the methods to show", nargs="*", choices=Suggestions(KEYS)),
     "scene": option("SCENE", "the scene, as --scene", nargs="?", choices=Suggestions(SCENES)),
     "--scene": option(
         "NAME|FILE.toml",
@@ -112,9 +106,11 @@ OPTIONS: dict[str, Settings] = {
         choices=Suggestions(SCENES),
         dest="scene_option",
     ),
-    "--methods": cast("the scene's"),
-    **dict.fromkeys(("replay --methods", "verify --methods"), cast("all of the recording's")),
-    "methods --methods": cast("all"),
+    "--methods": option(
+        "KEY,KEY",
+        "only these methods, in this order; the start of a name is enough",
+        choices=Suggestions(KEYS),
+    ),
     "--method": file(
         "FILE.py:FUNCTION",
         "add your own method: a generator function (force, phase, h), see "
@@ -131,10 +127,9 @@ OPTIONS: dict[str, Settings] = {
         f"write FILE, in the form of its suffix: {', '.join(SUFFIXES)}",
         with_suffix(*SUFFIXES),
     ),
-    "--force": flag("overwrite FILE"),
-    "recordings --force": flag("overwrite OUT"),
+    "--force": flag("overwrite a file of that name"),
     "snapshot -o": file("FILE.svg", "the image to write (default: SCENE.svg)", with_suffix(".svg")),
-    "export -o": file("OUT.csv", "write to OUT.csv instead of stdout", with_suffix(".csv")),
+    "export -o": file("FILE.csv", "write to a file instead of stdout", with_suffix(".csv")),
     "recordings -o": file("OUT", "the file to write"),
     "--record": file("FILE", "record to FILE instead of the data folder"),
     "run --record": file("FILE", "record to FILE (the same bytes each time)"),
@@ -155,12 +150,10 @@ OPTIONS: dict[str, Settings] = {
         f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)",
         frames_per_second,
     ),
-    "live --speed": option("X", "multiple of real time (default: the scene's)", positive),
-    "replay --speed": option("X", "playback speed (%(default)g)", positive, default=1.0),
+    "--speed": option("X", "multiple of real time (default: the scene's; replay: 1)", positive),
     "--equal-cost": flag(
         "give all methods equally many force evaluations: cheaper ones take smaller steps"
     ),
-    "replay --no-record": flag("do not record what continues live"),
     "--start-at": option(
         "S", "start S seconds into the recording (%(default)g)", number, default=0.0
     ),
@@ -296,7 +289,7 @@ GROUPS: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
 """Options that belong together: their title in the help, a sentence, and their names."""
 
 UNASKED: Settings = {
-    **dict.fromkeys(("output", "record", "csv", "cost", "no_mouse", "fps")),
+    **dict.fromkeys(("output", "record", "csv", "cost", "methods", "no_mouse", "fps")),
     "force": False,
     "method": [],
 }

@@ -28,13 +28,10 @@ CM = 1 / 2.54  # inches
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
 STYLE = {
     "font.size": 7,
-    "axes.titlesize": 7,
-    "figure.labelsize": 7,
     "axes.linewidth": 0.5,
     "lines.linewidth": 0.9,
     "lines.markersize": 2.5,
     "legend.frameon": False,
-    "legend.handlelength": 2.4,
     "figure.constrained_layout.use": True,
     "savefig.dpi": 600,
     "svg.fonttype": "path",  # outlines, which need no font

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.methods.runge_kutta import RK4
 from pendu_tui.engine.studies.accuracy import REASONS, Cheapest, Cost, ErrorKind, Point
 from pendu_tui.engine.studies.section import OrbitKind
 from pendu_tui.tui.words.numbers import counted
@@ -45,18 +44,6 @@ def front_words(found: Sequence[Cheapest], cost: Cost) -> str:
     if not found:
         return "No power of ten lies between the errors of the coarsest and finest runs."
     return f"Cheapest in {COSTS[cost]}: {_spans(found)}."
-
-
-def factor_words(found: Sequence[Cheapest]) -> str:
-    """Say how much the cheapest methods save over RK4; "" if it is little."""
-    savings = [
-        f"{one.method.label} {one.saves:.2g} at {_power(one.target)}"
-        for one in found
-        if one.saves and one.method is not RK4 and one.saves >= 1.2
-    ]
-    if not savings:
-        return ""
-    return f"Times fewer force evaluations than RK4: {', '.join(savings)}."
 
 
 def _spans(found: Sequence[Cheapest]) -> str:

@@ -45,7 +45,7 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
 
 
 def test_methods_that_are_named_are_listed_alone():
-    listed = pendu("methods", "rk4", "--methods", "verlet", "--json").json["methods"]
+    listed = pendu("methods", "rk4", "verlet", "--json").json["methods"]
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
     assert method_card(METHODS[0]) in pendu("methods", METHODS[0].key).out
     assert pendu("methods", "rk5").refused(2, "rk4")

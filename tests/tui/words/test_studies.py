@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
 from pendu_tui.engine.studies.accuracy import Cheapest
 from pendu_tui.engine.studies.section import OrbitKind
-from pendu_tui.tui.words.studies import factor_words, few, front_words, length, orbit_words
+from pendu_tui.tui.words.studies import few, front_words, length, orbit_words
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
@@ -45,7 +45,7 @@ def test_the_orbit_in_a_sentence(method, kind, parts):
     assert [part for part in parts if part not in orbit_words(method, kind)] == []
 
 
-def test_the_front_names_ranges_and_only_savings_worth_a_change_of_method():
+def test_the_front_names_ranges():
     entries = [
         Cheapest(1e-2, VELOCITY_VERLET, 100, 1.21),
         Cheapest(1e-3, VELOCITY_VERLET, 300, 1.19),
@@ -54,8 +54,6 @@ def test_the_front_names_ranges_and_only_savings_worth_a_change_of_method():
     assert front_words(entries, "evaluations") == (
         "Cheapest in force evaluations: Velocity Verlet from 1e-2 to 1e-3, RK4 at 1e-4."
     )
-    assert factor_words(entries).endswith(": Velocity Verlet 1.2 at 1e-2.")
-    assert factor_words(entries[1:]) == ""
     assert "No power of ten" in front_words([], "seconds")
 
 
