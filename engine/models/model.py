@@ -215,7 +215,7 @@ COMMON = (
     Number(
         "omega",
         "rad/s",
-        "start angular velocity: 2 (in rad/s) or 30deg (a second)",
+        "start angular velocity: 2 (in rad/s) or 30deg/s",
         min=-1e9,
         max=1e9,
         read=angle,

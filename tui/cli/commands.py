@@ -48,7 +48,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
         place="lab:tour",
     ),
     "replay": Command(
-        "play a recording on the same screen",
+        "play a recording on the lab's screen",
         (
             *("file", "--start-at", "--methods", "--method", "--speed"),
             *("--loop", "--paused", "--no-record", "TERMINAL"),
@@ -152,8 +152,9 @@ verdicts:
 """,
         more="""\
 FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
-.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
-certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
+.npz, …, also compressed.  Without options its tables and columns are listed, and the energy is
+judged if it is certain which column it is.  Results have the units of the file's heads.  The
+verdict failed is exit code 1.
 """,
     ),
     "verify": Command(

@@ -159,7 +159,7 @@ def _client(address: str) -> Any:
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        raise UserError("--dask needs an extra: pip install 'pendu-tui[cluster]'.") from None
+        raise UserError("--dask needs an extra: install pendu-tui[cluster].") from None
     except (OSError, ValueError) as error:
         raise UserError(
             f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?"

@@ -143,7 +143,7 @@ OPTIONS: dict[str, Settings] = {
         choices=("auto", *CHARACTER_SETS),
         default="auto",
     ),
-    "--plain": flag("no TUI: print a sentence per second; Ctrl+C to stop"),
+    "--plain": flag("no TUI: print sentences about what happens; Ctrl+C stops"),
     "--no-mouse": flag("disable the mouse; every mouse action also has a key"),
     "--fps": option(
         "N",
@@ -186,7 +186,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--dask": option("ADDRESS", "on a Dask scheduler, such as tcp://10.0.0.1:8786"),
     # studies
-    "--all": flag("chart all methods for any force"),
+    "--all": flag("chart all methods that take any force"),
     "--h-values": option(
         "A:B:N",
         "N step sizes from A to B in s, log-spaced (12, with z = h·w0 from 0.6 to 0.0015)",
@@ -200,7 +200,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--cost": option(
         None,
-        "what counts as cost (%(default)s); seconds are without Numba if a method is your own",
+        "what counts as cost (%(default)s); seconds are measured without Numba if a method is your own",
         choices=("evaluations", "seconds"),
         default="evaluations",
     ),
@@ -255,7 +255,7 @@ OPTIONS: dict[str, Settings] = {
         scale,
     ),
     "--atoms": option("N", "print the trend per ns and atom, too", count),
-    "--temperature": option("K", "with --atoms: and in kT", positive),
+    "--temperature": option("K", "with --atoms: give the trend in kT, too", positive),
     "judge --steps": option(
         "H,H",
         "the step size of each file, to see how the errors scale with it",

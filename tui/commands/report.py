@@ -227,7 +227,7 @@ def check_output(options: argparse.Namespace) -> Form:
         check_target(options.output, options.force)
     if form == "figure" and find_spec("matplotlib") is None:
         suffix = options.output.suffix
-        raise UserError(f"{suffix} files need an extra: pip install 'pendu-tui[plot]'.")
+        raise UserError(f"{suffix} files need an extra: install pendu-tui[plot].")
     return form
 
 

@@ -37,7 +37,7 @@ POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'no
 
 def run(options: argparse.Namespace) -> int:
     if Server is object:
-        raise UserError("serve needs an extra: pip install 'pendu-tui[web]'.")
+        raise UserError("serve needs an extra: install pendu-tui[web].")
     scene = scene_of(options)
     folder: Path | None = options.record
     if folder is not None:
