@@ -17,7 +17,6 @@ COMMANDS = {
     "accuracy --cost seconds": "accuracy --time 2 --h-values 0.1:0.01:2 --cost seconds --methods taylor,rk4",
     "accuracy --all": "accuracy --all --time 2 --h-values 0.4:0.01:4 --target 1e-3",
     "stability": "stability --steps 30 --z-values 0.5,2.5 --theta-values 1,2",
-    "stability --scene linear": "stability --scene linear",
     "run": "run --time 2",
     "run of a method that diverges": "run --h 2 --length 0.1 --time 4000",
     "run of a list": "run --h 0.05,0.1 --time 2",

@@ -50,12 +50,12 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     "replay": Command(
         "play a recording on the lab's screen",
         (
-            *("file", "--start-at", "--methods", "--method", "--speed"),
+            *("file", "--start-at", "--method", "--speed"),
             *("--loop", "--paused", "--no-record", "TERMINAL"),
         ),
         """\
   pendu-tui replay latest
-  pendu-tui replay drift --methods rk4,verlet
+  pendu-tui replay drift
   pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """,
         more="Pause, step, seek, loop, play backwards, or continue live.",
@@ -221,6 +221,7 @@ WORKERS = "--workers N, or --dask ADDRESS for other machines"
 COMPILED = "no option: compiled loops give the same bits"
 DROPPED = {
     "methods --methods": "the names alone",
+    "replay --methods": "the keys 1 to 6, which show and hide methods",
     **dict.fromkeys(("stability --section", "stability --starts"), IN_LAB),
     "stability --map": "-o map.csv; pendu-tui live draws it with F5",
     **dict.fromkeys(("run --junit", "judge --junit"), EXIT_CODE),

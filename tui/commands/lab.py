@@ -5,9 +5,8 @@ import asyncio
 import os
 from pathlib import Path
 
-from pendu_tui.engine.methods import METHODS
 from pendu_tui.recordings.events import remember
-from pendu_tui.tui.cli.cast import cast_of, own_methods
+from pendu_tui.tui.cli.cast import own_methods
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import resolve
@@ -52,9 +51,6 @@ def replay(options: argparse.Namespace) -> int:
 
     path = resolve(options.file)
     remember(own_methods(options))
-    only = None
-    if options.methods is not None:
-        only = cast_of(options, ())
     launch.check(options)
     played = Replay(Recording.open(path))
     if not 0 <= options.start_at <= played.length:
@@ -62,20 +58,13 @@ def replay(options: argparse.Namespace) -> int:
             f"--start-at {options.start_at:g} is outside the recording; use 0 to "
             f"{played.length:.2f} s."
         )
-    if only is not None and not set(only) & set(played.scene.cast):
-        names = ", ".join(method.key for method in only)
-        raise UserError(f"--methods: the recording's first run has none of {names}.")
     played.set_speed(options.speed or 1.0)
     played.looping = options.loop
     played.seek(options.start_at)
     played.pause(options.paused)
     if options.plain:
-        return launch.print_sentences(played, only=only)
-    screen = launch.replay_screen(played, options.no_record)
-    if only is not None:
-        hidden = {method.key for method in (*METHODS, *played.scene.cast) if method not in only}
-        screen.shown = screen.shown._replace(hidden=frozenset(hidden))
-    return launch.show(screen, options)
+        return launch.print_sentences(played)
+    return launch.show(launch.replay_screen(played, options.no_record), options)
 
 
 def snapshot(options: argparse.Namespace) -> int:

@@ -2,7 +2,6 @@
 
 import argparse
 import math
-from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -25,7 +24,7 @@ from pendu_tui.engine.studies.stability import (
     map_of,
     table,
 )
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.scene import general_scene_of
 from pendu_tui.tui.cli.workers import work_of
 from pendu_tui.tui.commands.report import (
@@ -40,18 +39,14 @@ from pendu_tui.tui.commands.report import (
     publish,
 )
 
-LINEAR = """\
-This scene is the linear oscillator itself, and these limits hold at every amplitude.
-A pendulum's depend on the amplitude: pendu-tui stability drift"""
-
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
+    if not scene.equations.turns:
+        raise UserError("the linear oscillator has no other limits than pendu-tui methods lists.")
     form = check_output(options)
-    grid = grid_of(scene, options, is_map=form == "csv")
-    if grid is None:
-        publish(report(scene, options.steps, []), options)
-        return Exit.FINE
+    axes = map_of if form == "csv" else ladder_of
+    grid = axes(scene, options.theta_values, options.z_values, options.steps)
     cells = grid.unknown()
     parts = grid.parts()
     with work_of(options, "swings", len(parts)) as work:
@@ -68,27 +63,10 @@ def run(options: argparse.Namespace) -> int:
     return work.conclude()
 
 
-def grid_of(scene: Scene, options: Namespace, is_map: bool) -> Grid | None:
-    """Return the grid of the map or of the table; None for the linear oscillator's table.
-
-    Raises UserError for options that do not suit the scene.
-    """
-    if not scene.equations.turns:
-        if options.output or options.csv or options.theta_values or options.z_values:
-            why = "limits of the linear oscillator hold at every amplitude"
-            raise UserError(f"{why}; leave out --theta-values, --z-values, --csv and -o.")
-        return None
-    axes = map_of if is_map else ladder_of
-    return axes(scene, options.theta_values, options.z_values, options.steps)
-
-
 def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True) -> Report:
     """Return the report on the linear limits and, with rows, on the pendulum's."""
     linear = [_linear(scene, method) for method in scene.cast]
-    notes: list[Any] = [LINEAR]
-    if scene.equations.turns:
-        pendulum = [_row_fields(row) for row in rows]
-        notes = [*_words(scene), Table(_columns(scene, steps), pendulum)]
+    pendulum = [_row_fields(row) for row in rows]
     return Report(
         name="stability",
         title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
@@ -99,7 +77,7 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
             Column(f"radius at z = {scene.z:.4g}", "amplification", ".9f"),
         ),
         rows=linear,
-        notes=notes,
+        notes=[*_words(scene), Table(_columns(scene, steps), pendulum)],
         fields={
             "scene": scene.fields(),
             "z": scene.z,

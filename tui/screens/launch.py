@@ -11,7 +11,6 @@ from pathlib import Path
 
 from textual.widget import Widget
 
-from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
@@ -119,11 +118,11 @@ def replay_screen(replay: Replay, no_record: bool) -> LabScreen:
     return screen
 
 
-def print_sentences(source: Source, lesson: Lesson | None = None, only: Cast | None = None) -> int:
+def print_sentences(source: Source, lesson: Lesson | None = None) -> int:
     """Print what happens until Ctrl+C or another signal, which is no error here."""
     try:
         with stop_requests() as stopped:
-            tell(source, partial(print, flush=True), stopped, lesson=lesson, only=only)
+            tell(source, partial(print, flush=True), stopped, lesson=lesson)
     finally:
         source.close()
     return say_goodbye(source)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from pendu_tui.engine.methods import Cast, Method
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.run.verdicts import BOUNDED, FAILED, VERDICTS, Milestone
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.playback.lesson import Lesson
@@ -89,19 +89,14 @@ def tell(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
     lesson: Lesson | None = None,
-    only: Cast | None = None,
 ) -> None:
     """Emit the description and each event, until `stopped` or the end of a recording.
 
-    `only` restricts them to these methods.  A lesson goes on by itself, after time to read it.
+    A lesson goes on by itself, after time to read it.
     """
-
-    def hidden() -> set[str]:
-        return {each.key for each in source.scene.cast if only is not None and each not in only}
-
     if lesson is not None and isinstance(source, Live):
         lesson.begin(source, 0)
-    for text in description(source, hidden()):
+    for text in description(source):
         emit(text)
     source.tick(clock())
     known = set(event_lines(source))
@@ -111,7 +106,7 @@ def tell(
         source.tick(clock())
         if source.failure:
             raise UserError(source.failure)
-        for line in event_lines(source, hidden()):
+        for line in event_lines(source):
             if line not in known:
                 known.add(line)
                 emit(f"{seconds(line.t)}: {line.text}.")

@@ -147,15 +147,3 @@ def test_ones_own_method_has_null_claims_and_is_the_same_in_other_processes(mine
     values = ("--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
     one = pendu("stability", *values, *own[1:])
     assert one.out == pendu("stability", *values, *own[1:], "--workers", "2").out
-
-
-def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
-    screens = []
-    monkeypatch.setattr("pendu_tui.tui.screens.launch.check_terminal", lambda: None)
-    monkeypatch.setattr(
-        "pendu_tui.tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0
-    )
-    for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
-        assert pendu("replay", "drift", *words).code == 0
-        assert screens[-1].shown.places(USUAL_CAST) == places
-        screens[-1].source.close()

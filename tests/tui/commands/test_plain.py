@@ -9,7 +9,7 @@ import pytest
 
 from pendu_tui.recordings.files import listing
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import PENDU, pendu
+from tests.tui.command_line import PENDU
 
 pytestmark = pytest.mark.slow
 
@@ -50,10 +50,6 @@ def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
         process.wait(timeout=30)
     assert process.returncode == 141
     recorded_whole(tmp_path)
-
-
-def test_a_replay_has_methods_to_show():
-    assert pendu("replay", "drift", "--plain", "--methods", "heun").refused(2, "none of heun")
 
 
 def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):

@@ -59,19 +59,11 @@ def test_csv_repeats_the_engine_with_a_line_for_each_swing(tmp_path):
         (("--theta-values", "4"), ("--theta-values", "3.14159")),
         (("--z-values", "nan"), ("--z-values",)),
         (("--steps", "3000000000"), ("--steps", "2.14748e+09")),
-        (("--scene", "linear", "--csv"), ("linear oscillator", "--csv")),
+        (("--scene", "linear"), ("linear oscillator", "pendu-tui methods")),
     ],
 )
 def test_impossible_values_are_refused_in_one_sentence(arguments, words):
     assert pendu("stability", *arguments).refused(2, *words)
-
-
-def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():
-    out = pendu("stability", "--scene", "linear").out
-    for method in USUAL_CAST:
-        limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
-        assert line_of(out, method.label)[-3:-1] == [limit, limit]
-    assert "°" not in out
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():
