@@ -213,21 +213,23 @@ class Frame:
         self.width = columns + room
         self.left = y_axis.label_width + 1
 
-    def right(self, x: Floats) -> Floats:
+    def right(self, x: Value) -> Value:
         """Return distances from the left edge of the field, in characters, at most its width."""
-        return self.columns * np.clip(self.x_axis.share(x), 0.0, 1.0)
+        share: Value = np.clip(self.x_axis.share(x), 0.0, 1.0)
+        return self.columns * share
 
-    def up(self, y: Floats) -> Floats:
+    def up(self, y: Value) -> Value:
         """Return distances from the lower edge of the field, in characters, at most its height."""
-        return self.rows * np.clip(self.y_axis.share(y), 0.0, 1.0)
+        share: Value = np.clip(self.y_axis.share(y), 0.0, 1.0)
+        return self.rows * share
 
     def column(self, x: float) -> int:
         """Return the column of a value in the field."""
-        return min(max(int(self.columns * self.x_axis.share(x)), 0), self.columns - 1)
+        return min(int(self.right(x)), self.columns - 1)
 
     def row(self, y: float) -> int:
         """Return the row of a value in the field."""
-        return self.rows - 1 - min(max(int(self.rows * self.y_axis.share(y)), 0), self.rows - 1)
+        return self.rows - 1 - min(int(self.up(y)), self.rows - 1)
 
     def around(self, field: Iterable[Row]) -> list[Row]:
         """Put the axes around the rows of the field, with labels on them."""

@@ -104,8 +104,7 @@ def loglog_chart(
             column, row = cells[-1]
             rows = [at for at in (row, row - 1, row + 1) if 0 <= at < axes.rows]
             near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
-            names = f" {one.mark}", one.mark
-            if not any(canvas.label_where_blank(near, name, QUIET) for name in names):
+            if not canvas.label_where_blank(near, f" {one.mark}", QUIET):
                 canvas.label(column, row, one.mark, QUIET)
     above = y_label[:width].ljust(width)
     below = x_label[:width].rjust(width)

@@ -136,13 +136,14 @@ def time_chart(
         return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
     runs = _runs(window, cast, shown, ghost)
     plot, times, sides = _plot(runs, window, shown, width, height - 1)
-    plot.draw_marks(changes)
-    for run, (low, high) in zip(runs, sides, strict=True):
-        plot.draw_curves(run, low, high)
     low, high = sides[0]
     values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         values = 10.0**high
+    plot.draw_marks(changes)
+    for run, (lows, highs) in zip(runs, sides, strict=True):
+        plot.draw_curves(run, lows, highs)
+    if shown.log:
         plot.draw_crossings(high, times, window.repeats)
     plot.name_lines(plot.ends(runs[0], low, high, names))
     return TimePlot(
@@ -221,24 +222,18 @@ class _Plot(LineChart):
             canvas.label(1, row, text, EXACT)
 
     def draw_curves(self, run: _Run, low: Floats, high: Floats) -> None:
-        """Draw each curve up to where it leaves the chart."""
-        gone = self._gone(low, high)
-        bottom = self.up(np.where(gone, np.nan, low))
-        top = self.up(np.where(gone, np.nan, high))
+        """Draw each curve up to where it leaves the chart; forget what lies beyond."""
+        gone = self._beyond(low, high)
+        gone[1:] &= gone[:-1].copy()
+        gone[:1] = False
+        low[gone] = high[gone] = np.nan
         for place, ink in enumerate(run.inks):
-            x, y = _outline(bottom[:, place], top[:, place])
+            x, y = _outline(self.up(low[:, place]), self.up(high[:, place]))
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
             self.canvas.path(2 * x + 1.5, down, ink)
 
     def _beyond(self, low: Floats, high: Floats) -> Mask:
         return (high > self.limit) | (low < -LARGEST)
-
-    def _gone(self, low: Floats, high: Floats) -> Mask:
-        """Return the columns in which a curve was off the chart in the column before, too."""
-        gone = self._beyond(low, high)
-        gone[1:] &= gone[:-1].copy()
-        gone[:1] = False
-        return gone
 
     def draw_crossings(self, high: Floats, times: Floats, repeats: float) -> None:
         """Mark where one error passes another for good."""
@@ -258,8 +253,7 @@ class _Plot(LineChart):
             letter = run.cast[run.places[place]].letter
             if beyond[at, place]:
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
-                left = int(np.flatnonzero(beyond[:, place] & ~self._gone(low, high)[:, place])[-1])
-                self._write_value(left + 1, letter, value, ink)
+                self._write_value(at + 1, letter, value, ink)
                 continue
             name = names[run.places[place]] if names else ""
             row = float(rows[:, at, place].mean()) - 0.5
@@ -267,17 +261,15 @@ class _Plot(LineChart):
 
     def _write_value(self, column: int, letter: str, value: float, ink: int) -> None:
         """Write what a curve has come to where it left the chart."""
-        row = 0
+        rows = range(self.rows)
         arrow = "↑"
         if value < 0 and self.limit == LARGEST:
-            row = self.rows - 1
+            rows = rows[::-1]
             arrow = "↓"
         number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
         text = f"{arrow}{letter}{number}"
         column = min(column, self.canvas.columns - len(text))
-        rows = [at for at in range(row - 2, row + 3) if 0 <= at < self.rows]
-        rows.sort(key=lambda at: abs(at - row))
-        self.canvas.label_where_blank([(column, at) for at in rows], text, ink)
+        self.canvas.label_where_blank([(column, row) for row in rows], text, ink)
 
 
 def _levels(shown: Shown) -> dict[str, float]:

@@ -11,7 +11,6 @@ from textual.geometry import NULL_OFFSET, NULL_SPACING, Region, Size
 from textual.layout import ArrangeResult, Layout, WidgetPlacement
 from textual.widget import Widget
 
-from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.models.model import ExactMotion, Model
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture, ink_of
@@ -36,23 +35,15 @@ class EventList(Pane):
         lines = event_lines(source, self.shown.hidden)
         texts = numbered(lines)[-self.room.height :]
         self._listed = lines[-self.room.height :]
-        pairs = zip(self._listed, texts, strict=True)
-        return Picture([[(self._fitted(text, line), self._ink(line))] for line, text in pairs])
+        width = self.room.width
+        fitted = [text if len(text) <= width else f"{text[: width - 1]}…" for text in texts]
+        inks = map(self._ink, self._listed)
+        return Picture([[piece] for piece in zip(fitted, inks, strict=True)])
 
     def _ink(self, line: EventLine) -> int:
         if line.method is not None:
             return ink_of(line.method, self.cast)
         return {"mark": TEXT}.get(line.kind, QUIET)
-
-    def _fitted(self, text: str, line: EventLine) -> str:
-        """Shorten a text to fit: letters for the methods' names, then … at the end."""
-        width = self.room.width
-        if line.method and len(text) > width:
-            for method in self.cast:
-                text = text.replace(short_name(method), method.letter)
-        if len(text) > width:
-            text = f"{text[: width - 1]}…"
-        return text
 
     async def on_click(self, event: events.Click) -> None:
         offset = event.get_content_offset(self)
@@ -65,14 +56,6 @@ class EventList(Pane):
 
 if TYPE_CHECKING:
     from pendu_tui.tui.drawing.time_chart import Reading, TimePlot
-
-
-def modified_energy_of(cast: Cast) -> str:
-    """Return a note that names the methods with a modified energy, "" if all have one."""
-    letters = [method.letter for method in cast if method.modified_energy]
-    if len(letters) == len(cast):
-        return ""
-    return f"shadow energy is known for {' and '.join(letters) or 'none'} only"
 
 
 def title(shown: Shown, exact: ExactMotion, model: Model, room: int = 100) -> str:
@@ -160,8 +143,9 @@ class TimeChart(Pane):
         room = self.room.width - 6
         if self.pointer is not None and (reading := plot.at(self.pointer)) is not None:
             return _read_out(reading, [self.cast[place].letter for place in plot.places], room)
-        if look.quantity == "shadow_error" and (known := modified_energy_of(self.cast)):
-            return known
+        known = [method.letter for method in self.cast if method.modified_energy]
+        if look.quantity == "shadow_error" and len(known) < len(self.cast):
+            return f"shadow energy is known for {' and '.join(known)} only"
         if source.ghost is not None:
             return source.ghost.label
         if not source.knows_past:

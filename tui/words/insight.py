@@ -34,11 +34,10 @@ IRREGULAR = (CHAOTIC, "rests")
 
 
 class Insight(NamedTuple):
-    """A fact about the run: its kind, the sentence, and the methods that it is about."""
+    """A fact about the run: its kind, and the sentence."""
 
     kind: str
     text: str = ""
-    methods: tuple[Method, ...] = ()
 
 
 def short_name(method: Method) -> str:
@@ -95,7 +94,7 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str]) -> Insight:
         if method.key not in hidden:
             misses.append(f"{method.letter} {miss}")
     text = f"Back at t = 0; off in angle and speed [rad]: {', '.join(misses)}."
-    return Insight("returned", text, scene.cast)
+    return Insight("returned", text)
 
 
 def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | None:
@@ -172,7 +171,7 @@ def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
             unit = "its initial energy" if conserved else "the true energy"
             energy = f" with {two_digits(ratio)} times {unit}"
         text = f"{name} went over the top at {at}{energy}."
-    return Insight(milestone.kind, text, (milestone.method,))
+    return Insight(milestone.kind, text)
 
 
 def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
@@ -187,7 +186,7 @@ def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
         names = f"{', '.join(others)} and {last} stay"
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
     since = about(min(found.values()) * period)
-    return Insight(BOUNDED, f"{names} bounded over {since}.", tuple(found))
+    return Insight(BOUNDED, f"{names} bounded over {since}.")
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
@@ -195,13 +194,13 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
     name = short_name(method)
     if judgement.rests:
         text = f"{name} has settled at an energy error of about {error:+.3g}."
-        return Insight("rests", text, (method,))
+        return Insight("rests", text)
     if judgement.verdict != CHAOTIC:
         return None
     pace = "exponentially"
     if judgement.lyapunov:
         pace = f"tenfold every {about(math.log(10) / judgement.lyapunov)}"
-    return Insight(CHAOTIC, f"{name} is chaotic: nearby starts separate {pace}.", (method,))
+    return Insight(CHAOTIC, f"{name} is chaotic: nearby starts separate {pace}.")
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -215,22 +214,21 @@ def drift(source: Source, index: int) -> Insight | None:
         return found
     conserved = _is_conserved(source)
     if verdict == LOSES and conserved and error < -0.5:  # more telling than the rate
-        return Insight("lost", f"{name} has lost {_share(-error)} of its energy.", (method,))
+        return Insight("lost", f"{name} has lost {_share(-error)} of its energy.")
     rate = judgement.slope or 0.0
     if verdict not in LEAVES or rate == 0.0 or (rate > 0) != (verdict == GROWS):
         return None
     if judgement.growth and verdict == GROWS:
         tenfold = about(math.log(10) / judgement.growth)
-        text = f"{name}'s energy grows tenfold every {tenfold}."
-        return Insight("multiplies", text, (method,))
+        return Insight("multiplies", f"{name}'s energy grows tenfold every {tenfold}.")
     unit = "E0" if conserved else "the true energy"
     verb = "gains" if verdict == GROWS else "loses"
     text = f"{name} {verb} {_share(abs(rate))} of {unit} per s"
     if ahead := forecast(source, index):
         wait, other = ahead
         passing = f"its error will pass {short_name(other)}'s in {about(wait)}"
-        return Insight("will pass", f"{text}; {passing}.", (method, other))
-    return Insight(verdict, f"{text}.", (method,))
+        return Insight("will pass", f"{text}; {passing}.")
+    return Insight(verdict, f"{text}.")
 
 
 def _share(value: float) -> str:

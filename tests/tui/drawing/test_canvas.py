@@ -181,16 +181,6 @@ def test_the_dots_of_a_line_touch_each_other_and_the_line(ends):
         assert len(found) == 1 or len(found & near) > 1
 
 
-@given(ENDS)
-def test_a_line_that_leaves_the_canvas_is_the_same_inside_it(ends):
-    x0, y0, x1, y1 = ends
-    y0, y1 = y0 + 0.0314159, y1 + 0.0314159  # between two dots rounding would decide
-    small = dots(drawn(lambda canvas: canvas.line(x0, y0, x1, y1, 0)))
-    large = dots(drawn(lambda canvas: canvas.line(x0 + 40, y0 + 40, x1 + 40, y1 + 40, 0), 60, 30))
-    moved = {(i - 40, j - 40) for i, j in large}
-    assert small == {(i, j) for i, j in moved if 0 <= i < 2 * COLUMNS and 0 <= j < 4 * ROWS}
-
-
 @given(st.lists(st.tuples(ANY, ANY), min_size=2, max_size=5))
 def test_a_path_has_the_dots_of_its_lines(points):
     lines = Canvas(COLUMNS, ROWS)

@@ -115,7 +115,7 @@ def test_speed_against_accuracy():
         "     │            ⠁⠄⡀       r⠢⣀\n"
         " 1e-8┤               ⠁⠂⡀       ⠉r⢄⡀\n"
         "     │                  ⠁⠐⢀       ⠈⠒r⡀\n"
-        "1e-10┤                     ⠈⠐⢀order 4⠈⠑⢄r\n"
+        "1e-10┤                     ⠈⠐order 4 ⠈⠑⢄r\n"
         "     └ 10 ────── 100 ──────── 1e3 ─────── 1e4 ──\n"
         "                               force evaluations"
     )

@@ -57,5 +57,4 @@ def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_ch
     ring = followed(live)
     assert f"the true motion leaves {left} of its area" in ring_text(live, ring)
     ratios = ring.ring_of(live.scene, live.sample.run).area_ratios
-    texts = [area_text(ratio) for ratio in ratios]
-    assert [text == left for text in texts] == [False, False, True, False]
+    assert [area_text(ratio) == left for ratio in ratios] == [False, False, True, False]

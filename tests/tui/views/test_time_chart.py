@@ -7,11 +7,8 @@ from textual.events import MouseScrollUp
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.recordings.recorder import LiveRecorder
-from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
 from pendu_tui.tui.views.lab import TimeChart, title
 from tests.tui.harness import lab
@@ -91,22 +88,19 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert theatre.stage.shown == Shown().through(WHOLE)._replace(seconds=20.0)
 
 
-def charted(fps, scene, path=None, *, changes=False, returns=False):
+def charted(fps, scene, *, changes=False, returns=False):
     """The chart of a run at so many frames a second, paused at 30 s."""
     live = Live(scene, clock=lambda: 0.0)
-    if path is not None:
-        live.record(LiveRecorder(path))
     for frame in range(30 * fps + 1):
         live.tick(frame / fps)
         if changes and frame == 10 * fps:
             live.change(Stepping(2 * scene.h))
     live.pause(True)
-    live.close()
-    end = live.sample.step
     if returns:
-        live.step(50 - live.sample.step)
+        end = live.sample.step
+        live.go_to(1, 50)
         live.history.window()
-        live.step(end - live.sample.step)
+        live.go_to(1, end)
     return time_chart(live.history.window(), scene.cast, Shown(), 60, 16).picture
 
 
@@ -114,19 +108,4 @@ def charted(fps, scene, path=None, *, changes=False, returns=False):
 def test_a_chart_depends_on_the_run_and_not_on_the_frames_or_on_going_back(h, changes):
     scene = WHOLE.altered(h=h)
     expected = charted(60, scene, changes=changes)
-    assert charted(3, scene, changes=changes) == expected
     assert charted(3, scene, changes=changes, returns=True) == expected
-
-
-@pytest.mark.parametrize("fps", [3, 60])
-def test_a_replay_has_the_chart_of_the_lab(tmp_path, fps):
-    path = tmp_path / "run.mcap"
-    lab_chart = charted(fps, WHOLE, path)
-    replay = Replay(Recording.open(path), clock=lambda: 0.0)
-    for seconds in (5.0, replay.length):
-        replay.seek(seconds)
-        while not replay.fill():
-            pass
-    window = replay.history.window()
-    assert time_chart(window, WHOLE.cast, Shown(), 60, 16).picture == lab_chart
-    replay.close()
