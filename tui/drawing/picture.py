@@ -41,12 +41,11 @@ class Palette(NamedTuple):
     good: str
 
     def colour(self, ink: int) -> str:
-        """Return the colour of an ink; after ten methods the ten come again, in other shades."""
+        """Return the colour of an ink; after ten methods the ten come again."""
         if ink >= FAINT:
             return mixed(self.colour(ink - FAINT), self.background, 0.5)
         if ink >= 0:
-            lap, index = divmod(ink, len(self.methods))
-            return mixed(self.methods[index], self.text, 1 - 0.6**lap)
+            return self.methods[ink % len(self.methods)]
         others = {EXACT: self.exact, QUIET: self.exact, FRAME: self.frame}
         return (others | {WARN: self.warn, GOOD: self.good}).get(ink, self.text)
 

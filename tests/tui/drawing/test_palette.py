@@ -120,10 +120,5 @@ def test_words_lines_and_trails_have_the_contrast_that_they_need(theme):
 
 
 def test_other_themes_get_the_palette_that_suits_their_name():
-    suiting = {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}
-    for theme, name in {**{name: name for name in PALETTES}, **suiting}.items():
+    for theme, name in {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}.items():
         assert palette(theme) is PALETTES[name]
-
-
-def test_frames_are_fainter_than_words_in_every_theme():
-    assert all(each.colour(FRAME) != each.colour(QUIET) for each in PALETTES.values())

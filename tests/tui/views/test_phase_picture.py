@@ -8,7 +8,15 @@ import pytest
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.picture import EXACT, FAINT
-from pendu_tui.tui.views.portrait import SPARSE, PhasePoint, Portrait, phase_picture
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.views.portrait import (
+    SPARSE,
+    PhasePoint,
+    Portrait,
+    method_points,
+    phase_picture,
+)
 from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import cells, places
 
@@ -42,6 +50,13 @@ def test_a_trail_is_faint_and_where_the_method_was():
     pairs = zip(theta.tolist(), omega.tolist(), strict=True)
     expected = {(int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4) for a, b in pairs}
     assert places(picture, 1 + FAINT) == expected
+
+
+@pytest.mark.parametrize(("z", "joined"), [(0.25, False), (0.35, True), (0.95, True), (1.1, False)])
+def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, joined):
+    live = Live(DRIFT.altered(h=z / DRIFT.w0))
+    points = method_points(live, live.sample, Shown(), None)
+    assert {point.chords > 0 for point in points} == {joined}
 
 
 def test_a_moving_point_takes_the_place_of_a_word():

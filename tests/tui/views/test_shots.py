@@ -55,21 +55,19 @@ class Seen:
     def apart(self, upper, lower):
         return min(self.heights(upper)[-1]) - max(self.heights(lower)[-1])
 
-    def near_line(self, letter):
-        """Rows from the end of a curve to the reference line, less than 0 beyond one."""
-        text = self.chart.text.splitlines()
-        row = next(at for at, line in enumerate(text) if self.shown.line.name in line) + 1
-        return 1 - abs(max(self.heights(letter)[-1]) - (self.bottom - row))
-
     def line_row(self):
         """The row of the reference line, from the lower edge of the chart."""
         text = self.chart.text.splitlines()
-        dots = [at for at, line in enumerate(text) if self.shown.line.name in line]
-        return self.bottom - dots[0] - 1
+        dots = next(at for at, line in enumerate(text) if self.shown.line.name in line)
+        return self.bottom - dots - 1
+
+    def near_line(self, letter):
+        """Rows from the end of a curve to the reference line, less than 0 beyond one."""
+        return 1 - abs(max(self.heights(letter)[-1]) - self.line_row())
 
     def reaches_line(self, letter):
         """Rows from the highest point of a curve up to the reference line, less than 0 below."""
-        return 1 + max(row for column in self.heights(letter) for row in column) - self.line_row()
+        return 1 + max(map(max, self.heights(letter))) - self.line_row()
 
     def crosses_line(self, letter):
         """How many rows a curve ends beyond the reference line, after it began before it."""

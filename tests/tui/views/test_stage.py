@@ -211,7 +211,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
     async with lab() as theatre:
         theatre.source.set_speed(2.0)
-        theatre.stage.query_one(Stage)._throw([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        theatre.stage.query_one(Stage)._throw([(0.9, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
         await theatre.pilot.pause()
         scene = theatre.source.scene
         assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
