@@ -2,7 +2,7 @@
 
 The names are those of OPTIONS, or in capitals of GROUPS, in tui/commands/options.py; what differs
 for one command stands there under `COMMAND NAME`.  This module imports nothing of ours, because
-`pendu-tui --help` prints it.  A word in braces in an example is a text that the options bring.
+`pendu-tui --help` prints it.  The options put the verdicts in place of {verdicts}.
 """
 
 from collections.abc import Mapping
@@ -18,11 +18,6 @@ class Command(NamedTuple):
     more: str = ""  # above its options
     place: str = ""  # MODULE:FUNCTION in tui/commands, if it is another
     defaults: Mapping[str, str] = {}  # other than those of its options
-
-    @property
-    def text(self) -> str:
-        """The sentences above its options."""
-        return f"{self.about[0].upper()}{self.about[1:]}.\n\n{self.more}".strip()
 
 
 STILL = {"theme": "dark", "pixels": "braille"}
@@ -109,8 +104,6 @@ Exit code 1: no method reaches the target.
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.csv
 
 CSV has every swing of the map; a figure shows the limits over the amplitude.
-
-{lost}
 """,
     ),
     "run": Command(
@@ -148,7 +141,7 @@ verdicts:
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
 verdicts:
-{verdicts of judge}
+{verdicts}
 """,
         more="""\
 FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,

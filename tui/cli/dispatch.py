@@ -156,9 +156,10 @@ def parser_of(name: str) -> "Parser":
     """Return a command's parser."""
     from pendu_tui.tui.cli.options import Parser
 
+    command = COMMANDS[name]
     parser = Parser(
         prog=f"pendu-tui {name}",
-        description=COMMANDS[name].text,
+        description=f"{command.about[0].upper()}{command.about[1:]}.\n\n{command.more}".strip(),
         formatter_class=RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )

@@ -14,9 +14,8 @@ from typing import Any
 from pendu_tui.engine.inputs import angle, number, seconds
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
-from pendu_tui.engine.run.verdicts import CHAOTIC, VERDICTS
+from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Z_LIMITS
-from pendu_tui.engine.studies import LOST
 from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, MEASURED_NUMBERS, MEASURED_WORDS
@@ -295,13 +294,7 @@ UNASKED: Settings = {
 }
 """The values of options that a command does not have."""
 
-_MEANINGS = {word: f"  {word}: {each.meaning}" for word, each in VERDICTS.items()}
-TEXTS = {
-    "{lost}": LOST,
-    "{verdicts}": "\n".join(_MEANINGS.values()),
-    "{verdicts of judge}": "\n".join(text for word, text in _MEANINGS.items() if word != CHAOTIC),
-}
-"""The texts that stand for words in braces in examples."""
+MEANINGS = "\n".join(f"  {word}: {each.meaning}" for word, each in VERDICTS.items())
 
 
 def add_options(parser: argparse.ArgumentParser, name: str) -> None:
@@ -310,10 +303,7 @@ def add_options(parser: argparse.ArgumentParser, name: str) -> None:
     parser.set_defaults(**UNASKED)
     _add(parser, name, command.options)
     parser.set_defaults(**command.defaults)
-    examples = command.examples
-    for word, text in TEXTS.items():
-        examples = examples.replace(word, text)
-    parser.epilog = f"examples:\n{examples}"
+    parser.epilog = f"examples:\n{command.examples}".replace("{verdicts}", MEANINGS)
 
 
 def _add(parser: argparse._ActionsContainer, command: str, names: Iterable[str]) -> None:

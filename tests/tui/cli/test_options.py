@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.options import values
+from pendu_tui.tui.cli.options import above_zero, values
 from pendu_tui.tui.cli.scene import scene_of
 
 
@@ -24,12 +24,20 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]  # its own h
 
 
-@pytest.mark.parametrize("text", ["1:2", "2:1:3", "1:2:1"])
+@pytest.mark.parametrize("text", ["1:2", "2:1:3", "1:1:3", "1:2:1"])
 def test_a_list_is_ascending_and_what_is_none_is_refused(text):
     assert values(number)("0.2,0.1,0.2") == [0.1, 0.2]
     assert values(number)("1:2:3") == [1.0, 1.5, 2.0]
     with pytest.raises(ValueError, match="is not a list"):
         values(number)(text)
+
+
+@pytest.mark.parametrize("text", ["0", "2", "nan"])
+def test_a_number_is_above_zero_and_below_its_limit(text):
+    read = above_zero(number, 2)
+    assert read("1.9") == 1.9
+    with pytest.raises(ValueError, match="above zero and below 2"):
+        read(text)
 
 
 @given(st.floats(-1e9, 1e9))

@@ -74,17 +74,6 @@ def test_extreme_starts_print_numbers_and_no_nan(start):
     assert len(pendu(*quick).json["points"]) == 12  # its parser refuses nan
 
 
-@pytest.mark.slow
-def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
-    every = ("accuracy", "--all", "--time", "5", "--h-values", "0.5:0.02:6")
-    answer = pendu(*every, "--target", "1e-5", "--json").json
-    best = {place["error"]: place for place in answer["front"]}[1e-5]
-    rows = {row["method"]: row for row in answer["recommendation"]["attempts"]}
-    assert best["method"] == answer["recommendation"]["method"] == "blanes_moan_6"
-    # read off between points a factor of 1.9 in h apart
-    assert best["saves_over_rk4"] == pytest.approx(rows["rk4"]["times_the_cheapest"], rel=0.2)
-
-
 def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_the_fewest(
     monkeypatch,
 ):

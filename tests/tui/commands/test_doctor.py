@@ -41,7 +41,6 @@ def test_a_folder_that_is_not_there_yet_is_fine_and_is_not_made(tmp_path, monkey
     [
         ({"TERM": "xterm-256color", "COLORTERM": "truecolor"}, True),
         ({"TERM": "xterm-256color", "COLORTERM": ""}, False),
-        ({"TERM": "", "COLORTERM": ""}, False),
         ({"TERM": "xterm", "COLORTERM": "", "NO_COLOR": "1"}, True),
     ],
 )

@@ -1,7 +1,5 @@
 import asyncio
-import contextlib
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -159,32 +157,6 @@ async def test_no_page_is_framed_or_loads_anything_from_elsewhere(server):
                 policy = page.headers["Content-Security-Policy"]
                 assert "frame-ancestors 'none'" in policy
                 assert "http" not in policy
-
-
-async def test_what_a_browser_makes_up_neither_fills_memory_nor_prints_anything():
-    with serving() as server:
-        url = f"{server.address}/ws?width={10**9}&height=-5"
-        async with aiohttp.ClientSession() as session:
-            async with session.ws_connect(url, max_msg_size=0) as socket:
-                tab = Tab(socket, (400, 200))
-                await tab.shows("too small")
-                for number in range(2_000):
-                    size = {"width": 10**9 - number, "height": 16 + number % 185}
-                    await socket.send_json(["resize", size])
-                await socket.send_json(["resize", {"width": 100, "height": 30}])
-                tab.screen.resize(200, 400)
-                await tab.shows("LIVE")
-                status = Path(f"/proc/{server.labs[0]}/status").read_text()
-                assert 10_000 < int(re.search(r"VmHWM:\s+(\d+) kB", status)[1]) < 200_000
-                await socket.send_str('["stdin", "\\ud800"]')
-                assert await tab.closed()
-            for path in ("/static/" + "x" * 5000, "/download/x", "/ws?width=x"):
-                with contextlib.suppress(aiohttp.ClientError):
-                    async with session.get(server.address + path) as page:
-                        assert page.status >= 400
-        await server.until_labs(0)
-        server.process.terminate()
-        assert server.process.communicate(timeout=PATIENCE) == ("", "")
 
 
 async def test_methods_of_ones_own_travel_in_a_folder_that_only_the_user_can_read(tmp_path):
