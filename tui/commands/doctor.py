@@ -35,15 +35,15 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         yield "lab", "starts here", ""
     except UserError as error:
         yield "lab", "cannot start here", str(error)
-    size = shutil.get_terminal_size()
-    if not sys.stdout.isatty():
-        yield "size", "unknown: the output is a file or a pipe", ""
-    else:
+    if sys.stdout.isatty():
+        size = shutil.get_terminal_size()
         too_small = size.columns < SMALLEST[0] or size.lines < SMALLEST[1]
         advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
         yield "size", f"{size.columns}x{size.lines}", advice if too_small else ""
     if platform.system() == "Windows":
-        yield "console", *console()
+        is_new = "WT_SESSION" in os.environ
+        advice = "use Windows Terminal, or --pixels half where dots are missing"
+        yield "console", "Windows Terminal" if is_new else "older", "" if is_new else advice
     encoding = sys.stdout.encoding
     advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
     yield "encoding", encoding, "" if is_utf8(encoding) else advice
@@ -58,13 +58,6 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         yield "numba", version("numba"), ""
     except PackageNotFoundError:
         yield "numba", "not installed", "it speeds up long runs: install pendu-tui[fast]"
-
-
-def console() -> tuple[str, str]:
-    """Tell Windows Terminal from the older console."""
-    if "WT_SESSION" in os.environ:
-        return "Windows Terminal", ""
-    return "the older console", "use Windows Terminal, or --pixels half where dots are missing"
 
 
 def recordings() -> tuple[str, str]:

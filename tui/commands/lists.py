@@ -40,15 +40,6 @@ def methods(options: argparse.Namespace) -> int:
     cast = cast_of(options, () if options.method else METHODS)
     gate = parse(options.fail_if, MEASURED_NUMBERS, words=MEASURED_WORDS)
     rows = [_row(method) for method in cast]
-    columns = (
-        Column("method", "key"),
-        Column("claimed", "order", "d"),
-        Column("order", "measured_order", ".3f"),
-        Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
-        Column("symplectic", lambda row: yes(_known(row, "symplectic"))),
-        Column("reversible", lambda row: yes(_known(row, "reversible"))),
-        Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
-    )
     wrong = {
         method.key: no_order(row["measured_order"])
         for method, row in zip(cast, rows, strict=True)
@@ -59,7 +50,7 @@ def methods(options: argparse.Namespace) -> int:
         notes += [f"\n{method_card(method)}" for method in cast]
     report = Report(
         name="methods",
-        columns=columns,
+        columns=METHOD_COLUMNS,
         rows=list(_by_family(rows)),
         notes=notes,
         fields={"methods": [finite(row) for row in rows], "compiled": available()},
@@ -112,7 +103,16 @@ def _limit(z: float) -> str:
     return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.3f}"
 
 
-SCENE_COLUMNS = (
+METHOD_COLUMNS = (
+    Column("method", "key"),
+    Column("claimed", "order", "d"),
+    Column("order", "measured_order", ".3f"),
+    Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
+    Column("symplectic", lambda row: yes(_known(row, "symplectic"))),
+    Column("reversible", lambda row: yes(_known(row, "reversible"))),
+    Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
+)
+SCENE_COLUMNS: tuple[Column, ...] = (
     Column("scene", lambda scene: scene.name),
     Column("z", lambda scene: scene.z, ".3g"),
     Column("what to watch", lambda scene: scene.watch),
@@ -121,24 +121,15 @@ SCENE_COLUMNS = (
 
 def scenes(options: argparse.Namespace) -> int:
     shown = list(SCENES.values())
+    columns = SCENE_COLUMNS
+    notes = []
     if options.name:
         shown = [scene_named(options.name)]
+        columns = ()
+        labels = ", ".join(method.label for method in shown[0].cast)
+        notes = [f"{scene_card(shown[0])}\n  methods       {labels}"]
+    rows = [row for group, members in GROUPS.items() for row in ("", group.upper(), *members)]
     fields = {"scenes": [scene.fields() | {"speed": scene.speed} for scene in shown]}
-    report = Report(name="scenes", columns=SCENE_COLUMNS, rows=list(_by_group()), fields=fields)
-    if options.name:
-        (scene,) = shown
-        labels = ", ".join(method.label for method in scene.cast)
-        notes = [
-            f"{scene_card(scene)}\n  methods       {labels}",
-            f"\nSee it: pendu-tui {scene.name}",
-        ]
-        report = Report(name="scenes", notes=notes, fields=fields)
+    report = Report(name="scenes", columns=columns, rows=rows, notes=notes, fields=fields)
     publish(report, options)
     return Exit.FINE
-
-
-def _by_group() -> Iterator[Any]:
-    for group, members in GROUPS.items():
-        yield ""
-        yield group.upper()
-        yield from members

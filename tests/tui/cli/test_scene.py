@@ -35,6 +35,8 @@ def test_a_listed_scene_as_json_or_toml_is_read_to_the_last_bit(mine):
         again = read_scene(mine, scene_text(scene))
         assert again == replace(scene, often_said="")
         assert (again.speed, again.shot) == (scene.speed, scene.shot)
+    turned = SCENES["drift"].altered(theta=7.0)  # more than a turn, which needs a unit
+    assert read_scene(mine, scene_text(turned)).theta == 7.0
 
 
 def test_without_methods_it_has_those_that_are_for_its_model(mine):
