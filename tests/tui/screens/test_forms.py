@@ -4,8 +4,8 @@ import math
 
 from textual.widgets import Label
 
-from pendu_tui.engine.methods import METHODS, USUAL_CAST
-from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
+from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from tests.tui.harness import lab
 
 
@@ -68,14 +68,3 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         await theatre.press("home", "space", "down", "space", "space", "enter")
         await theatre.pilot.pause()
         assert theatre.source.scene.cast == (known[3], known[0])
-
-
-async def test_a_form_that_is_cancelled_changes_nothing():
-    async with lab() as theatre:
-        for key in ("i", "M", "P", "ctrl+p"):
-            await theatre.press(key)
-            await theatre.press("escape")
-            await theatre.pilot.pause()
-        assert theatre.app.screen is theatre.stage
-        assert (theatre.source.scene, theatre.source.sample.run) == (DEFAULT_SCENE, 1)
-        assert theatre.source.scene.cast == USUAL_CAST

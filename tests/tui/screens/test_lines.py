@@ -18,11 +18,8 @@ def text(row) -> str:
     return "".join(words for words, _ in row).rstrip()
 
 
-def status(source: Source, width: int, *alone: int) -> str:
-    shown = Shown()
-    for place in alone:
-        shown = shown.alone(place, source.scene.cast)
-    return text(status_row(source, shown, width))
+def status(source: Source, width: int) -> str:
+    return text(status_row(source, Shown(), width))
 
 
 class Taped(Live):
@@ -76,16 +73,6 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
 )
 def test_the_status_line_shows_a_low_pace_and_a_failed_recording(changes, words, is_shown):
     assert (words in status(taped(**changes), 100)) == is_shown
-
-
-def test_the_limit_of_each_method_shown_is_compared_with_its_own_step():
-    live = taped()
-    assert "unstable" not in status(live, 120)
-    live.change(Stepping(1.0))
-    assert "unstable: e, s v (z > 2), r (z > 2.83)" in status(live, 120)
-    assert "unstable: v (z > 2)" in status(live, 120, 2)
-    live.change(Stepping(1.0, equal_cost=True))
-    assert "unstable: e, r (z > 2.83)" in status(live, 120)
 
 
 def test_where_steps_are_slow_the_status_line_says_when_the_next_one_is_due():
