@@ -1,7 +1,9 @@
 """The tour on the lab's screen, with a clock that is moved by hand."""
 
+from dataclasses import replace
+
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.playback.lesson import tour
+from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lab import LabScreen
@@ -107,3 +109,17 @@ async def test_the_command_begins_with_it():
             theatre.stage.frame()
             assert theatre.now < 30
         assert words(STEPS[0].shot.question) in panel(theatre)
+
+
+async def test_of_a_page_that_is_too_long_the_end_is_kept():
+    page = replace(STEPS[0], watch=100 * "too " + "long.")
+
+    def make(clock):
+        screen = LabScreen(Live(page, clock=lambda: 0.0), clock)
+        screen.guide = Lesson("Page", [page])
+        return screen
+
+    async with on_stage(make, (60, 16)) as theatre:
+        await theatre.pilot.pause()
+        assert panel(theatre).startswith("Page 1 of 1")
+        assert panel(theatre).endswith("long.")
