@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, cast
+from typing import Any, ClassVar, NamedTuple
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -154,12 +154,8 @@ class LabScreen(SizedScreen[None]):
         self.call_after_refresh(self.begin)
 
     async def begin(self) -> None:
-        try:
-            if isinstance(self.source, Live):
-                self.record(self.source)
-        except (OSError, UserError) as error:
-            self.app.exit(cast(Any, error))
-            return
+        if isinstance(self.source, Live):
+            self.record(self.source)  # an error ends the lab
         gc.collect()
         gc.freeze()  # never collect what exists now, which would cost frames
         gc.enable()
