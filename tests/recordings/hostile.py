@@ -12,8 +12,7 @@ import zstandard
 from mcap.writer import CompressionType, Writer
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
-from pendu_tui.engine.run.verdicts import Milestone
-from pendu_tui.recordings.events import Event, noticed
+from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.files import MAGIC
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
@@ -121,7 +120,6 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
         sample(first_sample()),
         event(Event("mark", 1, 0, 0.0, text="x"), text=ESCAPES),
     ],
-    "a path as method": lambda: [event(start(), methods=["../../etc/passwd"])],
     "h of 0": partial(changed_h, 0.0),
     "h of 1e300": partial(changed_h, 1e300),
     "step 10^9": lambda: begun(sample(first_sample()._replace(step=10**9, t=1e8), 1.0)),
@@ -129,10 +127,6 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
     "570 years": lambda: begun(sample(first_sample()._replace(step=1), 1.8e10)),  # > 2^63 ns
     "many runs": runs,
     "many marks": partial(noted, lambda n: Event("mark", 1, 0, 0.0, text=unlike(n))),
-    "many milestones": partial(
-        noted,
-        lambda n: noticed(1, Milestone("verdict", SCENE.cast[n % 4], n, n / 10, 1e-9, "grows")),
-    ),
     "many foreign messages": lambda: begun(*[[(FOREIGN, 0.0, b"")]] * 10 * MANY),
     "many tiny events": lambda: [event(Event("mark", 1, 0, 0.0))] * 10 * MANY,
 }

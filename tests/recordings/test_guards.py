@@ -1,6 +1,5 @@
 """The gates of the pytest plugin on right and broken integrators."""
 
-import math
 from functools import cache
 from itertools import islice
 from operator import pos
@@ -65,29 +64,23 @@ def energy_gate():
         (stale, "its order is 1.0"),
         (kicks(second=0.0), "no order: its error stays above"),
         (kicks(first=0.5001), "order 0.008: the error does not fall with h"),
-        (kicks(first=0.55), "the error does not fall with h"),
         (kicks(rounded=float32), "float"),
         (kicks(dropped=40), "keeps more than theta and omega"),
         (kicks(dropped=1000), "the error does not fall with h"),
     ],
-    ids=["stale", "no second kick", "0.5001", "0.55", "float32", "1 of 40 dropped", "1 of 1000"],
+    ids=["stale", "no second kick", "0.5001", "float32", "1 of 40 dropped", "1 of 1000"],
 )
 def test_a_broken_method_fails_for_what_is_broken(method_gate, broken, reason):
     with pytest.raises(pytest.fail.Exception, match=reason):
         method_gate.check(broken, order=2, symplectic=True)
 
 
-def test_a_right_method_passes(method_gate):
-    found = method_gate.check(RIGHT, order=2, symplectic=True, reversible=True)
-    assert found.order == pytest.approx(2, abs=0.001)
-
-
-def test_each_property_is_compared(method_gate):
+def test_a_right_method_passes_and_each_of_its_properties_is_compared(method_gate):
+    assert method_gate.check(RIGHT, order=2.05, symplectic=True, reversible=True)
+    assert ("symplectic", True) in method_gate._properties
     for claim in ({"order": 2.2}, {"symplectic": False}, {"reversible": False}):
         with pytest.raises(pytest.fail.Exception):
             method_gate.check(RIGHT, **claim)
-    assert method_gate.check(RIGHT, order=2.05)
-    assert ("symplectic", True) in method_gate._properties
 
 
 def chains(step, h, seconds, seeds=SEEDS):
@@ -119,12 +112,9 @@ def chains(step, h, seconds, seeds=SEEDS):
     return h * np.arange(1, steps + 1), np.transpose(energies)
 
 
-STEPS = (0.05, 0.1)
-
-
 def records(step, seeds):
     """Return (h, times, energies) at two steps for each seed."""
-    simulated = [(h, *chains(step, h, 60.0, seeds)) for h in STEPS]
+    simulated = [(h, *chains(step, h, 60.0, seeds)) for h in (0.05, 0.1)]
     for seed in range(seeds):
         yield [(h, times, energies[seed]) for h, times, energies in simulated]
 
@@ -134,29 +124,9 @@ def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
     assert np.mean(found) == pytest.approx(2, abs=0.05)
 
 
-def langevin(force, phase, h):
-    random = np.random.default_rng(3)
-    for q, p in RIGHT(force, phase, h):
-        while True:
-            p = p * math.exp(-0.1 * h) + math.sqrt(1 - math.exp(-0.2 * h)) * random.normal(
-                size=p.shape
-            )
-            q, p = next(RIGHT(force, (q, p), h))
-            yield q, p
-
-
-@pytest.mark.parametrize(
-    "broken",
-    [
-        kicks(second=0.0),
-        kicks(first=0.55),
-        kicks(dropped=100),
-        langevin,
-    ],
-    ids=["no second kick", "0.55", "dropped steps", "thermostat"],
-)
+@pytest.mark.parametrize("broken", [{"second": 0.0}, {"first": 0.55}, {"dropped": 100}], ids=str)
 def test_the_order_of_broken_runs_fails(energy_gate, broken):
-    for runs in records(broken, seeds=5):
+    for runs in records(kicks(**broken), seeds=5):
         with pytest.raises(pytest.fail.Exception, match="the energy fluctuates as h"):
             energy_gate.check_order(runs, at_least=1.8)
 
@@ -190,11 +160,9 @@ def test_right_energies_pass_for_every_seed(energy_gate):
     [
         (stale, "the verdict is not bounded"),
         (kicks(second=0.0), "the fluctuation is"),
-        (kicks(first=0.55), "the fluctuation is"),
         (kicks(dropped=100), "the error is"),
-        (langevin, "the fluctuation is"),
     ],
-    ids=["stale force", "no second kick", "0.55", "dropped steps", "thermostat"],
+    ids=["stale force", "no second kick", "dropped steps"],
 )
 @pytest.mark.filterwarnings("ignore:(overflow|invalid value)")
 def test_energies_of_broken_runs_fail_for_what_is_broken(energy_gate, broken, reason):
@@ -221,29 +189,20 @@ def test_a_record_that_cannot_tell_fails_and_says_how_long_it_must_be(energy_gat
         energy_gate.check(*record(seconds=2.0))
 
 
-def test_a_drift_is_above_its_limit_if_it_is_so_within_its_bound(energy_gate):
-    times, energies = record()
-    with pytest.raises(pytest.fail.Exception, match=r"the drift is 0\.01"):
-        energy_gate.check(times, energies * (1 + 0.01 * times), "grows", max_drift=0.005)
-
-
-def test_several_verdicts_may_pass(energy_gate):
+def test_several_verdicts_may_pass_and_a_drift_is_compared_with_its_bound(energy_gate):
     times, energies = record()
     drifting = energies * (1 + 0.01 * times)
+    with pytest.raises(pytest.fail.Exception, match=r"the drift is 0\.01"):
+        energy_gate.check(times, drifting, "grows", max_drift=0.005)
     assert energy_gate.check(times, drifting, ["bounded", "grows"]).verdict == "grows"
     with pytest.raises(pytest.fail.Exception, match="not bounded or loses"):
         energy_gate.check(times, drifting, ["bounded", "loses"])
 
 
-def test_an_energy_that_is_nan_fails_with_its_time(energy_gate):
+def test_an_energy_that_is_nan_fails_with_its_time_and_errors_are_divided_by_the_scale(energy_gate):
     times, energies = record()
+    once, twice = (energy_gate.check(times, energies, scale=scale) for scale in (1.0, 2.0))
+    assert twice.max_error == pytest.approx(once.max_error / 2)
     energies = np.where(times > 100.001, np.nan, energies)
     with pytest.raises(pytest.fail.Exception, match=r"its numbers end at 100\.05"):
         energy_gate.check(times, energies)
-
-
-def test_the_scale_is_what_errors_are_divided_by(energy_gate):
-    once = energy_gate.check(*record(), scale=1.0)
-    twice = energy_gate.check(*record(), scale=2.0)
-    assert twice.max_error == pytest.approx(once.max_error / 2)
-    assert twice.fluctuation == pytest.approx(once.fluctuation / 2)

@@ -1,6 +1,5 @@
 """Recordings of every scene, and of methods of one's own."""
 
-import csv
 import hashlib
 import json
 from pathlib import Path
@@ -10,7 +9,6 @@ from mcap.reader import make_reader
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings import events
-from pendu_tui.recordings.format import EXTRA
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
@@ -36,22 +34,6 @@ def test_a_scene_is_recorded_verified_recovered_and_replayed(tmp_path, name, sce
         replay = Replay(recording, clock=lambda: 0.0)
         replay.seek(recording.length)
         assert (replay.scene, replay.sample) == (scene, samples[-1])
-
-
-@pytest.mark.parametrize("name", ["damped", "mean-field", "stiff-slow"])
-def test_other_models_are_exported_and_shown(tmp_path, name):
-    path, scene = tmp_path / "a.mcap", SCENES[name]
-    with Recorder(path) as recorder:
-        samples = list(with_changes(scene, 10 * scene.h, recorder, []))
-    readings = [reading for sample in samples for reading in sample.readings]
-    rows = list(csv.DictReader(pendu("export", path).out.splitlines()))
-    assert [float(row["theta_rad"]) for row in rows] == [reading.theta for reading in readings]
-    columns = [field.column for field in EXTRA[scene.model]]
-    exported = [[float(row[name]) for name in columns] for row in rows]
-    assert exported == [list(reading.extra.values()) for reading in readings]
-    assert ("vx_per_s" in columns) == (scene.model == "spring")
-    info = pendu("recordings", "show", path, "--json").json
-    assert info["runs"][0]["scene"] == scene.fields()
 
 
 @pytest.fixture(scope="module")

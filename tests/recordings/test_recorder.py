@@ -14,7 +14,7 @@ from threading import Thread
 import jsonschema
 import pytest
 from mcap.reader import make_reader
-from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
+from mcap.records import Chunk, DataEnd, Footer
 from mcap.stream_reader import StreamReader
 
 from pendu_tui.engine.run.lockstep import Lockstep
@@ -61,15 +61,12 @@ def test_a_recording_is_valid_to_mcaps_readers_which_find_a_time_through_the_ind
             records = list(StreamReader(file, **options).records)
         return [record for record in records if isinstance(record, kind)]
 
-    chunks, messages = read(Chunk, emit_chunks=True), read(Message, validate_crcs=True)
-    (end,), (footer,), (statistics,) = map(read, (DataEnd, Footer, Statistics))
+    chunks = read(Chunk, emit_chunks=True)
+    (end,), (footer,) = map(read, (DataEnd, Footer))
     assert end.data_section_crc
     assert footer.summary_crc
     assert all(chunk.uncompressed_crc and chunk.compression == "zstd" for chunk in chunks)
-    assert statistics.chunk_count == len(chunks) > 3
-    assert sum(statistics.channel_message_counts.values()) == len(messages)
-    times = statistics.message_start_time, statistics.message_end_time
-    assert times == (1_000_000_000, 5_000_000_000)
+    assert len(chunks) > 3
     with path.open("rb") as file:
         reader = make_reader(file, validate_crcs=True)
         for schema, channel, message in reader.iter_messages():
@@ -152,12 +149,11 @@ def test_a_writer_that_waits_for_the_disk_does_not_hang_the_close(tmp_path, monk
 
 def test_what_happens_while_paused_is_on_disk_at_once(recorder):
     recorder.add(stepped(30), 1.0)
+    assert last_on_disk(recorder).step == 0
     recorder.add(Event("pause", 1, 30, stepped(30).t), 1.0)
-    for step in range(31, 34):
-        recorder.add(stepped(step), 1.0)
-        assert last_on_disk(recorder).step == step
-    recorder.add(Event("mark", 1, 33, stepped(33).t), 1.0)
-    assert last_on_disk(recorder).kind == "mark"
+    for value in (stepped(31), stepped(32), Event("mark", 1, 33, stepped(33).t)):
+        recorder.add(value, 1.0)
+        assert last_on_disk(recorder).step == value.step
 
 
 def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_path):
