@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -166,11 +167,14 @@ class Live(Source):
     # Changes of the run
 
     def start(self, scene: Scene) -> None:
-        """Begin a new run.
+        """Begin a new run; if its start and h alone are new, the scene keeps its name.
 
         Raises InputError for a step too large at equal cost, or OwnMethodError; then nothing has
         changed.
         """
+        before = self.scene
+        if before != scene == before.altered(theta=scene.theta, omega=scene.omega, h=scene.h):
+            scene = replace(scene, name=f"{before.name.partition(',')[0]}, altered")
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
         self._runs += 1
