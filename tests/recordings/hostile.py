@@ -104,12 +104,16 @@ def noted(value: Callable[[int], Event]) -> Iterator[Entry]:
     return begun(*(event(value(number), number * 1e-3) for number in range(MANY)))
 
 
-def false_heads(count: int) -> bytes:
-    """Heads of chunks of 4 MB, a hundred bytes apart."""
+def false_head(packed: int = 4_000_000) -> bytes:
+    """The head of a chunk that claims to have so many bytes, and 4 MB of contents."""
     frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
-    numbers = (6, 4_000_044, 1, 2, 4_000_000, 1, b"\x04\x00\x00\x00zstd", 4_000_000)
-    head = struct.pack("<BQQQQI8sQ", *numbers) + frame
-    return MAGIC + count * head.ljust(100, b"\0")
+    numbers = (6, packed + 44, 1, 2, 4_000_000, 1, b"\x04\x00\x00\x00zstd", packed)
+    return struct.pack("<BQQQQI8sQ", *numbers) + frame
+
+
+def false_heads(count: int) -> bytes:
+    """Such heads, a hundred bytes apart."""
+    return MAGIC + count * false_head().ljust(100, b"\0")
 
 
 FILES: dict[str, Callable[[], Iterable[Entry]]] = {

@@ -72,6 +72,13 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
         assert is_whole(path) == passes
 
 
+def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none():
+    most = reader.MAX_RECORD - 44
+    assert reader._head_at(hostile.false_head(most), 0)
+    with pytest.raises(ValueError, match="^$"):
+        reader._head_at(hostile.false_head(most + 1), 0)
+
+
 def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_limits(out):
     with Recorder(out) as recorder:
         scene = replace(SCENE, theta=0.0, cast=GENERAL[:MAX_METHODS])
@@ -131,6 +138,7 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(path, o
     path.unlink()
     whole = values(ten_seconds(path))
     recovery = recover(spoil(path, 3, 6), out)
+    assert not verify(path).identical
     kept = values(out)
     assert recovery["damaged"]
     assert recovery["samples_kept"] == len(kept)

@@ -166,6 +166,12 @@ def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_pa
         raise KeyboardInterrupt
     assert recorder.path == tmp_path / "a-2.mcap"
     assert verify(recorder.path).complete
+    recorder = begin(Recorder(path, overwrite=True))
+    recorder.keep_older()
+    recorder.path.write_text("precious")
+    with pytest.raises(DiskError, match="appeared meanwhile"):
+        recorder.close()
+    recorder.part.unlink()
     with Recorder(path, overwrite=True) as recorder:
         begin(recorder)
         assert path.read_bytes() == before
