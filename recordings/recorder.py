@@ -55,6 +55,8 @@ class Recorder:
     DiskError if the disk fails; after that, call only `abandon`.
     """
 
+    is_live = False
+
     def __init__(self, path: Path, overwrite: bool = False) -> None:
         self.path = path
         self.part = part_of(path)
@@ -199,7 +201,8 @@ class Recorder:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
-        publish_time = self._publish_time(log_time)
+        # that of a headless run is the same when it is recorded again
+        publish_time = time.time_ns() if self.is_live else log_time
         number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
@@ -210,10 +213,6 @@ class Recorder:
         if self._paused or self._unflushed > MAX_CHUNK:
             self.flush()
 
-    def _publish_time(self, log_time: int) -> int:
-        """Return a time [ns] that is the same when the same run is recorded again."""
-        return log_time
-
 
 class LiveRecorder(Recorder):
     """A recorder for the lab, which any thread may close; only `__init__` raises.
@@ -222,6 +221,7 @@ class LiveRecorder(Recorder):
     lab can go on.
     """
 
+    is_live = True
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
     def __init__(self, path: Path) -> None:
@@ -234,9 +234,6 @@ class LiveRecorder(Recorder):
 
     def close(self) -> None:
         self._in_turn(super().close)
-
-    def _publish_time(self, log_time: int) -> int:
-        return time.time_ns()
 
     def _keep(self) -> None:
         while not self._file.closed:

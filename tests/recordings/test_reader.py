@@ -75,7 +75,7 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
 def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none():
     most = reader.MAX_RECORD - 44
     assert reader._head_at(hostile.false_head(most), 0)
-    with pytest.raises(ValueError, match="^$"):
+    with pytest.raises(ValueError, match=r"^$"):
         reader._head_at(hostile.false_head(most + 1), 0)
 
 

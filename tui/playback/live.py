@@ -16,7 +16,7 @@ from pendu_tui.engine.run.loops import Loops, TieredLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import Event, EventKind, noticed
+from pendu_tui.recordings.events import Event, EventKind, noticed, simulate
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.watchdog import limited
 from pendu_tui.tui.playback.history import History
@@ -196,12 +196,9 @@ class Live(Source):
     def lay_under(self, h: float, seconds: float) -> None:
         """Lay a run with another step size [s] under this one, from the start to `seconds`."""
         scene = self.scene.altered(h=h)
-        run = RewindableRun(scene, 0, compiled_in_background)
-        history = History(scene, run.changes)
-        history.add(run.sample())
-        for _ in range(round(seconds / h)):
-            run.forward(1)
-            history.add(run.sample())
+        history = History(scene, RewindableRun(scene).changes)
+        for sample in simulate(scene, seconds, sample_every=1):
+            history.add(sample)
         self.ghost = history.ghost()
 
     @property

@@ -81,25 +81,20 @@ class Replay(Source):
         if self.sample.readings[index].diverged_at is not None:
             return Judgement(FAILED)
         if last is not None and last.verdict != UNDECIDED:
-            trend = last.trend
-            return Judgement(
-                last.verdict,
-                trend,
-                periods=swings,
-                lyapunov=last.lyapunov,
-                is_evident=trend is not None,
-            )
+            is_evident = last.trend is not None
+            found = Judgement(last.verdict, last.trend, is_evident=is_evident)
+            return found._replace(periods=swings, lyapunov=last.lyapunov)
         looked = steps - steps % stride(period, self.stepping.h)
-        if not (looked and is_present(method)):
-            return Judgement(periods=swings)
-        judge = Judge(
-            h=self.stepping.own[index],
-            period=period,
-            method=method,
-            model=self.scene.equations,
-            start=LookPoint(0, 0.0, 0.0, 0.0),
-        )
-        progress = judge.progress_at(looked * self.stepping.parts[index])
+        progress = None
+        if looked and is_present(method):
+            judge = Judge(
+                h=self.stepping.own[index],
+                period=period,
+                method=method,
+                model=self.scene.equations,
+                start=LookPoint(0, 0.0, 0.0, 0.0),
+            )
+            progress = judge.progress_at(looked * self.stepping.parts[index])
         return Judgement(periods=swings, progress=progress)
 
     @property

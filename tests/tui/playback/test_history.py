@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.rewindable import RewindableRun
-from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.playback.history import History
 
@@ -116,6 +116,14 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     assert len(history.trails()) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]
+
+
+def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_samples():
+    history = filled(4)
+    for later in (sample(4, low=-9, high=2), sample(5)):
+        history.add(later)
+    errors, _ = history.since(SteppingChange(3, 0.3, Stepping(0.1)))
+    assert errors == [9] * 4
 
 
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
