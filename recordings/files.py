@@ -152,10 +152,11 @@ def new_path(where: Path | None = None) -> Path:
 
 def listing(where: Path | None = None, being_made: bool = False) -> list[Item]:
     """Return the recordings that no lab is making, or that one is, the newest first."""
+    where = where or folder()
     items = []
-    for path in _files(where):
+    for path in where.iterdir() if where.is_dir() else ():
         with suppress(OSError):  # deleted meanwhile
-            if (path.suffix == PART and in_use(path)) == being_made:
+            if _is_recording(path) and (path.suffix == PART and in_use(path)) == being_made:
                 status = path.stat()
                 items.append(Item(path, status.st_size, status.st_mtime))
     return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
@@ -166,24 +167,13 @@ def golden_names() -> list[str]:
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
-def _files(where: Path | None) -> list[Path]:
-    """Return the files of a folder that are named and begin as recordings do."""
-    suffixes = (SUFFIX, SUFFIX + PART)
-    try:
-        paths = list((where or folder()).iterdir())
-    except FileNotFoundError:
-        return []
-    return [path for path in paths if path.name.endswith(suffixes) and _is_recording(path)]
-
-
 def _is_recording(path: Path) -> bool:
-    """Return whether a file begins with the header of an MCAP file of our profile."""
-    if not path.is_file():
+    """Return whether a file is named, and begins, as an MCAP file of our profile."""
+    if not (path.name.endswith((SUFFIX, SUFFIX + PART)) and path.is_file()):
         return False
-    with suppress(OSError), path.open("rb") as file:
+    with path.open("rb") as file:
         head = file.read(64)
-        return head.startswith(MAGIC) and PROFILE.encode() in head
-    return False
+    return head.startswith(MAGIC) and PROFILE.encode() in head
 
 
 def in_use(path: Path) -> bool:

@@ -148,14 +148,11 @@ def _differences(
         for field, a, b in differences(was, now):
             is_implied = field in EXTREMES and a == error  # see without_extremes
             is_newer = a is None and field != "diverged_at"  # than the recording
-            if not (is_implied or is_newer) and (is_exact or not _is_close(a, b)):
+            is_close = False
+            if not (is_exact or a is None or b is None):
+                is_close = math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+            if not (is_implied or is_newer or is_close):
                 yield Difference(*place, method.key, field, a, b)
-
-
-def _is_close(a: float | None, b: float | None) -> bool:
-    if a is None or b is None:
-        return False
-    return math.isclose(a, b, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
 
 
 def recover(path: Path, out: Path, overwrite: bool = False) -> dict[str, Any]:
