@@ -228,7 +228,6 @@ def test_no_two_methods_share_a_name(field):
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method):
     assert all(matching(name) == [method] for name in method.names)
-    assert method.other_names
     assert re.fullmatch("[a-zA-Z]", method.letter)
     assert re.search(r"\(\d{4}\)", method.reference)
     if method.used is None:

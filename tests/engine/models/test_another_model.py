@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -80,10 +81,8 @@ def test_another_model_runs_with_its_variables_is_recorded_verified_and_drawn(tm
     models = copy / "engine" / "models"
     (models / "decaying.py").write_text(MODEL, "utf-8")
     listed = (models / "__init__.py").read_text("utf-8")
-    changed = listed.replace("MeanField)", "MeanField, Decaying)").replace(
-        "from pendu_tui.engine.models.damped",
-        "from pendu_tui.engine.models.decaying import Decaying\nfrom pendu_tui.engine.models.damped",
-    )
+    line = "from pendu_tui.engine.models.decaying import Decaying\n"
+    changed = line + re.sub(r"\(\s*Pendulum,", r"\g<0> Decaying,", listed)
     assert changed.count("Decaying") == 2
     (models / "__init__.py").write_text(changed, "utf-8")
     scene = 'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n'
