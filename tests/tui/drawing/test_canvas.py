@@ -145,6 +145,9 @@ def test_a_letter_stands_where_no_other_method_is():
     canvas.points([(2, 0)], 0)
     canvas.label_near([(0, 0), (1, 0), (2, 0)], "e", 0)
     assert canvas.picture().text == "⠁e"
+    canvas.points([(4, 0)], 1)
+    canvas.label_near([(2, 0), (0, 0)], "v", 0)  # on others before not at all
+    assert canvas.picture().text == "⠁ev"
 
 
 def test_of_other_inks_the_one_drawn_first_lies_below():

@@ -206,3 +206,15 @@ def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     history.add(back._replace(step=399, t=0.05, run=2))
     history.add(back._replace(step=450, t=0.1, run=2))
     assert history.returned is None
+
+
+def test_what_came_since_a_change_begins_behind_the_sample_at_it() -> None:
+    until = run(DRIFT, (40, 0.05))
+    history = run(DRIFT, (40, 0.05), (2, 0.2))
+    _, thetas = history.since(history.changes[-1])
+    assert thetas == until.window().high["theta_error"][-1].tolist()
+
+
+def test_a_stretch_holds_both_its_ends() -> None:
+    window = filled(20).window()
+    assert window.cut(window.x[3], window.x[7]).x.tolist() == window.x[3:8].tolist()

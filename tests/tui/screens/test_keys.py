@@ -1,5 +1,7 @@
 """Every key of the lab does what the help says."""
 
+from collections import Counter
+
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
@@ -9,6 +11,7 @@ from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import WINDOWS, quantities
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
+from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
 from pendu_tui.tui.views.error_table import ErrorTable
@@ -236,3 +239,8 @@ async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
             runs = theatre.source.sample.run
             assert await theatre.stage.start(Scene(h=100.0)) == is_possible
             assert theatre.source.sample.run == runs + is_possible
+
+
+def test_keys_that_stand_in_one_line_of_the_help_are_two_or_more():
+    groups = Counter(key.group for key in KEYS if key.group)
+    assert min(groups.values()) >= 2

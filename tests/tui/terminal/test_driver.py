@@ -1,5 +1,7 @@
 import io
-from types import SimpleNamespace
+import sys
+from importlib.util import find_spec
+from types import ModuleType, SimpleNamespace
 
 import pytest
 from hypothesis import given
@@ -11,7 +13,12 @@ from textual.color import Color
 from textual.drivers._writer_thread import WriterThread
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.terminal.driver import CharacterSetFilter, is_writing
+from pendu_tui.tui.terminal.driver import (
+    CharacterSetFilter,
+    PatientParser,
+    is_writing,
+    limit_pastes,
+)
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
 
 BOLD = Style(bold=True)
@@ -55,3 +62,12 @@ def test_the_terminal_is_behind_while_textuals_queue_holds_a_frame():
     writer.write("a frame")
     assert is_writing(app)
     assert not is_writing(SimpleNamespace(_driver=None))  # which has no such queue
+
+
+@pytest.mark.parametrize("name", ["linux_driver", "web_driver", "win32"])
+def test_a_paste_ends_after_a_while_with_every_driver_of_textual(name, monkeypatch):
+    module = f"textual.drivers.{name}"
+    assert "XTermParser(" in find_spec(module).loader.get_source(module)
+    monkeypatch.setitem(sys.modules, module, ModuleType(module))
+    limit_pastes()
+    assert sys.modules[module].XTermParser is PatientParser

@@ -86,6 +86,10 @@ async def test_a_head_under_the_pointer_says_what_it_means():
         ):
             await theatre.pilot.hover(ErrorTable, offset=(head.rindex(start) + 1, 0))
             assert words in str(shown.tooltip)
+        first, second = shown._head[:2]
+        for at, name in ((len(first) - 1, first), (len(first), second)):
+            await theatre.pilot.hover(ErrorTable, offset=(at, 0))
+            assert shown.tooltip == head_text(name.strip())
         await theatre.pilot.hover(ErrorTable, offset=(head.index("verdict"), 2))
         assert shown.tooltip is None
 
