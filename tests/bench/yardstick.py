@@ -44,7 +44,6 @@ VIEWS = ("\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~")  # F2 to F5
 CURSOR = re.compile(rb"\x1b\[(\d+);(\d+)H(?=\x1b\[[\d;]*m)")  # where text follows
 PENDULUMS = 47  # columns from the left
 BRAILLE = re.compile(rb"\xe2[\xa0-\xa3][\x80-\xbf]")
-EMPTY = re.compile(rb"empty")
 BURST = 0.004  # s
 
 
@@ -128,13 +127,13 @@ def mean_of(rounds: list[dict[str, float]]) -> dict[str, float]:
 
 def first_pendulum_ratio(starts: int) -> float:
     """Return the time to the first pendulum over that to an empty app's first paint."""
-    programs = ((BRAILLE, [*PENDU, *LAB, "--no-record"]), (EMPTY, PAINTER))
+    programs = ((BRAILLE, [*PENDU, *LAB, "--no-record"]), ("empty", PAINTER))
     times: list[list[float]] = [[], []]
     for _ in range(starts):
         for (sign, program), found in zip(programs, times, strict=True):
             # let the first start write the bytecode, as users' does
             with PtyLab(program=program, PYTHONDONTWRITEBYTECODE="") as lab:
-                found.append(lab.wait_for_match(sign))
+                found.append(lab.wait_for(sign))
                 end(lab)
     pendulums, empty = map(median, times)
     return round(pendulums / empty, 2)

@@ -97,19 +97,16 @@ class PtyLab:
             self.read(end - self.now)
         return bytes(self.output[start:])
 
-    def wait_for(self, text: str, seconds: float = 20.0) -> float:
-        """Read until a text comes; return the time [s since the start]."""
-        known = max(0, len(self.output) - len(text))
-        return self.wait_for_match(re.compile(re.escape(text.encode())), seconds, known)
-
-    def wait_for_match(
-        self, pattern: re.Pattern[bytes], seconds: float = 20.0, known: int = 0
-    ) -> float:
-        """Read until a pattern matches the output after `known` bytes; return the time."""
+    def wait_for(self, sign: str | re.Pattern[bytes], seconds: float = 20.0) -> float:
+        """Read until a text or a match comes; return the time [s since the start]."""
+        known = len(self.output)
+        if isinstance(sign, str):
+            known = max(0, known - len(sign))  # the last thing read may be what is waited for
+            sign = re.compile(re.escape(sign.encode()))
         end = self.now + seconds
-        while not pattern.search(self.output, known):
+        while not sign.search(self.output, known):
             if self.now > end:
-                raise TimeoutError(f"{pattern!r} did not come: {bytes(self.output[-2000:])!r}")
+                raise TimeoutError(f"{sign!r} did not come: {bytes(self.output[-2000:])!r}")
             self.read(end - self.now)
         return self.now
 
