@@ -201,7 +201,7 @@ def _phase(value: Any, like: Any, who: str) -> Phase:
             return type(like)(theta), type(like)(omega)
         if theta.shape == omega.shape == like.shape:
             return theta, omega
-    except Exception:  # also of the user's __iter__ or __float__
+    except (TypeError, ValueError, AttributeError):
         pass
     raise OwnMethodError(f"{who} yields {_line(reprlib.repr(value))}; {FORM}.")
 

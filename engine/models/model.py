@@ -70,7 +70,7 @@ class EnergyReference(NamedTuple):
     least: float = 1e-300  # s⁻²; energies below are mostly rounding, and are replaced by it
 
     def errors(self, t: float, *energies: float) -> list[float]:
-        """Return (E - E0)/E0, or where it is not conserved ln(E/E_true), for energies at a time [s]."""
+        """Return (E - E0)/E0 for each energy at a time [s]; ln(E/E_true) if not conserved."""
         if self.true is None:
             return [(energy - self.start) / self.scale for energy in energies]
         true = self._log(self.true(t))

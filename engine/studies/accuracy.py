@@ -32,7 +32,6 @@ COMPARISONS = 400  # with the exact swing in a run: at least so many (below 800)
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
 Z_LADDER = (0.6, 0.0015, 12)  # from about ten to four thousand steps a small swing
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
-FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
 Flaw = Literal["lost", "rounding"]
 REASONS: dict[Flaw, str] = {

@@ -11,18 +11,14 @@ from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.run.loops import LoopsOf, PlainLoops
 from pendu_tui.engine.scenes import Z_LIMITS
-from pendu_tui.engine.studies.accuracy import (
-    FITTED_BELOW,
-    Clock,
-    ErrorKind,
-    Point,
-    Study,
-    timed,
-)
+from pendu_tui.engine.studies.accuracy import Clock, ErrorKind, Flaw, Point, Study, timed
 
 MAX_EVALUATIONS = 20_000_000  # of a run: some seconds in plain Python
 MAX_TIMES = 300  # force evaluations over the cheapest method's, above which a search ends
 TOLERANCE = 0.02  # of the fewest steps
+GROWTH: dict[Flaw | None, float] = {"lost": 4.0, "rounding": 2.0}
+"""The factor in steps where the order of a method predicts none."""
+PREDICTABLE_BELOW = 0.1  # larger errors are not yet proportional to a power of h
 CONFIRMING_COMPARISONS = 10_000
 REFINED = 1.1  # times the steps must reach the target, too: an error may cross zero by chance
 
@@ -127,12 +123,10 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             in_vain += 1
         if in_vain == 2 or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.errors[kind]:.1e}")
-        factor = 2.0 if flaw else (error / target) ** (1 / max(1, method.order))
-        is_hopeless = not flaw and factor * steps > 2 * most_steps and error < FITTED_BELOW
+        factor = GROWTH.get(flaw) or (error / target) ** (1 / max(1, method.order))
+        is_hopeless = not flaw and factor * steps > 2 * most_steps and error < PREDICTABLE_BELOW
         if is_hopeless or steps == most_steps:
             return Attempt(method, point, too_dear)
-        if flaw == "lost":
-            factor = 4.0
         too_few = steps
         steps = min(most_steps, math.ceil(steps * min(max(factor, 1.1), 4.0)))
         point = study.run(method, steps)

@@ -119,6 +119,35 @@ def test_an_error_that_still_falls_with_the_order_is_not_rounding():
     assert (falls.flaws["theta"], stays.flaws["theta"]) == (None, "rounding")
 
 
+@pytest.mark.parametrize(
+    ("quarter", "half", "flaw"),
+    [(8.2, 4.05, None), (8.2, 3.95, "rounding"), (8.0, 4.05, "rounding")],
+)
+def test_an_error_falls_if_both_halvings_of_h_reduce_it_by_half_of_what_the_order_promises(
+    quarter, half, flaw
+):
+    class Scripted(Study):
+        def _errors(self, method, steps, comparisons):
+            share = {100: quarter, 200: half, 400: 2.0}[steps]
+            return dict.fromkeys(("theta", "energy", "final"), 1e-17 * share), False
+
+    assert set(Scripted(DRIFT, 20.0).run(V, 400).flaws.values()) == {flaw}
+
+
+def test_steps_are_doubled_where_rounding_hides_the_order():
+    tried = []
+
+    class Watched(Study):
+        def run(self, method, steps, comparisons=400):
+            tried.append(steps)
+            return super().run(method, steps, comparisons)
+
+    study = Watched(replace(DRIFT, cast=(R,)), 2.0, LOOPS)
+    (attempt,) = reach(study, "theta", 1e-17)
+    assert attempt.why_not.startswith("rounding")
+    assert tried[-1] == 2 * tried[-2]
+
+
 @pytest.mark.parametrize(("time", "most"), [(1e-6, 10_000), (1e6, 10)])
 def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
     for attempt in reach(Study(DRIFT, time), "theta", 1e-30, most):
