@@ -101,9 +101,14 @@ def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(method, th
     assert found.lyapunov > 0.05
 
 
-@pytest.mark.parametrize(("theta", "z"), [(3.0, 0.5), (math.pi - 1e-5, 0.1)])
-def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, z):
-    assert not kind(VERLET, theta, z).chaotic
+@pytest.mark.parametrize(("steps", "chaotic"), [(160, False), (200, True)])
+def test_chaos_separates_neighbours_by_e15_times_the_steps(steps, chaotic):
+    assert kind(VERLET, 2.3, 1.1, steps).chaotic == chaotic  # by e^18.0 and e^25.5
+
+
+@pytest.mark.parametrize(("theta", "z", "steps"), [(3.0, 0.5, 4000), (math.pi - 1e-10, 0.1, 240)])
+def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, z, steps):
+    assert not kind(VERLET, theta, z, steps).chaotic  # up there neighbours part by e^23.5
 
 
 def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
