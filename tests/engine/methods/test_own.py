@@ -133,7 +133,6 @@ WRONG = {
     "chance": (
         euler("theta = theta + __import__('random').random()"), "mine gives other numbers when it begins again"
     ),
-    "no force": ("def mine(force, phase, h):\n    while True:\n        yield phase", "mine never evaluates the force."),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
     "no Python": ("def mine(:", "line 1: invalid syntax."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
