@@ -95,10 +95,13 @@ def test_a_force_may_use_its_array_again(key):
     assert np.array_equal(*ends)
 
 
-@pytest.mark.parametrize("scale", ["std", "first", 2.0])
-def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale):
-    found = judge(TIMES.tolist(), (WAVE + 1e-3 * TIMES).tolist(), scale=scale)
-    assert found.verdict == "grows"
+RISING = WAVE - 30 + 1e-3 * TIMES
+
+
+@pytest.mark.parametrize(("scale", "size"), [("std", np.std(RISING)), ("first", 19.0), (2.0, 2.0)])
+def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size):
+    found = judge(TIMES.tolist(), RISING.tolist(), scale=scale)
+    assert (found.verdict, found.scale) == ("grows", pytest.approx(size))
     assert abs(found.slope * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
 
