@@ -275,15 +275,6 @@ def test_turned_round_verlet_comes_back_but_not_in_chaos(name, seconds, least, m
     assert least <= math.hypot(verlet.theta - scene.theta, verlet.omega / scene.w0) < most
 
 
-@pytest.mark.parametrize(
-    ("name", "limit"), [("verlet-limit", 2.0), ("rk4-limit", 2 * math.sqrt(2))]
-)
-def test_the_limit_scenes_stand_on_either_side_of_their_limit(name, limit):
-    below, above = SCENES[name], SCENES[f"{name}-above"]
-    assert below.z < limit < above.z
-    assert below.altered(h=1.0) == above.altered(h=1.0)
-
-
 @pytest.mark.parametrize("share", [(math.sqrt(5) - 1) / 2, 5 / 8])
 def test_a_rational_part_of_h_avoids_the_resonance_like_an_irrational_one(share):
     lockstep = Lockstep(SCENES["resonance"].altered(h=share * SCENES["resonance"].h))

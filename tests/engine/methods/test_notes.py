@@ -28,7 +28,7 @@ from pendu_tui.engine.methods.learned import (
     stored,
 )
 from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET
-from pendu_tui.engine.methods.splitting import FOREST_RUTH, composition, splitting
+from pendu_tui.engine.methods.splitting import FOREST_RUTH
 from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.methods.verlet import (
     HALVING_RICHARDSON,
@@ -51,13 +51,6 @@ FORCE = PENDULUM.force()
 
 def by_key(value):
     return getattr(value, "key", str(value))
-
-
-@pytest.mark.parametrize("phases", [splitting((0.5, 0.5), (1.0,)), composition(1.0)])
-def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit(phases):
-    start = FORCE, (2.0, 0.3), 0.05
-    verlets = islice(VELOCITY_VERLET.phases(*start), 1000)
-    assert list(islice(phases(*start), 1000)) == list(verlets)
 
 
 @cache

@@ -152,13 +152,6 @@ LINES = [at(R, 10**n, 10.0 ** (4 - 4 * n), 1e-4 * 10**n) for n in range(1, 5)] +
 ]
 
 
-@pytest.mark.parametrize("target", [1e-1, 1e-5, 3e-7])
-def test_between_two_points_the_cost_follows_the_slope(target):
-    steps = 10 * target ** -(1 / 4)  # the line of RK4 above
-    assert cost_at(LINES[:4], "theta", "evaluations", target) == pytest.approx(4 * steps)
-    assert cost_at(LINES[:4], "theta", "seconds", target) == pytest.approx(1e-4 * steps)
-
-
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
