@@ -126,7 +126,7 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     """Return all insights on the methods shown, the most important first."""
     ended = {
         each.method: each
-        for each in sorted(source.milestones, key=lambda each: each.kind == FAILED)
+        for each in source.milestones
         if each.kind in ("over the top", FAILED) and each.method.key not in hidden
     }
     first = sorted(ended.values(), key=lambda each: (each.kind != FAILED, each.step))

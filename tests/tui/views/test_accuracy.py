@@ -97,7 +97,7 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         ((column, row),) = (place[:2] for place in pane.placed if place[2] is point)
         assert pane.text.splitlines()[row][column] == "r"
         at = (column + 1, row + 1)  # the frame
-        await pilot.hover(pane, (at[0] + 1, at[1]))
+        await pilot.hover(pane, (at[0] + 3, at[1]))
         assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a small")
         await pilot.click(pane, at)
         await complete(pilot, pane)

@@ -3,7 +3,7 @@
 from itertools import product
 
 import pytest
-from textual.events import MouseScrollUp
+from textual.events import MouseScrollDown, MouseScrollUp
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
@@ -82,6 +82,10 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.press("z")
         half = theatre.stage.shown.stretch
         assert half.end - half.begin == pytest.approx((stretch.end - stretch.begin) / 2)
+        chart.on_mouse_scroll_down(MouseScrollDown(chart, 30, 4, **scroll, **where))
+        await theatre.pilot.pause()
+        farther = theatre.stage.shown.stretch
+        assert farther.end - farther.begin == pytest.approx((half.end - half.begin) / 0.7)
         await theatre.press("w")
         assert theatre.stage.shown == Shown().through(WHOLE)
         await theatre.press("w", "z", "w")
