@@ -74,11 +74,16 @@ async def of_screen(scene: str, size: tuple[int, int]) -> dict[str, Any]:
     async with lab(SCENES[scene], size) as theatre:
         await theatre.run(SECONDS)
         shown = [pane for pane in theatre.stage.query(CellWidget) if pane.drawable]
-        panes = [(isinstance(pane, TimeChart), tuple(pane._picture.rows)) for pane in shown]
+        panes = [(isinstance(pane, TimeChart), pane._picture.rows) for pane in shown]
     found = []
     in_charts = [1.0]
     for is_chart, rows in panes:
-        drawn = [each for each in DRAWN if rows and rows[: len(each[0].rows)] == each[0].rows]
+        fields = [[tuple(row[left:]) for row in rows] for left in (0, 2)]  # 2: inside axes
+        drawn = [
+            each
+            for each in DRAWN
+            if rows and [*each[0].rows] in [field[: len(each[0].rows)] for field in fields]
+        ]
         for last in drawn[-1:]:
             found.append(counted(*last))
             in_charts += found[-1][2] * is_chart
