@@ -12,7 +12,6 @@ from pendu_tui.engine.studies import stability as fates
 from pendu_tui.engine.studies.stability import CELL, GROWS, HOLDS, LOSES, UNKNOWN, Grid
 from pendu_tui.tui.drawing.frame import Axis, Frame
 from pendu_tui.tui.drawing.picture import PALETTES, Picture
-from pendu_tui.tui.screens.lines import limit_warning
 from pendu_tui.tui.views import stability as drawing
 from pendu_tui.tui.views.stability import verdict
 
@@ -148,15 +147,3 @@ LOST = cells(*[(0, 2.0, fates.GROWS)] * 5)
 )
 def test_a_verdict_tells_the_outcome_and_the_nearest_cliff(outcomes, z, sentence):
     assert verdict(LADDER_GRID, outcomes, 0, (z, 0), w0=2.0) == f"RK4 at h {sentence}"
-
-
-@pytest.mark.parametrize(
-    ("zs", "warning"),
-    [
-        ([2.82] * 4, "unstable: e, s v (z > 2)"),
-        ([2.9] * 4, "unstable: e, s v (z > 2), r (z > 2.83)"),
-        ([0.725, 0.725, 0.725, 2.9], "unstable: e, r (z > 2.83)"),  # at equal cost
-    ],
-)
-def test_a_step_beyond_a_linear_limit_is_warned_of(zs, warning):
-    assert limit_warning(dict(zip(USUAL_CAST, zs, strict=True))) == warning

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from pendu_tui.tui.drawing.picture import EXACT, faint
-from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, arc, lanes, stage_picture
 from tests.tui.drawing.test_canvas import dots
@@ -154,17 +153,6 @@ async def test_small_swings_are_enlarged_though_explicit_euler_leaves_and_o_show
         await theatre.press("o")
         assert "×" not in stage.border_title
         assert next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3)) != rk4
-
-
-@pytest.mark.parametrize("name", ["drift", "stiff-limit", "learned"])
-async def test_each_shown_method_has_its_letter_on_the_stage_of_the_smallest_screen(name):
-    async with lab(SCENES[name], size=SMALLEST) as theatre:
-        for _ in range(4):
-            await theatre.run(2)
-            stage = theatre.stage.query_one(Stage)
-            shown = [theatre.source.scene.cast[place].letter for place in stage.places]
-            assert letters(stage._picture) == sorted(shown)
-        assert stage.border_subtitle == "drag: throw it"
 
 
 def on_lane(theatre, place):
