@@ -227,9 +227,10 @@ class Judge:
             found = self._kept(found, low, high)
         elif found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
             found = found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
-            self._left = self._left or found.verdict
         elif reason := self._doubt(found.verdict, away > rounding):
             found = found._replace(verdict=UNDECIDED, reason=reason)
+        if found.verdict in LEAVES:
+            self._left = self._left or found.verdict
         if found.verdict == GROWS and not found.rests:
             found = found._replace(growth=growth_of(bins))
         return found
@@ -252,7 +253,6 @@ class Judge:
         if self._left not in ("", verdict):
             return levels.TURNED
         if verdict in LEAVES:
-            self._left = verdict
             return ""
         if is_away:
             return levels.NEAR

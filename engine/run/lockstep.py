@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from itertools import permutations
 from typing import Any, NamedTuple
 
+from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import NO_EXTRA
 from pendu_tui.engine.run.judge import Judge, LookPoint, stride
 from pendu_tui.engine.run.levels import ROUNDING
@@ -129,9 +130,6 @@ class Lockstep:
         self._period = exact.period or math.tau / model.w0
         self.milestones: list[Milestone] = []  # up to this step; none without judges
         self._judged = judged
-        self._judges: list[Judge] = []
-        # pairs of a leaving method and a bounded one whose error is still the larger
-        self._below: frozenset[tuple[int, int]] = frozenset()
         self._bottom = math.tau * round(scene.theta / math.tau)  # rad
         for track in self._tracks:
             track.is_watched = judged and model.turns and exact.regime == "libration"
@@ -165,25 +163,26 @@ class Lockstep:
         self._restart()
 
     def _restart(self) -> None:
-        """Count look points from here on."""
+        """Count look points, and judge, from here on."""
         # a model without turns may vibrate faster than it swings
         fastest = self._period if self._model.turns else math.tau / self._model.fastest
         self._stride = stride(fastest, self.stepping.h)
         for track in self._tracks:
             track.look_low = track.look_high = track.error
+        self._judges: list[Judge] = []
+        # pairs of a leaving method and a bounded one whose error is still the larger
+        self._below: frozenset[tuple[int, int]] = frozenset()
         if self._judged:
-            self._judge_anew()
+            methods = zip(self.scene.cast, self._tracks, self.stepping.own, strict=True)
+            self._judges = [self._judge_of(*each) for each in methods]
         self._next_stop = self._following_stop()
 
-    def _judge_anew(self) -> None:
-        self._below = frozenset()
-        self._judges = []
-        for method, track, h in zip(self.scene.cast, self._tracks, self.stepping.own, strict=True):
-            start = self._look_point(track)
-            judge = Judge(h=h, period=self._period, method=method, model=self._model, start=start)
-            if track.diverged_at is not None:
-                judge.fail(0)
-            self._judges.append(judge)
+    def _judge_of(self, method: Method, track: _Track, h: float) -> Judge:
+        start = self._look_point(track)
+        judge = Judge(h=h, period=self._period, method=method, model=self._model, start=start)
+        if track.diverged_at is not None:
+            judge.fail(0)
+        return judge
 
     def advance(self, n: int) -> None:
         """Take n steps."""
