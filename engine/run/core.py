@@ -96,7 +96,7 @@ class Part:
     @property
     def _widens(self) -> bool:
         """Whether the band is wider from quarter to quarter, and far wider at the end."""
-        widths = self.bins.highs - self.bins.lows + 2 * self.bins.spreads
+        widths = self.bins.highs - self.bins.lows
         quarters = [float(part.mean()) for part in np.array_split(widths, 4)]
         start = quarters[0] + self.bins.rounding
         return quarters == sorted(quarters) and quarters[3] > levels.WIDENING * start
@@ -161,7 +161,7 @@ def _moved(whole: Part) -> Judgement | None:
             continue
         for every, level in ((whole, levels.MOVES), (ranked, levels.MOVES_BY_RANK)):
             part = every.last(share)
-            is_certain = part.slope.chance < level * share and part.move * last.move > 0
+            is_certain = part.slope.chance < level * share
             if is_certain and is_new(every.values, part.values, part.move):
                 return whole.described(GROWS if last.move > 0 else LOSES)
     return None
@@ -240,18 +240,12 @@ def is_like(value: float, others: Any, level: float) -> bool:
 
 
 def is_new(values: Any, last: Any, move: float) -> bool:
-    """Return whether the last values, which move so far, end where none have been before."""
+    """Return whether the last values, which move so far, end beyond all before their second half."""
     size = max(1, len(last) // 8)
     way = math.copysign(1.0, move)
-    end = way * float(last[-size:].mean())
-
-    def beyond(past: Any, distance: float) -> bool:
-        return end - float((way * blocks_of(past, size)).max()) >= distance * abs(move)
-
-    before = values[: len(values) - len(last)]
-    if len(before) >= size and not beyond(before, levels.NEW):
-        return False
-    return beyond(values[: len(values) - len(last) // 2], levels.NEW / 2)
+    past = way * values[: len(values) - len(last) // 2]
+    beyond = way * float(last[-size:].mean()) - float(blocks_of(past, size).max())
+    return beyond >= levels.NEW * abs(move)
 
 
 def without_wave(times: Any, values: Any) -> Any:

@@ -15,7 +15,7 @@ CERTAIN = 0.99  # of a bound, and that a trend is smaller than the band
 # Sizes:
 LARGE = 1.0  # standard deviations: a move that is not bounded, however likely it is by chance
 MATERIAL = 0.5  # standard deviations of the fluctuation: what a person sees in a plot
-NEW = 0.5  # of its move: so far the end lies where the energy had not been
+NEW = 0.25  # of its move: so far the end lies where the energy had not been
 GONE = 5.0  # widths of the present band: no walk goes so far from its start
 WIDENING = 3.0  # a band at the end over that at the start
 WAVE = 0.95  # of what a line leaves, explained by a wave that is then subtracted

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, USUAL_CAST, method_of
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.pendulum import Pendulum
@@ -199,14 +198,3 @@ def test_any_scene_within_the_limits_gives_finite_numbers(scene):
     lockstep.advance(3)
     for reading in lockstep.sample().readings:
         assert math.isfinite(reading.theta + reading.omega + reading.energy + reading.energy_error)
-
-
-@pytest.mark.parametrize("scene", EXAMPLES.values(), ids=EXAMPLES)
-def test_a_model_refuses_a_method_that_is_not_for_it(scene):
-    for method in METHODS:
-        if scene.model in method.models:
-            assert scene.with_cast((method,)).cast == (method,)
-        else:
-            why = rf"is not for the model {scene.model}; it is for \w+"
-            with pytest.raises(InputError, match=why):
-                scene.with_cast((method,))
