@@ -33,6 +33,13 @@ class Bins(NamedTuple):
         return Bins._make([self.times, *(energies * factor for energies in self[1:])])
 
 
+def bins_of_looks(looks: Any, h: float, rounding: float) -> Bins:
+    """Return the bins of a run, in seconds, from rows of sums over look points."""
+    counts, steps, errors, lows, highs = np.array(looks).T
+    spreads = (highs - lows) / math.sqrt(8)  # those of a sine
+    return Bins(steps / counts * h, errors / counts, lows, highs, spreads, rounding)
+
+
 class Part:
     """Some bins up to the end, and the slope of one value of each."""
 

@@ -14,7 +14,7 @@ bins.  What is known of a method adds evidence:
 import copy
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.tangent import Stretching, at_bottom
@@ -31,9 +31,6 @@ from pendu_tui.engine.run.verdicts import (
     Judgement,
     Progress,
 )
-
-if TYPE_CHECKING:
-    from pendu_tui.engine.run.core import Bins
 
 
 class LookPoint(NamedTuple):
@@ -110,16 +107,6 @@ class Bands:
         rises = [a.low + a.high < b.low + b.high for a, b in pairwise(self.bins)]
         rising = sum(rises) / max(len(rises), 1)
         return max(rising, 1 - rising)
-
-    def as_bins(self, h: float, rounding: float) -> "Bins":
-        """Return the bins for the core, in seconds."""
-        import numpy as np  # a run begins without it
-
-        from pendu_tui.engine.run.core import Bins
-
-        counts, steps, errors, lows, highs = np.array(self.bins).T
-        spreads = (highs - lows) / math.sqrt(8)  # those of a sine
-        return Bins(steps / counts * h, errors / counts, lows, highs, spreads, rounding)
 
 
 class Judge:
@@ -210,13 +197,14 @@ class Judge:
 
     def _judgement(self) -> Judgement:
         """Return the judgement of the core, or what is known better of this run."""
-        from pendu_tui.engine.run.core import growth_of, judge_bins, measure_bins
+        # a run begins without numpy
+        from pendu_tui.engine.run.core import bins_of_looks, growth_of, judge_bins, measure_bins
 
         # how far roundings may have carried the error by now
         rounding = levels.WALK * self._method.epsilon * math.sqrt(self._last.step)
         if not self._model.conserves_energy:
             rounding = max(rounding, levels.REFERENCE_ERROR)
-        bins = self._bands.as_bins(self._h, rounding)
+        bins = bins_of_looks(self._bands.bins, self._h, rounding)
         if self._orbit:
             measured = measure_bins(bins)
             return measured._replace(verdict=self.judgement.verdict, is_evident=False)

@@ -3,11 +3,12 @@
 import copy
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import permutations
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.models.model import NO_EXTRA
+from pendu_tui.engine.models.model import NO_EXTRA, Phase
 from pendu_tui.engine.run.judge import Judge, LookPoint, stride
 from pendu_tui.engine.run.levels import ROUNDING
 from pendu_tui.engine.run.loops import Advance, Advanced, LoopsOf, PlainLoops
@@ -54,22 +55,24 @@ class Sample(NamedTuple):
     readings: tuple[Reading, ...]
 
 
+@dataclass
 class _Track:
     """The state of one method in a run."""
 
-    def __init__(self, advance: Advance, scene: Scene, start_energy: float) -> None:
-        self.advance = advance
-        self.phase = scene.equations.start(scene.theta, scene.omega)
-        self.energy = start_energy
-        self.error = 0.0  # of the energy; as are the extremes
-        self.low = self.high = 0.0  # since the last sample
-        self.look_low = self.look_high = 0.0  # since the last look point
-        self.largest = 0.0  # |error| of the run
-        self.diverged_at: float | None = None
-        self.parts = 1  # own steps in one step of the lockstep
-        self.turns = 0  # subtracted from theta
-        self.invariant_error = 0.0  # the largest so far
-        self.is_watched = False  # it may go over the top, where the exact motion never comes
+    advance: Advance
+    phase: Phase
+    energy: float
+    error: float = 0.0  # of the energy; as are the extremes
+    low: float = 0.0  # since the last sample
+    high: float = 0.0
+    look_low: float = 0.0  # since the last look point
+    look_high: float = 0.0
+    largest: float = 0.0  # |error| of the run
+    diverged_at: float | None = None
+    parts: int = 1  # own steps in one step of the lockstep
+    turns: int = 0  # subtracted from theta
+    invariant_error: float = 0.0  # the largest so far
+    is_watched: bool = False  # it may go over the top, where the exact motion never comes
 
     def reduce(self) -> None:
         """Subtract whole turns from theta beyond one turn, because its rounding grows with it.
@@ -123,7 +126,7 @@ class Lockstep:
         # of energies: relative errors must be finite, too
         self._limit = min(1.0, self._reference.scale) * 1e300
         self._tracks = [
-            _Track(loops(method, model).advance, scene, self._reference.start)
+            _Track(loops(method, model).advance, start_phase, self._reference.start)
             for method in scene.cast
         ]
         exact = scene.exact()
