@@ -45,11 +45,10 @@ class LookPoint(NamedTuple):
     energy: float = 1.0  # s⁻²
 
 
-def stride(period: float, h: float) -> int:
-    """Return how many steps of h [s] lie between two look points.
-
-    `period` [s] is that of the fastest oscillation.
-    """
+def stride(period: float, h: float, model: Model) -> int:
+    """Return how many steps of h [s] lie between two look points; `period` [s] as of `Judge`."""
+    if not model.turns:  # it may vibrate faster than it swings
+        period = math.tau / model.fastest
     return max(1, round(period / levels.LOOKS / abs(h)))
 
 

@@ -167,9 +167,7 @@ class Lockstep:
 
     def _restart(self) -> None:
         """Count look points, and judge, from here on."""
-        # a model without turns may vibrate faster than it swings
-        fastest = self._period if self._model.turns else math.tau / self._model.fastest
-        self._stride = stride(fastest, self.stepping.h)
+        self._stride = stride(self._period, self.stepping.h, self._model)
         for track in self._tracks:
             track.look_low = track.look_high = track.error
         self._judges: list[Judge] = []

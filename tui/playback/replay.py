@@ -84,7 +84,7 @@ class Replay(Source):
             is_evident = last.trend is not None
             found = Judgement(last.verdict, last.trend, is_evident=is_evident)
             return found._replace(periods=swings, lyapunov=last.lyapunov)
-        looked = steps - steps % stride(period, self.stepping.h)
+        looked = steps - steps % stride(period, self.stepping.h, self.scene.equations)
         progress = None
         if looked and is_present(method):
             judge = Judge(
