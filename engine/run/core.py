@@ -247,7 +247,7 @@ def is_like(value: float, others: Any, level: float) -> bool:
 
 
 def is_new(values: Any, last: Any, move: float) -> bool:
-    """Return whether the last values, which move so far, end beyond all before their second half."""
+    """Return whether the last values, which move so far, end beyond all before the half."""
     size = max(1, len(last) // 8)
     way = math.copysign(1.0, move)
     past = way * values[: len(values) - len(last) // 2]
