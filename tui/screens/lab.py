@@ -104,7 +104,6 @@ class LabScreen(SizedScreen[None]):
         self.scenes.look_up(source.scene.name)
         self._before_lesson: tuple[State, str]
         self._beat = 0  # sixtieths of a second
-        self._is_late = False  # whether the next frame must show everything
         self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
         self._changing = asyncio.Lock()
 
@@ -180,9 +179,7 @@ class LabScreen(SizedScreen[None]):
             return
         passed = 60 // self.fps
         self._beat += passed
-        if self._is_late:
-            self.show_now()
-        elif sample != before or self._beat % Pane.EVERY < passed:
+        if sample != before or self._beat % Pane.EVERY < passed:
             self._follow(sample, self._beat)
 
     def _pause_where_due(self, live: Live, before: Sample) -> None:
@@ -197,9 +194,8 @@ class LabScreen(SizedScreen[None]):
             self.show_now()
 
     def show_now(self) -> None:
-        """Show everything, with the next frame if the terminal is behind."""
-        self._is_late = is_writing(self.app)
-        if not self._is_late:
+        """Show everything; if the terminal is behind, each pane when it is its turn."""
+        if not is_writing(self.app):
             self._follow(self.source.sample)
 
     def _follow(self, sample: Sample, beat: int = 0) -> None:
