@@ -23,10 +23,11 @@ from tests.tui.command_line import PENDU, pendu
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("swing.toml").write_text("theta = 0.5\n", encoding="utf-8")
-    Path("swing.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
+    for name in ("swing.mcap", "killed.mcap.part"):
+        Path(name).write_bytes((GOLDEN / "drift.mcap").read_bytes())
 
 
-@pytest.mark.parametrize("word", ["crossover", "swing.toml", "swing.mcap"])
+@pytest.mark.parametrize("word", ["crossover", "swing.toml", "swing.mcap", "killed.mcap.part"])
 def test_a_scene_or_a_file_opens_the_lab_which_needs_a_terminal(word):
     assert pendu(word).refused(4, "not a terminal")
 
