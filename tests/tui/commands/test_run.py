@@ -38,6 +38,10 @@ def test_the_table_says_what_each_method_does_and_what_happened():
     for method, verdict in zip(USUAL_CAST, ["grows", "bounded", "bounded", "loses"], strict=True):
         assert re.search(rf"^{method.label} +{verdict}", out, re.MULTILINE)
     assert out.count("Explicit Euler went over the top at 7.15 s") == 1
+    rows = rows_of("--time 60")
+    assert rows["rk4"]["drift_per_second"] == rows["rk4"]["slope"] < 0
+    assert rows["velocity_verlet"]["slope"] is not None
+    assert rows["velocity_verlet"]["drift_per_second"] is None  # no evidence for a trend
     chaos = "--theta 0.3 --h 0.654514 --time 200 --methods symplectic_euler"
     row = rows_of(chaos)["symplectic_euler"]
     assert row["verdict"] == "chaotic"

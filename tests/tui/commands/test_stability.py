@@ -51,6 +51,12 @@ def test_csv_repeats_the_engine_with_a_line_for_each_swing(tmp_path):
     assert [row["fate"] for row in rows] == [FATES[fate] for fate in cells["fate"].flat]
     assert [int(row["steps_survived"]) for row in rows] == cells["steps"].ravel().tolist()
     assert [float(row["max_energy_error"]) for row in rows] == cells["error"].ravel().tolist()
+    survived = {(row["method"], row["z"], row["theta"]): row["steps_survived"] for row in rows}
+    for row in pendu(*SMALL, "--json").json["pendulum"]:
+        place = (row["method"], str(row["first_failure_z"]), str(row["theta"]))
+        if place in survived:
+            assert str(row["steps_survived"]) == survived.pop(place)
+    assert len(survived) < len(rows)
 
 
 @pytest.mark.parametrize(
