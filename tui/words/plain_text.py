@@ -31,10 +31,16 @@ def description(source: Source, hidden: Collection[str] = ()) -> list[str]:
     if source.exact.period is not None:
         cycle = "turn" if source.exact.regime == "rotation" else "swing"
         began += f"; one {cycle} takes {about(source.exact.period)}"
+    h = source.stepping.h
+    step = f"{abs(h):.4g} s, z = {abs(h) * scene.equations.fastest:.3g}"
+    if source.stepping.equal_cost:
+        step += "; at equal cost, the cheaper methods split it"
+    if h < 0:
+        step += "; time runs backwards"
     lines = [
         f"{kind} {state} at {at}.",
         f"The pendulum is {scene.length:.4g} m long and started at {began}.",
-        f"The step size is {step_text(source)}.",
+        f"The step size is {step}.",
     ]
     if source.failure:
         lines.append(f"It stands still: {source.failure}")
@@ -44,17 +50,6 @@ def description(source: Source, hidden: Collection[str] = ()) -> list[str]:
         if method.key not in hidden:
             lines.append(method_sentence(source, index))
     return [*lines, _recording(source)]
-
-
-def step_text(source: Source) -> str:
-    """Describe the step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it"."""
-    h = source.stepping.h
-    text = f"{abs(h):.4g} s, z = {abs(h) * source.scene.equations.fastest:.3g}"
-    if source.stepping.equal_cost:
-        text += "; at equal cost, the cheaper methods split it"
-    if h < 0:
-        text += "; time runs backwards"
-    return text
 
 
 def method_sentence(source: Source, index: int) -> str:

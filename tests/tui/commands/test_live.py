@@ -37,6 +37,31 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert pendu("live", "--plain").refused(5, str(path))
 
 
+def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
+    sources = []
+    monkeypatch.setattr("pendu_tui.tui.screens.launch.check_terminal", lambda: None)
+    monkeypatch.setattr(
+        "pendu_tui.tui.screens.launch.show",
+        lambda screen, options: sources.append(screen.source) or 0,
+    )
+    replay = ("replay", "drift", "--loop", "--paused", "--start-at", 3, "--speed", 2)
+    for command in (
+        replay,
+        ("replay", "drift"),
+        ("live", "--equal-cost", "--no-record"),
+        ("live",),
+    ):
+        assert pendu(*command).code == 0
+    given, usual, equal, live = sources
+    assert (given.looping, given.playhead.paused, given.playhead.position) == (True, True, 3.0)
+    assert (given.playhead.speed, usual.playhead.speed) == (2.0, 1.0)
+    assert (usual.looping, usual.playhead.paused, usual.playhead.position) == (False, False, 0.0)
+    assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
+    for source in sources:
+        source.close()
+    assert pendu("replay", "drift", "--start-at", 99).refused(2, "--start-at 99 is outside")
+
+
 def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(tmp_path):
     plain = tmp_path / "plain.toml"
     plain.write_text("theta = 1\n", encoding="utf-8")
