@@ -8,6 +8,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.playback.lesson import tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
@@ -103,6 +104,18 @@ def test_every_event_has_a_sentence_also_at_another_speed():
     assert said(Live(DRIFT, 4.0, clock=lambda: 0.0), 20.5 / 4) == sentences
 
 
+def test_a_lesson_gives_time_to_read_a_question_before_it_answers():
+    clock = Hour()
+    sentences = []
+    lesson = tour()
+    end = clock.now + 7.15 + 5  # the pause, and less than READING
+    live = Live(lesson.page, clock=clock.read)
+    tell(live, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, lesson=lesson)
+    told = "\n".join(sentences)
+    assert lesson.shot.question in told
+    assert lesson.shot.truth not in told
+
+
 def test_a_replay_ends_at_its_end():
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         replay = Replay(recording)
@@ -137,7 +150,7 @@ def test_changes_and_marks_are_listed_pauses_are_not_and_a_step_back_removes_wha
         " 1  8.10 s mark 2: question 2",
         " 1  8.10 s time runs back, h 0.1 s",
         " 1  8.10 s h 0.4 s, equal cost",
-        " 2  0.00 s start 114.6° 0 rad/s, h 0.05 s",
+        " 2  0.00 s start drift, altered, h 0.05 s",
         " 2  0.00 s h 0.2 s, equal cost",
     ]
     live = after(DRIFT, 8)
