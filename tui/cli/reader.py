@@ -11,12 +11,13 @@ import json
 import lzma
 import re
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from itertools import chain
 from statistics import mode
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from pendu_tui.recordings.files import printable
@@ -51,6 +52,8 @@ _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
 _COMMENTS = "#@!%;"
+_MARKS = {*_COMMENTS}
+_JSON_NUMBERS = msgspec.json.Decoder(list[float])
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
     r"\s{2,}",  # names may contain single blanks
@@ -75,7 +78,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     if not start:
         raise unreadable("the input is empty; nothing to judge.")
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return _Text(wanted, file).read(map(_record, _records(_arrays(stream))))
+        return _Text(wanted, file).read([_records(_arrays(stream))])
     for magic, kind in _NOT_TEXT.items():
         if start.startswith(magic):
             raise unreadable(f"this is {kind}.")
@@ -85,18 +88,18 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     elif b"\0" in start:
         raise unreadable("this is not text.")
     text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
-    lines = _lines(text)
+    blocks = _blocks(text)
     if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
-        lines = _json(text)
-    return _Text(wanted, file).read(lines)
+        blocks = _json(text)
+    return _Text(wanted, file).read(blocks)
 
 
 def unreadable(sentence: str) -> UserError:
     return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
-def _lines(text: io.TextIOBase) -> Iterator[str]:
-    """Yield lines.  Raises UserError where there is no end to them."""
+def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
+    """Yield some lines at a time.  Raises UserError where there is no end to them."""
     count = 0
     rest = ""
     while chunk := text.read(BLOCK):
@@ -104,25 +107,30 @@ def _lines(text: io.TextIOBase) -> Iterator[str]:
         count += len(lines)
         if count > MAX_LINES:
             raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
-        if max(map(len, [*lines, rest])) > MAX_LINE:
+        if len(rest) > MAX_LINE:
             raise unreadable("a line is longer than 1 MB; is this a table?")
-        yield from lines
-    yield rest
+        yield lines
+    yield [rest]
 
 
-def _json(text: io.TextIOBase) -> Iterator[str]:
-    """Yield a line for each record of JSON, or other lines as they are."""
+def _json(text: io.TextIOBase) -> Iterator[list[str]]:
+    """Yield a line for each record of JSON, or other lines as they are, some at a time."""
     whole = text.read(MAX_DOCUMENT)
     if len(whole) == MAX_DOCUMENT:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
     if document is not None:
-        yield from map(_record, _records(document))
+        yield _records(document)
         return
-    for line in _lines(io.StringIO(whole)):
-        is_nested = line.count("{") > 1 or "[" in line
-        item = _parsed(line) if is_nested else None
-        yield line if item is None else _record(item)
+    for lines in _blocks(io.StringIO(whole)):
+        text = "".join(lines)
+        is_nested = text.count("{") > len(lines) or "[" in text
+        yield [*map(_flattened, lines)] if is_nested else lines
+
+
+def _flattened(line: str) -> str:
+    item = _parsed(line)
+    return line if item is None else _record(item)
 
 
 def _parsed(text: str) -> Any:
@@ -131,7 +139,12 @@ def _parsed(text: str) -> Any:
     return None
 
 
-def _records(document: Any) -> list[Any]:
+def _records(document: Any) -> list[str]:
+    """Return a line for each object or row in a document."""
+    return [*map(_record, _items(document))]
+
+
+def _items(document: Any) -> list[Any]:
     """Return the objects or rows in a document: those of a list, or of lists in an object."""
     if isinstance(document, list):
         return document
@@ -147,7 +160,7 @@ def _records(document: Any) -> list[Any]:
         size = mode(map(len, columns.values()))  # positions, for example, are more
         columns = {name: each for name, each in columns.items() if len(each) == size}
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    return next(filter(None, map(_records, document.values())), [])
+    return next(filter(None, map(_items, document.values())), [])
 
 
 def _record(item: Any) -> str:
@@ -197,13 +210,26 @@ def number(text: str) -> float | None:
     return None
 
 
-def _values(fields: Sequence[str], places: Group, is_certain: bool) -> list[float | None]:
-    """Return the numbers in fields that are certain to be some, nothing if the first is none."""
-    try:
-        return [float(fields[place]) for place in places]
-    except ValueError:
-        values = [number(fields[place]) for place in places if is_certain]
-        return values if values and values[0] is not None else []
+def _floats(column: list[str]) -> list[float]:
+    """Return the numbers in these fields.  Raises ValueError."""
+    with suppress(msgspec.DecodeError):  # three times as fast
+        values = _JSON_NUMBERS.decode(f"[{','.join(column)}]")
+        if len(values) == len(column):  # no field has a comma
+            return values
+    return [*map(float, column)]
+
+
+def _values(columns: list[list[str]], is_certain: bool) -> list[list[Any]]:
+    """Return the numbers in columns; nothing if they are not certain to be some.
+
+    Those of a single row may be None, but not the first.
+    """
+    with suppress(ValueError):
+        return [*map(_floats, columns)]
+    if not is_certain or len(columns[0]) > 1:
+        return []
+    values = [[number(field) for field in column] for column in columns]
+    return values if values[0] != [None] else []
 
 
 class _Text:
@@ -229,13 +255,16 @@ class _Text:
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
 
-    def read(self, lines: Iterable[str]) -> list[Sheet]:
+    def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
-        for self._line, line in enumerate(lines, 1):
-            if not self._read_known(line):
-                self._read_new(line)
-            if self._line == MAX_LINES_BEFORE and not self._sheets and not self._prints[0].puts:
-                raise unreadable(f"{self._line:,} lines without a row; is this a table?")
+        for lines in blocks:
+            if not self._read_known(lines):
+                for line in lines:
+                    if not self._read_known([line]):
+                        self._line += 1
+                        self._read_new(line)
+            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0].puts:
+                raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
         for sheet in self._prints:
             sheet.choose()
@@ -243,32 +272,50 @@ class _Text:
                 named.append(sheet)
         return sorted(named or self._sheets or self._prints, key=lambda sheet: sheet.line)
 
-    def _read_known(self, line: str) -> bool:
-        """Read a line that is like an earlier one.  Return whether it is."""
-        if self._heads or self._over or self._is_over or self._begins:
+    def _read_known(self, lines: list[str]) -> bool:
+        """Read lines that are all like an earlier one.  Return whether they are."""
+        if self._heads or self._over or self._is_over or self._begins or not lines:
             return False
+        is_known = self._read_rows(lines) or self._read_prints(lines)
+        self._line += is_known * len(lines)
+        return is_known
+
+    def _read_rows(self, lines: list[str]) -> bool:
+        if not self._sheets:
+            return False
+        width = self._width
+        fields = _split((self._delimiter or " ").join(lines), self._delimiter)
         if (
-            self._sheets
-            and len(fields := _split(line, self._delimiter)) == self._width
-            and line.startswith(self._opening)
-            and line.lstrip()[:1] not in _COMMENTS
+            len(fields) != width * len(lines)
+            or {len(_split(line, self._delimiter)) for line in lines} != {width}
+            or (self._opening and {*fields[::width]} != {self._opening})
+            or {line.lstrip()[:1] for line in lines} & _MARKS
         ):
-            sheet = self._sheets[-1]
-            if values := _values(fields, sheet.kept, self._delimiter is not None):
-                sheet.put(self._line, sheet.kept, values)
-                self._remarks = 0
-                return True
-        fields = _NUMBERS.split(line)
-        known = self._shapes.get("\0".join(fields[::2]))
-        if known is None:
+            return False
+        sheet = self._sheets[-1]
+        columns = [fields[place::width] for place in sheet.kept]
+        if not (values := _values(columns, self._delimiter is not None)):
+            return False
+        sheet.put(self._line + 1, sheet.kept, values)
+        self._remarks = 0
+        return True
+
+    def _read_prints(self, lines: list[str]) -> bool:
+        fields = _NUMBERS.split("\n".join(lines))
+        shape = "\0".join(fields[::2])
+        first = shape.partition("\n")[0]
+        known = self._shapes.get(first)
+        if known is None or shape != "\n".join([first] * len(lines)):
             return False
         places, found = known
         if places:
-            fields.append("nan")
-            if not (values := _values(fields, found, is_certain=True)):
+            step = 2 * first.count("\0")
+            nans = ["nan"] * len(lines)
+            columns = [fields[index::step] if index > 0 else nans for index in found]
+            if not (values := _values(columns, is_certain=True)):
                 return False
-            self._prints[-1].put(self._line, places, values)
-        self._remarks += bool(line.strip())
+            self._prints[-1].put(self._line + 1, places, values)
+        self._remarks += len(lines) if first.strip() else 0
         return True
 
     def _read_new(self, line: str) -> None:
@@ -422,7 +469,7 @@ class _Text:
         if is_like:
             self._remarks = 0
             sheet = self._sheets[-1]
-            sheet.put(self._line, sheet.kept, [numbers[place] for place in sheet.kept])
+            sheet.put(self._line, sheet.kept, [[numbers[place]] for place in sheet.kept])
         elif self._sheets and opening == self._opening and (opening or numbers[0] is not None):
             self._sheets[-1].skipped += 1
         return is_like

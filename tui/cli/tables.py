@@ -10,6 +10,7 @@ from array import array
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -205,15 +206,17 @@ class Sheet:
         self.names.append(name)
         self.units.append(unit)
 
-    def put(self, line: int, places: Group, values: Sequence[float | None]) -> None:
-        """Add the values of some columns that are numbers."""
-        if None in values:
-            pairs = zip(places, values, strict=True)
-            places = tuple(place for place, value in pairs if value is not None)
-            values = [value for value in values if value is not None]
-        self._values[places].extend((line, *values))  # type: ignore[arg-type]
-        self.puts += 1
-        if self.puts == SAMPLE:
+    def put(self, line: int, places: Group, columns: Sequence[Sequence[float | None]]) -> None:
+        """Add the values of some columns from this line on, in a row only those that are numbers."""
+        pairs = zip(places, columns, strict=True)
+        some = {place: column for place, column in pairs if column[0] is not None}
+        lines = range(line, line + len(columns[0]))
+        self._values[tuple(some)].extend(
+            chain.from_iterable(zip(lines, *some.values(), strict=True))
+        )
+        is_sampled = self.puts >= SAMPLE
+        self.puts += len(lines)
+        if self.puts >= SAMPLE and not is_sampled:
             self.choose()
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
@@ -222,22 +225,24 @@ class Sheet:
             self.places[name] = len(self.names)
             self.add_column(name, unit)
             first, before = self._once[name]
-            self.put(first, (self.places[name],), [before])
+            self.put(first, (self.places[name],), [[before]])
         if name in self.places:
-            self.put(line, (self.places[name],), [value])
+            self.put(line, (self.places[name],), [[value]])
         elif len(self._once) < MAX_NAMES:
             self._once[name] = (line, value)
 
     def _column(self, place: int) -> tuple[Any, Any]:
         """Return the lines and values of a column, in the order of the lines."""
-        found = [np.empty((0, 2))]
-        for places, values in self._values.items():
-            if place in places:
-                table = np.frombuffer(values).reshape(-1, 1 + len(places))
-                found.append(table[:, [0, 1 + places.index(place)]])
-        column = np.concatenate(found)
-        order = np.argsort(column[:, 0], kind="stable")
-        return column[order, 0], column[order, 1]
+        tables = [
+            np.frombuffer(values).reshape(-1, 1 + len(places)).T[[0, 1 + places.index(place)]]
+            for places, values in self._values.items()
+            if place in places
+        ]
+        if len(tables) == 1:
+            return tables[0][0], tables[0][1]
+        lines, values = np.concatenate([np.empty((2, 0)), *tables], axis=1)
+        order = np.argsort(lines, kind="stable")
+        return lines[order], values[order]
 
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
@@ -285,10 +290,8 @@ class Sheet:
         runs = list(_runs(times))
         if len(runs) == rows > 1:
             raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
-        skipped = self.skipped + len(here) - rows
-        if choice.energy and not self._is_printed:  # energies without a time
-            own, _ = self._column(choice.energy[0])
-            skipped += int(np.count_nonzero(~np.isin(own, lines)))
+        seen = len(here) if self._is_printed else self.puts
+        skipped = self.skipped + seen - rows
         for run in runs:
             series = Series(self, choice, times[run], energies[run], kinetic[run])
             series.skipped["without_numbers"] = skipped
