@@ -13,14 +13,13 @@ import re
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from itertools import chain
+from itertools import accumulate, chain, compress
 from statistics import mode
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
 from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names
@@ -31,15 +30,10 @@ MAX_LINES_BEFORE = 100_000  # the first row
 MAX_LINES = 5_000_000  # some seconds; the input may be endless
 BLOCK = 1 << 16  # characters
 MAX_DOCUMENT = 1 << 27  # characters of JSON
+MAX_INNER = 9  # of an array in a record
 MAX_COLUMNS = 5000
 MAX_SHAPES = 10_000
 MAX_HEADS = 20  # lines that may be the head of the next row
-_NOT_TEXT = {
-    b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
-    b"PAR1": "Parquet; save it as CSV",
-    b"\x89HDF": "HDF5; save its arrays with numpy.savez",
-    b"MATLAB 5": "a MAT-file; save its arrays with numpy.savez",
-}
 _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"\x1f\x8b": gzip.open,
     b"BZh": bz2.open,
@@ -52,7 +46,6 @@ _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
 _COMMENTS = "#@!%;"
-_MARKS = {*_COMMENTS}
 _JSON_NUMBERS = msgspec.json.Decoder(list[float])
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
@@ -61,7 +54,6 @@ _BETWEEN = (
     r"(?<=[)\]])\s+",  # or end with the unit
 )
 _IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
-_FORTRAN_POWERS = str.maketrans("dD", "ee")
 
 
 def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> list[Sheet]:
@@ -72,21 +64,15 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
             try:
                 unpacked = io.BufferedReader(unpack(stream))
                 return read_sheets(unpacked, wanted, file.rpartition(".")[0])
-            except (EOFError, OSError, lzma.LZMAError, zlib.error) as error:
-                why = printable(str(error), 100)
-                raise unreadable(f"it cannot be unpacked: {why}.") from None
-    if not start:
-        raise unreadable("the input is empty; nothing to judge.")
+            except (EOFError, OSError, lzma.LZMAError, zlib.error):
+                raise unreadable("it cannot be unpacked; is it whole?") from None
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
         return _Text(wanted, file).read([_records(_arrays(stream))])
-    for magic, kind in _NOT_TEXT.items():
-        if start.startswith(magic):
-            raise unreadable(f"this is {kind}.")
     encoding = "utf-8-sig"
     if start.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
     elif b"\0" in start:
-        raise unreadable("this is not text.")
+        raise unreadable("this is not text; save a table as CSV (a recording: pendu-tui export).")
     text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
     blocks = _blocks(text)
     if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
@@ -119,24 +105,21 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
     if len(whole) == MAX_DOCUMENT:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
-    if document is not None:
+    if document is not whole:
         yield _records(document)
         return
     for lines in _blocks(io.StringIO(whole)):
         text = "".join(lines)
-        is_nested = text.count("{") > len(lines) or "[" in text
-        yield [*map(_flattened, lines)] if is_nested else lines
-
-
-def _flattened(line: str) -> str:
-    item = _parsed(line)
-    return line if item is None else _record(item)
+        if text.count("{") > len(lines) or "[" in text:
+            lines = _records([*map(_parsed, lines)])
+        yield lines
 
 
 def _parsed(text: str) -> Any:
+    """Return what there is in JSON, or the text itself if it is none."""
     with suppress(ValueError, RecursionError):
         return json.loads(text)
-    return None
+    return text
 
 
 def _records(document: Any) -> list[str]:
@@ -150,16 +133,17 @@ def _items(document: Any) -> list[Any]:
         return document
     if not isinstance(document, dict):
         return []
-    columns = {}
+    arrays = {}
     for name, each in document.items():
         if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
             each = [*each.values()]
-        if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], (dict, list)):
-            columns[name] = each
-    if columns:
-        size = mode(map(len, columns.values()))  # positions, for example, are more
-        columns = {name: each for name, each in columns.items() if len(each) == size}
-        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        if isinstance(each, list) and len(each) > 1 and not isinstance(each[0], dict):
+            arrays[name] = each
+    if arrays:
+        rows = [each for each in arrays.values() if not isinstance(each[0], list)]
+        size = mode(map(len, rows or arrays.values()))  # positions, for example, are more
+        arrays = {name: each for name, each in arrays.items() if len(each) == size}
+        return [dict(zip(arrays, row, strict=True)) for row in zip(*arrays.values(), strict=True)]
     return next(filter(None, map(_items, document.values())), [])
 
 
@@ -174,7 +158,11 @@ def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     if isinstance(item, dict):
         for inner, value in item.items():
             yield from _flat(value, f"{name}.{inner}".lstrip("."))
-    elif not isinstance(item, list):
+    elif isinstance(item, list):
+        for place, value in enumerate(item[:MAX_INNER], 1):
+            if not isinstance(value, (dict, list)):
+                yield f"{name}_{place}", value
+    else:
         yield name, item
 
 
@@ -206,7 +194,7 @@ def number(text: str) -> float | None:
     if "." in text and "," in text:
         text = text.replace(min(".,", key=text.find), "")  # it parts thousands
     with suppress(ValueError):
-        return float(text.replace(",", ".").translate(_FORTRAN_POWERS))
+        return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
     return None
 
 
@@ -226,10 +214,12 @@ def _values(columns: list[list[str]], is_certain: bool) -> list[list[Any]]:
     """
     with suppress(ValueError):
         return [*map(_floats, columns)]
-    if not is_certain or len(columns[0]) > 1:
+    if not is_certain:
         return []
-    values = [[number(field) for field in column] for column in columns]
-    return values if values[0] != [None] else []
+    values = [[*map(number, column)] for column in columns]
+    is_single = len(columns[0]) == 1
+    needed = values[:1] if is_single else values
+    return [] if any(None in column for column in needed) else values
 
 
 class _Text:
@@ -244,7 +234,6 @@ class _Text:
         self._delimiter: str | None = None
         self._opening = ""  # the word with which each row begins
         self._width = -1  # fields in a row
-        self._remarks = 0  # lines of text since the last row
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._units = ("", "")  # of times and energies, if the layout has only these
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
@@ -258,11 +247,20 @@ class _Text:
     def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
         for lines in blocks:
-            if not self._read_known(lines):
-                for line in lines:
-                    if not self._read_known([line]):
-                        self._line += 1
-                        self._read_new(line)
+            first = 0
+            size = len(lines)
+            while first < len(lines):
+                some = lines[first : first + size]
+                if self._read_known(some):
+                    first += size
+                    size *= 2
+                elif size > 1:
+                    size //= 4
+                    size = max(size, 1)
+                else:
+                    self._line += 1
+                    self._read_new(*some)
+                    first += 1
             if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0].puts:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
         named = [sheet for sheet in self._sheets if any(sheet.names)]
@@ -273,54 +271,63 @@ class _Text:
         return sorted(named or self._sheets or self._prints, key=lambda sheet: sheet.line)
 
     def _read_known(self, lines: list[str]) -> bool:
-        """Read lines that are all like an earlier one.  Return whether they are."""
-        if self._heads or self._over or self._is_over or self._begins or not lines:
+        """Read lines that are all like earlier ones.  Return whether they are."""
+        if self._heads or self._over or self._is_over or self._begins:
             return False
-        is_known = self._read_rows(lines) or self._read_prints(lines)
-        self._line += is_known * len(lines)
-        return is_known
-
-    def _read_rows(self, lines: list[str]) -> bool:
-        if not self._sheets:
-            return False
-        width = self._width
-        fields = _split((self._delimiter or " ").join(lines), self._delimiter)
-        if (
-            len(fields) != width * len(lines)
-            or {len(_split(line, self._delimiter)) for line in lines} != {width}
-            or (self._opening and {*fields[::width]} != {self._opening})
-            or {line.lstrip()[:1] for line in lines} & _MARKS
-        ):
-            return False
-        sheet = self._sheets[-1]
-        columns = [fields[place::width] for place in sheet.kept]
-        if not (values := _values(columns, self._delimiter is not None)):
-            return False
-        sheet.put(self._line + 1, sheet.kept, values)
-        self._remarks = 0
-        return True
-
-    def _read_prints(self, lines: list[str]) -> bool:
-        fields = _NUMBERS.split("\n".join(lines))
-        shape = "\0".join(fields[::2])
-        first = shape.partition("\n")[0]
-        known = self._shapes.get(first)
-        if known is None or shape != "\n".join([first] * len(lines)):
-            return False
-        places, found = known
-        if places:
-            step = 2 * first.count("\0")
-            nans = ["nan"] * len(lines)
-            columns = [fields[index::step] if index > 0 else nans for index in found]
-            if not (values := _values(columns, is_certain=True)):
+        others = dict(enumerate(lines, self._line + 1))
+        puts = []
+        if self._sheets:
+            sheet = self._sheets[-1]
+            rows = {
+                number: line
+                for number, line in others.items()
+                if len(_split(line, self._delimiter)) == self._width
+                and line.startswith(self._opening)
+                and line.lstrip()[:1] not in _COMMENTS
+            }
+            fields = _split((self._delimiter or " ").join(rows.values()), self._delimiter)
+            columns = [fields[place :: self._width] for place in sheet.kept]
+            is_whole = len(fields) == len(rows) * self._width
+            values = is_whole and _values(columns, self._delimiter is not None)
+            if rows and values:
+                puts.append((sheet, [*rows], sheet.kept, values))
+                others = {number: line for number, line in others.items() if number not in rows}
+        if others:
+            found = self._prints_in(others)
+            if found is None:
                 return False
-            self._prints[-1].put(self._line + 1, places, values)
-        self._remarks += len(lines) if first.strip() else 0
+            puts += found
+        for sheet, *put in puts:
+            sheet.put(*put)
+        self._line += len(lines)
         return True
+
+    def _prints_in(self, lines: dict[int, str]) -> list[Any] | None:
+        """Return what lines of known shapes hold, None if a shape is new."""
+        fields = _NUMBERS.split("\n".join(lines.values()))
+        shapes = "\0".join(fields[::2]).split("\n")
+        starts = [0, *accumulate(shape.count("\0") for shape in shapes)]
+        puts = []
+        for shape in {*shapes}:
+            known = self._shapes.get(shape)
+            if known is None:
+                return None
+            places, found = known
+            if not places:
+                continue
+            here = [each == shape for each in shapes]
+            at = [*compress(starts, here)]
+            columns = [
+                [fields[2 * start + index] for start in at] if index > 0 else ["nan"] * len(at)
+                for index in found
+            ]
+            if not (values := _values(columns, is_certain=True)):
+                return None
+            puts.append((self._prints[-1], [*compress(lines, here)], places, values))
+        return puts
 
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
-        self._remarks += bool(line.strip())
         names = self._over
         self._over = []
         if names and len(fields := line.split()) == len(names):
@@ -467,9 +474,8 @@ class _Text:
             self._opening = opening
             is_like = True
         if is_like:
-            self._remarks = 0
             sheet = self._sheets[-1]
-            sheet.put(self._line, sheet.kept, [[numbers[place]] for place in sheet.kept])
+            sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
         elif self._sheets and opening == self._opening and (opening or numbers[0] is not None):
             self._sheets[-1].skipped += 1
         return is_like
@@ -494,9 +500,9 @@ class _Text:
         units = self._units_of(names, fields)
         self._heads.clear()
         if before and before.names == names and not self._begins:
-            repeats = self._remarks > 2 and before.last_time() in numbers  # as a run starts
-            if not repeats:  # a page of the same table, or a restart
-                return True
+            has_remarks = self._line - before.last_line > 2
+            if not (has_remarks and before.ends_at(numbers)):
+                return True  # a page of the same table, or a restart
         self._begins = False
         self._sheets.append(Sheet(self._wanted, self._line))
         for name, unit in zip(names, units, strict=True):

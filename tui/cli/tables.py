@@ -194,6 +194,8 @@ class Sheet:
         self.choice: Choice | None = None
         self.skipped = 0  # rows of another width
         self.puts = 0
+        self.last: dict[int, float] = {}  # values
+        self.last_line = line
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
         self._is_printed = is_printed
@@ -206,14 +208,17 @@ class Sheet:
         self.names.append(name)
         self.units.append(unit)
 
-    def put(self, line: int, places: Group, columns: Sequence[Sequence[float | None]]) -> None:
-        """Add the values of some columns from this line on, in a row only those that are numbers."""
+    def put(
+        self, lines: Sequence[int], places: Group, columns: Sequence[Sequence[float | None]]
+    ) -> None:
+        """Add the values of some columns at these lines, at a single one only the numbers."""
         pairs = zip(places, columns, strict=True)
         some = {place: column for place, column in pairs if column[0] is not None}
-        lines = range(line, line + len(columns[0]))
         self._values[tuple(some)].extend(
             chain.from_iterable(zip(lines, *some.values(), strict=True))
         )
+        self.last = {place: column[-1] for place, column in some.items()}
+        self.last_line = lines[-1]
         is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
         if self.puts >= SAMPLE and not is_sampled:
@@ -225,9 +230,9 @@ class Sheet:
             self.places[name] = len(self.names)
             self.add_column(name, unit)
             first, before = self._once[name]
-            self.put(first, (self.places[name],), [[before]])
+            self.put([first], (self.places[name],), [[before]])
         if name in self.places:
-            self.put(line, (self.places[name],), [[value]])
+            self.put([line], (self.places[name],), [[value]])
         elif len(self._once) < MAX_NAMES:
             self._once[name] = (line, value)
 
@@ -253,15 +258,12 @@ class Sheet:
         if not self._is_printed and self.puts >= SAMPLE:
             self.kept = (self.choice or Choice()).columns or (0,)  # to count rows
 
-    def last_time(self) -> float | None:
-        """Return the time of the last row; None if it is not known which column that is."""
+    def ends_at(self, row: Sequence[float | None]) -> bool:
+        """Return whether the last row has the time of this one, which begins a run."""
         if self.choice is None:
             self.choose()
-        columns = [*(self.choice or Choice()).time]
-        if len(columns) != 1:
-            return None
-        _, values = self._column(columns[0])
-        return float(values[-1]) if len(values) else None
+        time = (self.choice or Choice()).time
+        return len(time) == 1 and self.last.get(time[0]) == row[time[0]]
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
