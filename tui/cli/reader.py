@@ -20,9 +20,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
-from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names
+from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names, unreadable
 from pendu_tui.tui.cli.units import is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # characters
@@ -53,7 +52,6 @@ _BETWEEN = (
     r"\s+(?![\s(\[])",  # or a blank before the unit
     r"(?<=[)\]])\s+",  # or end with the unit
 )
-_IS_UNIT_ALONE = re.compile(r"[(\[][^()\[\]]*[)\]]")
 
 
 def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> list[Sheet]:
@@ -78,10 +76,6 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
     if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
         blocks = _json(text)
     return _Text(wanted, file).read(blocks)
-
-
-def unreadable(sentence: str) -> UserError:
-    return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
 def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
@@ -109,8 +103,8 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
         yield _records(document)
         return
     for lines in _blocks(io.StringIO(whole)):
-        text = "".join(lines)
-        if text.count("{") > len(lines) or "[" in text:
+        joined = "".join(lines)
+        if joined.count("{") > len(lines) or "[" in joined:
             lines = _records([*map(_parsed, lines)])
         yield lines
 
@@ -275,7 +269,7 @@ class _Text:
         if self._heads or self._over or self._is_over or self._begins:
             return False
         others = dict(enumerate(lines, self._line + 1))
-        puts = []
+        puts: list[Any] = []
         if self._sheets:
             sheet = self._sheets[-1]
             rows = {
@@ -307,7 +301,7 @@ class _Text:
         fields = _NUMBERS.split("\n".join(lines.values()))
         shapes = "\0".join(fields[::2]).split("\n")
         starts = [0, *accumulate(shape.count("\0") for shape in shapes)]
-        puts = []
+        puts: list[Any] = []
         for shape in {*shapes}:
             known = self._shapes.get(shape)
             if known is None:
@@ -426,24 +420,20 @@ class _Text:
     def _words_or_row(self, line: str) -> bool:
         """Read a row, or words that may be a head.  Return whether it is neither."""
         text = line.strip()
+        if not re.search(r"[\w*]", text):
+            return True  # a rule
         bare = text.lstrip(_COMMENTS + " \t")
-        if text.startswith("@") or not re.search(r"[\w*]", text):
-            return True  # what else xmgrace is told, or a rule
         is_comment = bare != text and number(text.split()[0]) is None
-        if bare[:1] == bare[-1:] == "|":  # Markdown
-            bare = bare[1:-1]
         fields, delimiter = self._fields(bare)
-        if len(fields) > MAX_COLUMNS:
-            return True
-        has_number = any(number(each) is not None for each in fields)
-        if has_number and not is_comment and self._row(fields, delimiter):
-            return False
-        if not has_number:
+        numbers = [*map(number, fields)]
+        if not any(each is not None for each in numbers):
             self._heads[line] = _ways(bare)
             if len(self._heads) > MAX_HEADS:
                 del self._heads[next(iter(self._heads))]
-        is_like = len(fields) == self._width
-        return has_number and not is_like and (is_comment or number(fields[0]) is None)
+            return False
+        if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
+            return False
+        return len(fields) != self._width and (is_comment or numbers[0] is None)
 
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
@@ -531,7 +521,7 @@ class _Text:
 
         Without numbers they are those of any row.
         """
-        if any(map(_IS_UNIT_ALONE.fullmatch, names)):
+        if any(re.fullmatch(r"[(\[][^()\[\]]*[)\]]", name) for name in names):  # a unit
             return 0
         choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
         if choice and numbers and None in [numbers[place] for place in choice.columns]:

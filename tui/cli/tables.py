@@ -24,20 +24,14 @@ MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
 NOT_TIMES = "its time never increases; name the column of times with --time."
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
-REASONS = {
-    "without_numbers": "without numbers, or of another width",
-    "time_not_later": "whose time is not later",
-    "time_not_finite": "whose time is not finite",
-    "out_of_range": "before --from or after --to",
-    "energy_not_finite": "after the energy ended",
-}
-"""Why a row is not used, in JSON and in words."""
-
-
 Group = tuple[int, ...]
 """Columns to add up."""
 
 NO_ENERGIES = ("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%")
+
+
+def unreadable(sentence: str) -> UserError:
+    return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
 @dataclass(frozen=True)
@@ -213,7 +207,7 @@ class Sheet:
     ) -> None:
         """Add the values of some columns at these lines, at a single one only the numbers."""
         pairs = zip(places, columns, strict=True)
-        some = {place: column for place, column in pairs if column[0] is not None}
+        some: dict[int, Any] = {place: column for place, column in pairs if column[0] is not None}
         self._values[tuple(some)].extend(
             chain.from_iterable(zip(lines, *some.values(), strict=True))
         )
@@ -284,19 +278,18 @@ class Sheet:
         if not choice.time:
             times = np.arange(rows, dtype=float)
         if self.skipped > rows:
-            raise UserError(
+            raise unreadable(
                 f"{self.skipped} rows have another number of columns than the {rows} that fit the "
-                "head; cut the file there.",
-                Exit.INPUT_UNREADABLE,
+                "head; cut the file there."
             )
         runs = list(_runs(times))
         if len(runs) == rows > 1:
-            raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
+            raise unreadable(NOT_TIMES)
         seen = len(here) if self._is_printed else self.puts
         skipped = self.skipped + seen - rows
         for run in runs:
             series = Series(self, choice, times[run], energies[run], kinetic[run])
-            series.skipped["without_numbers"] = skipped
+            series.skipped = skipped
             skipped = 0
             yield series
 
@@ -353,7 +346,7 @@ def _runs(times: Any) -> Iterator[slice]:
         last = start + 1 + int(again[0]) if len(again) else len(times)
         yield slice(first, last)
         first = last
-    raise UserError(NOT_TIMES, Exit.INPUT_UNREADABLE)
+    raise unreadable(NOT_TIMES)
 
 
 @dataclass
@@ -366,7 +359,7 @@ class Series:
     energies: Any
     kinetic: Any
     number: int = 0  # from 1
-    skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
+    skipped: int = 0  # rows without numbers, or not later than one before
     diverged_at: float | None = None  # the time of the first energy that is no finite number
     units: tuple[str, str] = ("", "")  # of time and energy
 
@@ -388,27 +381,33 @@ class Series:
         return "+".join(name or f"column {place + 1}" for name, place in parts) or "row"
 
     def finish(self, start: float = -math.inf, end: float = math.inf) -> None:
-        """Apply step and units, leave out and count rows that cannot be used."""
-        step = self.sheet.wanted.step
+        """Apply step and units; leave out rows that cannot be used or are not in this range.
+
+        Raises UserError if none is left.
+        """
         self.units = self._units()
-        times = np.where(np.abs(self.times) < LATEST, self.times, -np.inf)
-        if step:
-            times = times * step[0]
+        size, _ = self.sheet.wanted.step or (1.0, "")
+        is_time = np.abs(self.times) < LATEST
+        times = np.where(is_time, self.times * size, -np.inf)
         before = np.maximum.accumulate(np.concatenate([[-np.inf], times[:-1]]))
-        left = np.ones(len(times), dtype=bool)
-        for why, bad in (
-            ("time_not_finite", np.isinf(times)),
-            ("time_not_later", times <= before),
-            ("out_of_range", (times < start) | (times > end)),
-        ):
-            self.skipped[why] = int(np.count_nonzero(bad & left))
-            left &= ~bad
-        used = np.flatnonzero(left)
+        is_later = is_time & (times > before)
+        skipped = int(np.count_nonzero(~is_later))
+        self.skipped += skipped
+        used = np.flatnonzero(is_later & (times >= start) & (times <= end))
         lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
         if len(lost):
             self.diverged_at = float(times[used[lost[0]]])
-            self.skipped["energy_not_finite"] = len(used) - int(lost[0])
             used = used[: lost[0]]
+        if skipped > len(times) - skipped:
+            raise unreadable(
+                "most rows are not later than the row before, so this table seems to hold several "
+                "methods; judge one of them, for example filtered with grep."
+            )
+        if not len(used):
+            why = "no row has a usable time and energy in this range."
+            if self.diverged_at is not None:
+                why += f" Use --from with a later time than {self.diverged_at:g}."
+            raise unreadable(why)
         self.times = times[used]
         self.energies = self.energies[used]
         self.kinetic = self.kinetic[used]

@@ -3,6 +3,8 @@
 import re
 from functools import lru_cache
 
+from pendu_tui.tui.cli.errors import UserError
+
 NANOSECONDS = {
     "fs": 1e-6,
     "ps": 1e-3,
@@ -60,6 +62,17 @@ def plain(kind: str, unit: str) -> str:
     """Return the key of a unit in NANOSECONDS or BOLTZMANN, "" if it is none of this kind."""
     name = shown(kind, unit).casefold()
     return name if name in _KNOWN[kind] else ""
+
+
+def size(kind: str, unit: str) -> float:
+    """Return a unit of time in ns, of energy in kT at 1 K.  Raises UserError if it is not known."""
+    name = plain(kind, unit)
+    if not name:
+        raise UserError(
+            f"the unit of {kind} is not known; give one of {', '.join(_KNOWN[kind])}, for example "
+            f"with --units time=ps,energy=eV or --step 0.5fs."
+        )
+    return _KNOWN[kind][name]
 
 
 def is_unit(text: str) -> bool:

@@ -10,6 +10,7 @@ import math
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from statistics import linear_regression
 from typing import TYPE_CHECKING, Any
 
@@ -24,8 +25,8 @@ from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
-from pendu_tui.tui.cli.reader import read_sheets, unreadable
-from pendu_tui.tui.cli.tables import REASONS, Series, Wanted, find
+from pendu_tui.tui.cli.reader import read_sheets
+from pendu_tui.tui.cli.tables import Series, Wanted, find, unreadable
 from pendu_tui.tui.commands.report import Report, fields_of, finite, form_of, publish
 from pendu_tui.tui.words.numbers import counted
 
@@ -63,14 +64,15 @@ def run(options: argparse.Namespace) -> int:
     if options.steps:
         order = _fluctuation_order(options.steps, results)
         drift = _drift_order(options.steps, results)
-        lines.append(_line("fluctuation", _goes_as(*order)))
-        lines.append(_line("drift", _goes_as(drift)))
-        gated = {"drift_order": drift, **_gated(*order)}
+        power, uncertainty = order or (None, None)
+        lines.append(_line("fluctuation", _goes_as(power, str(order), uncertainty or 0.0)))
+        lines.append(_line("drift", _goes_as(drift, f"h^{drift:.2f}" if drift else "")))
+        gated = {"drift_order": drift, **_gated(order)}
         fields = {
             "steps": options.steps,
             "files": results,
-            "fluctuation_order": order[0],
-            "fluctuation_order_uncertainty": order[1],
+            "fluctuation_order": power,
+            "fluctuation_order_uncertainty": uncertainty,
             "drift_order": drift,
         }
     charts = []
@@ -84,8 +86,7 @@ def run(options: argparse.Namespace) -> int:
     failures: list[str] = []
     if gate:
         for result in results:
-            skipped = sum(result["skipped"].values())  # rows, for whatever reason
-            failures.append(gate({"": result | gated | {"skipped": skipped}}))
+            failures.append(gate({"": result | gated}))
     failure = "; ".join(filter(None, dict.fromkeys(failures)))
     code = conclude(options.fail_if, [Check("", failure)])
     if any(result["verdict"] == FAILED for result in results):
@@ -141,23 +142,21 @@ def choose(seen: Sequence[Series], options: argparse.Namespace) -> Series | None
         some = [seen[options.table - 1]]
     named = [series for series in some if series.sheet.choice]
     if not named:
-        raise _missing(some, [options.time, options.energy])
+        raise _missing(some[-1])
     certain = [series for series in named if series.choice.energy and not series.choice.doubt]
     return certain[-1] if certain else None
 
 
-def _missing(seen: Sequence[Series], wanted: Sequence[str | None]) -> UserError:
-    """Return the error that a wanted column is missing."""
-    names = [name for name in seen[-1].sheet.names if name]
-    parts = [part.strip() for each in wanted if each for part in each.split("+")]
-    lost = [each for each in parts if not each.isdecimal() and not find(names, each)]
-    if not lost:
-        return UserError("no row has a number in each column; columns count from 1.")
-    present = [printable(name, 40) for name in names[:20]]
-    advice = did_you_mean(lost[0], present) or f"; choose from {', '.join(present)}."
-    if not present:
-        advice = "; give columns by number, from 1."
-    return UserError(f"there is no column {printable(lost[0], 40)!r}{advice}")
+def _missing(series: Series) -> UserError:
+    """Return the error that a table has no column of a name that the user gave."""
+    names = series.sheet.names
+    wanted = series.sheet.wanted
+    asked = [text for text in (wanted.time, wanted.energy, wanted.kinetic) if text]
+    parts = [part.strip() for text in asked for part in text.split("+") if not find(names, text)]
+    lost = next(part for part in parts if not find(names, part))
+    present = [printable(name, 40) or str(n) for n, name in enumerate(names[:20], 1)]
+    advice = did_you_mean(lost, present) or f"; choose from {', '.join(present)}."
+    return UserError(f"there is no column {printable(lost, 40)!r}{advice}")
 
 
 def _seen(series: Series) -> dict[str, Any]:
@@ -176,7 +175,7 @@ def _seen(series: Series) -> dict[str, Any]:
 
 def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
     """Return the fields of the result for one table.  Raises UserError."""
-    _finish(series, options)
+    series.finish(options.start, options.end)
     judged = _judgement(series, options.scale)
     time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields = {
@@ -233,82 +232,42 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
         raise UserError(why) from None
 
 
-def _finish(series: Series, options: argparse.Namespace) -> None:
-    """Make the series ready to be judged.  Raises UserError if nothing is left of it."""
-    series.finish(options.start, options.end)
-    if series.skipped["time_not_later"] > series.rows:
-        raise unreadable(
-            "most rows are not later than the row before, so this table seems to hold several "
-            "methods; judge one of them, for example filtered with grep."
-        )
-    if series.rows == 0:
-        why = f"no row has a usable time and energy{_skipped(series.skipped)}."
-        if series.diverged_at is not None:
-            why += f" Use --from with a later time than {series.diverged_at:g}."
-        raise unreadable(why)
-
-
-def _skipped(skipped: Mapping[str, int]) -> str:
-    """Return a clause on the rows that are skipped, "" if there are none."""
-    each = [f"{counted(number, 'row')} {REASONS[why]}" for why, number in skipped.items() if number]
-    return f"; skipped: {', '.join(each)}" if each else ""
-
-
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
+    """Return the trend per nanosecond and atom.  Raises UserError if a unit is not known."""
     trend = fields["absolute_trend"]
-    time_unit = units.plain("time", fields["time_unit"])
-    energy_unit = units.plain("energy", fields["energy_unit"])
-    if not time_unit:
-        raise UserError(
-            "--atoms needs the unit of time: --units time=ps, or --step 0.5fs for steps; units: "
-            f"{', '.join(units.NANOSECONDS)}."
-        )
-    energy = trend and trend / units.NANOSECONDS[time_unit] / atoms
+    energy = trend and trend / units.size("time", fields["time_unit"]) / atoms
     result = {"atoms": atoms, "energy_per_ns_per_atom": energy}
     if temperature is None:
         return result
-    if not energy_unit:
-        raise UserError(
-            "--temperature needs the unit of energy: --units energy=kJ/mol; units: "
-            f"{', '.join(units.BOLTZMANN)}."
-        )
-    in_kt = energy and energy / (units.BOLTZMANN[energy_unit] * temperature)
+    in_kt = energy and energy / (units.size("energy", fields["energy_unit"]) * temperature)
     return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
 
 
-def _goes_as(power: float | None, uncertainty: float | None = None) -> str:
+def _goes_as(power: float | None, shown: str, uncertainty: float = 0.0) -> str:
     """Return a sentence's end on the power of h with which something goes."""
     if power is None:
         return "no clear power of h"
-    text = (
-        f"goes as h^{power:.2f}" if uncertainty is None else f"goes as {Order(power, uncertainty)}"
-    )
-    if power < -2 * (uncertainty or 0):
-        text += "; are the steps in the order of the files?"
-    return text
+    question = "; are the steps in the order of the files?"
+    return f"goes as {shown}{question * (power < -2 * uncertainty)}"
 
 
-def _gated(power: float | None, uncertainty: float | None) -> dict[str, Any]:
+def _gated(order: Order | None) -> dict[str, Any]:
     """Return the order of the fluctuation as --fail-if compares it, as high as it may be."""
-    if power is None or uncertainty is None:
+    if order is None:
         return {}
-    order = Order(power, uncertainty)
     unknown = {"fluctuation_order": f"cannot tell: it goes as {order}; {order.advice}"}
     shown = {"fluctuation_order": str(order).removeprefix("h^")}
     return {"fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
 
 
-def _fluctuation_order(
-    steps: Sequence[float], results: Sequence[dict[str, Any]]
-) -> tuple[float | None, float | None]:
-    """Return the power of the step size with which fluctuations go, and its uncertainty."""
+def _fluctuation_order(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> Order | None:
+    """Return the power of the step size with which fluctuations go, if that can be told."""
     series = [fields["series"] for fields in results if fields["verdict"] != FAILED]
     if len(series) < len(steps):
-        return None, None
-    try:
+        return None
+    with suppress(ValueError):  # too few samples, or an energy that never changes
         return order_of(steps, [fluctuation(each.times, each.energies) for each in series])
-    except ValueError:  # too few samples, or an energy that never changes
-        return None, None
+    return None
 
 
 def _drift_order(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> float | None:
@@ -376,8 +335,7 @@ def _listed(fields: Mapping[str, Any]) -> list[str]:
         columns = [_column(place, column) for place, column in enumerate(each["columns"], 1)]
         lines.append(_line("columns", ", ".join(columns[:MAX_LISTED])))
     if "verdict" in fields:
-        guess = f"time {fields['time']}, energy {fields['energy']}; {CHOOSE}"
-        lines.append(_line("judged", guess))
+        lines.append(_line("judged", f"{fields['energy']} over {fields['time']}; {CHOOSE}"))
     return lines
 
 
@@ -392,7 +350,10 @@ def _title(fields: dict[str, Any]) -> str:
     text = f"{name}: {counted(fields['samples'], 'sample')} from {span}"
     if fields["tables"] > 1:
         text += f", table {fields['table']} of {fields['tables']}"
-    return text + _skipped(fields["skipped"])
+    if fields["skipped"]:
+        rows = counted(fields["skipped"], "row")
+        text += f"; skipped: {rows} without numbers, of another width or not later"
+    return text
 
 
 def _line(name: str, text: str) -> str:
