@@ -249,8 +249,7 @@ class _Text:
                     first += size
                     size *= 2
                 elif size > 1:
-                    size //= 4
-                    size = max(size, 1)
+                    size = max(size // 4, 1)
                 else:
                     self._line += 1
                     self._read_new(*some)
@@ -399,6 +398,8 @@ class _Text:
                 self._labels[place] = label
             case {"units": units}:
                 self._shared = re.findall(r"\(([^()]*)\)", units)
+                energies = [unit for unit in self._shared if plain("energy", unit) and unit != "K"]
+                self._units = ("", energies[0] if len(energies) == 1 else "")
             case _:
                 return False
         return True
@@ -441,7 +442,7 @@ class _Text:
         if self._delimiter and len(fields := _split(text, self._delimiter)) == self._width:
             return fields, self._delimiter
         bare = re.sub(r'"[^"]*"', "", text)
-        for sign in [sign for sign in _DELIMITERS if sign in bare]:
+        for sign in filter(bare.__contains__, _DELIMITERS):
             fields = _split(text, sign)
             if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
                 return fields, sign
@@ -548,15 +549,12 @@ class _Text:
         for row in ([each.strip("()[]") for each in row] for row in rows):
             if len(row) == len(names) and any(map(is_unit, row)) and not any(units):
                 units = row
-        energies = [unit for unit in self._shared if plain("energy", unit) and unit != "K"]
-        for place, name in enumerate(names):
+        for place, unit in enumerate(units):
             match = _WITH_UNIT.fullmatch(fields[place])
-            if units[place]:
+            if unit:
                 continue
             if place and len(self._shared) == 1:
                 units[place] = self._shared[0]
-            elif is_energy(name) and len(energies) == 1:
-                units[place] = energies[0]
             elif match and is_unit(match[2]):
                 units[place] = match[2]
         return units

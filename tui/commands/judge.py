@@ -83,10 +83,7 @@ def run(options: argparse.Namespace) -> int:
     for result in results:
         del result["series"], result["judged"]
     publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
-    failures: list[str] = []
-    if gate:
-        for result in results:
-            failures.append(gate({"": result | gated}))
+    failures = [gate({"": result | gated}) for result in results if gate]
     failure = "; ".join(filter(None, dict.fromkeys(failures)))
     code = conclude(options.fail_if, [Check("", failure)])
     if any(result["verdict"] == FAILED for result in results):
