@@ -216,6 +216,10 @@ def _values(columns: list[list[str]], is_certain: bool) -> list[list[Any]]:
     return [] if any(None in column for column in needed) else values
 
 
+Form = tuple[str | None, int, str]
+"""The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
+
+
 class _Text:
     """Tables in lines of text."""
 
@@ -225,9 +229,7 @@ class _Text:
         self._sheets: list[Sheet] = []
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
         self._shapes: dict[str, tuple[Group, Group]] = {}  # what lines of known shapes hold
-        self._delimiter: str | None = None
-        self._opening = ""  # the word with which each row begins
-        self._width = -1  # fields in a row
+        self._form: Form = (None, -1, "")
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._units = ("", "")  # of times and energies, if the layout has only these
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
@@ -271,17 +273,18 @@ class _Text:
         puts: list[Any] = []
         if self._sheets:
             sheet = self._sheets[-1]
+            delimiter, width, opening = self._form
             rows = {
                 number: line
                 for number, line in others.items()
-                if len(_split(line, self._delimiter)) == self._width
-                and line.startswith(self._opening)
+                if len(_split(line, delimiter)) == width
+                and line.startswith(opening)
                 and line.lstrip()[:1] not in _COMMENTS
             }
-            fields = _split((self._delimiter or " ").join(rows.values()), self._delimiter)
-            columns = [fields[place :: self._width] for place in sheet.kept]
-            is_whole = len(fields) == len(rows) * self._width
-            values = is_whole and _values(columns, self._delimiter is not None)
+            fields = _split((delimiter or " ").join(rows.values()), delimiter)
+            columns = [fields[place::width] for place in sheet.kept]
+            is_whole = len(fields) == len(rows) * width
+            values = is_whole and _values(columns, delimiter is not None)
             if rows and values:
                 puts.append((sheet, [*rows], sheet.kept, values))
                 others = {number: line for number, line in others.items() if number not in rows}
@@ -372,7 +375,7 @@ class _Text:
             case {"part": _}:
                 self._begins = True
                 self._is_over = False
-                self._passed += max(self._width - 1, 0)
+                self._passed += max(self._form[1] - 1, 0)
                 self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
                 self._shapes.clear()
             case {"end": _} | {"again": _}:
@@ -434,40 +437,38 @@ class _Text:
             return False
         if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
             return False
-        return len(fields) != self._width and (is_comment or numbers[0] is None)
+        return len(fields) != self._form[1] and (is_comment or numbers[0] is None)
 
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
         text = text.strip()
-        if self._delimiter and len(fields := _split(text, self._delimiter)) == self._width:
-            return fields, self._delimiter
+        delimiter, width, _ = self._form
+        if delimiter and len(fields := _split(text, delimiter)) == width:
+            return fields, delimiter
         bare = re.sub(r'"[^"]*"', "", text)
         for sign in filter(bare.__contains__, _DELIMITERS):
             fields = _split(text, sign)
             if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
                 return fields, sign
         divided = _GLUED.sub(" ", text).split()
-        if is_row or len(divided) == self._width:
+        if is_row or len(divided) == width:
             return divided, None
         return _split(text, None) or [""], None
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to its table, which may begin here.  Return whether it is a row."""
         numbers = [number(each) for each in fields]
-        is_like = len(fields) == self._width and opening == self._opening
-        rest = numbers[bool(opening) :]
-        is_bare = delimiter and not self._heads  # rows that were cut out of a table
-        is_sure = None not in rest or (is_bare and len(rest) > rest.count(None) + 1)
+        form = (delimiter, len(fields), opening)
+        is_like = form[1:] == self._form[1:]
+        is_sure = None not in numbers[bool(opening) :]
         is_new = self._heads or self._begins or not is_like
-        if is_new and self._begin(fields, numbers, is_like, bool(is_sure)):
-            self._delimiter = delimiter
-            self._width = len(fields)
-            self._opening = opening
+        if is_new and self._begin(fields, numbers, is_like, is_sure):
+            self._form = form
             is_like = True
         if is_like:
             sheet = self._sheets[-1]
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
-        elif self._sheets and opening == self._opening and (opening or numbers[0] is not None):
+        elif self._sheets and opening == self._form[2] and (opening or numbers[0] is not None):
             self._sheets[-1].skipped += 1
         return is_like
 

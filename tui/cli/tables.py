@@ -317,10 +317,11 @@ class Sheet:
         fits = record >= 0
         if not self._is_printed:
             fits &= lines[record] == own
+        record = record[fits]
         column = np.full(len(lines), np.nan)
-        column[record[fits]] = values[fits]
+        column[record] = values[fits]
         has_value = np.zeros(len(lines), dtype=bool)
-        has_value[record[fits]] = True
+        has_value[record] = True
         return column, has_value
 
 

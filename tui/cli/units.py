@@ -69,8 +69,8 @@ def size(kind: str, unit: str) -> float:
     name = plain(kind, unit)
     if not name:
         raise UserError(
-            f"the unit of {kind} is not known; give one of {', '.join(_KNOWN[kind])}, for example "
-            f"with --units time=ps,energy=eV or --step 0.5fs."
+            f"the unit of {kind} is not known; give one of {', '.join(_KNOWN[kind])}, "
+            "for example --units time=ps,energy=eV or --step 0.5fs."
         )
     return _KNOWN[kind][name]
 

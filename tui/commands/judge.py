@@ -349,7 +349,7 @@ def _title(fields: dict[str, Any]) -> str:
         text += f", table {fields['table']} of {fields['tables']}"
     if fields["skipped"]:
         rows = counted(fields["skipped"], "row")
-        text += f"; skipped: {rows} without numbers, of another width or not later"
+        text += f"; skipped: {rows} without numbers or a later time"
     return text
 
 
