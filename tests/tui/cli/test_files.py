@@ -1,6 +1,7 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
 import ctypes
+import gc
 import os
 import signal
 import sys
@@ -14,7 +15,7 @@ import pytest
 
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.system import ENDING
-from pendu_tui.tui.cli.dispatch import repeat_swallowed_interrupts
+from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.files import whole_file
 from tests.tui.command_line import pendu
 
@@ -56,6 +57,14 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
     assert file.read_text() == "older"
     assert list(tmp_path.iterdir()) == [file]
     assert signal.getsignal(SIGTERM) is before
+
+
+def test_the_program_itself_notices_interrupts_that_a_callback_swallows(monkeypatch):
+    monkeypatch.setattr(sys, "unraisablehook", before := sys.unraisablehook)
+    monkeypatch.setattr(sys, "argv", ["pendu-tui", "--version"])
+    main()
+    gc.enable()
+    assert sys.unraisablehook is not before
 
 
 def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
