@@ -67,22 +67,6 @@ def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pa
             assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
 
 
-@given(st.integers(1, 10_000).map(lambda number: number * 0.6180339887))  # never between two dots
-def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
-    """So equal angles lie on one ray from the pivot, for odd and even panes."""
-    for columns, rows in ((36, 18), (37, 19)):
-        right, left, up = (
-            {
-                (x, y)
-                for x, y in dots(stage_picture(columns, rows, [Bob(angle, 0, " ")], Look()))
-                if math.hypot(x + 0.5 - columns, y + 0.5 - 2 * rows) > 4  # rods begin in a dot
-            }
-            for angle in (theta, -theta, math.pi - theta)
-        )
-        assert left == {(2 * columns - 1 - x, y) for x, y in right}
-        assert up == {(x, 4 * rows - 1 - y) for x, y in right}
-
-
 def test_a_trail_covers_its_lane_from_sample_to_sample_and_is_bright_near_the_bob():
     trail = [0.05 * nth for nth in range(16)]
     drawn = stage_picture(43, 22, [Bob(trail[-1], 0, "e", trail=trail)], Look())
