@@ -272,9 +272,9 @@ class Limit:
     """Where a method loses a swing; z = h·sqrt(g/L)."""
 
     linear: float | None  # z: the limit of small swings; 0: none is stable, None: no one number
-    z: float | None = None  # the smallest at which the swing is lost; None: held up to z = 3.2
-    h: float | None = None  # s, the same for this scene
-    reason: str = ""  # over the top, grows, loses or chaotic; "" if it is held
+    z: float | None  # the smallest at which the swing is lost; None: held up to z = 3.2
+    h: float | None  # s, the same for this scene
+    reason: str  # over the top, grows, loses or chaotic; "" if it is held
 
 
 def limits(
@@ -299,10 +299,8 @@ def limits(
     grid = ladder_of(chosen, [theta], None, _whole("steps", steps))
     found = []
     for row in table(chosen, grid, grid.cells()):
-        limit = Limit(row.method.linear_limit)
-        if failure := row.failure:
-            limit = Limit(limit.linear, failure.z, failure.z / chosen.w0, failure.reason)
-        found.append(limit)
+        h = row.z and row.z / chosen.w0
+        found.append(Limit(row.method.linear_limit, row.z, h, row.reason or ""))
     return ByMethod(chosen.cast, found)
 
 

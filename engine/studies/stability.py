@@ -146,28 +146,6 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     return cells
 
 
-@dataclass(frozen=True, slots=True)
-class Failure:
-    """The smallest z tried at which a method loses the swing."""
-
-    z: float
-    steps: int  # survived
-    reason: str  # over the top | grows | loses | chaotic
-
-
-def first_failure(z: Floats, cells: Cells) -> Failure | None:
-    """Return the first failure on an ascending ladder of z; None if the swing is held on all of it.
-
-    `cells` are the outcomes on the ladder.  Bisection would not do, because above the first failure
-    there are windows of z where the swing is held again.
-    """
-    lost = is_lost(cells)
-    if not lost.any():
-        return None
-    first = int(np.argmax(lost))
-    return Failure(float(z[first]), int(cells["steps"][first]), FATES[cells["fate"][first]])
-
-
 def amplification(method: Method, z: float) -> float:
     """Return the largest |eigenvalue| of the Jacobian of a step at the bottom.
 
@@ -323,12 +301,14 @@ LADDER = np.geomspace(1e-3, 3.2, 812)
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One method and one amplitude."""
+    """One method and one amplitude, with the smallest z tried at which the swing is lost."""
 
     method: Method
     theta: float  # rad
-    failure: Failure | None  # None: holds on the whole ladder
     here: Any  # the CELL at the scene's z
+    z: float | None = None  # None: holds on the whole ladder
+    steps: int | None = None  # survived
+    reason: str | None = None  # over the top | grows | loses | chaotic
 
 
 def amplitude(scene: Scene) -> float | None:
@@ -371,10 +351,18 @@ def map_of(
 
 
 def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:
-    """Return the first failure of each method at each amplitude, from the cells of a ladder."""
+    """Return the first failure of each method at each amplitude, from the cells of a ladder.
+
+    Bisection would not do, because above the first failure there are windows of z where the swing
+    is held again.
+    """
     here = int(np.searchsorted(grid.z, scene.z))
     rows = []
     for (m, method), (t, theta) in product(enumerate(grid.methods), enumerate(grid.theta.tolist())):
         column = cells[:, m, t]
-        rows.append(Row(method, theta, first_failure(grid.z, column), column[here]))
+        row = Row(method, theta, column[here])
+        for place in np.flatnonzero(is_lost(column))[:1]:
+            steps, _, fate = column[place].tolist()
+            row = replace(row, z=float(grid.z[place]), steps=steps, reason=FATES[fate])
+        rows.append(row)
     return rows

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
         return work.conclude()
     rows = table(scene, grid, cells)
     if work.ended:  # the others may fail at a z not yet computed
-        rows = [row for row in rows if row.failure]
+        rows = [row for row in rows if row.z]
     publish(report(scene, options.steps, rows, is_whole=work.ended is None), options)
     return work.conclude()
 
@@ -100,8 +100,8 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
 def _lines(scene: Scene, rows: Sequence[Row]) -> Iterator[Line]:
     """Yield each method's letter, amplitudes [°] and limits."""
     for method in scene.cast:
-        lost = [row for row in rows if row.method == method and row.failure]
-        limits = [row.failure.z for row in lost if row.failure]
+        lost = [row for row in rows if row.method == method and row.z]
+        limits = [row.z for row in lost if row.z]
         yield method.letter, [math.degrees(row.theta) for row in lost], limits
 
 
@@ -118,13 +118,12 @@ def _limit(z: float) -> str:
 
 
 def _row_fields(row: Row) -> dict[str, Any]:
-    failure = row.failure
     return {
         "method": row.method.key,
         "theta": row.theta,
-        "first_failure_z": failure and failure.z,
-        "reason": failure and failure.reason,
-        "steps_survived": failure and failure.steps,
+        "first_failure_z": row.z,
+        "reason": row.reason,
+        "steps_survived": row.steps,
     }
 
 

@@ -32,7 +32,6 @@ from pendu_tui.engine.studies.stability import (
     Grid,
     amplification,
     amplitude,
-    first_failure,
     is_chaotic,
     is_lost,
     ladder_of,
@@ -40,6 +39,7 @@ from pendu_tui.engine.studies.stability import (
     outcomes,
     parting,
     pieces,
+    table,
     watch,
     wobble,
 )
@@ -140,11 +140,12 @@ def test_velocity_verlet_wobbles_at_a_resonance_and_is_held_elsewhere_beyond_its
 )
 def test_methods_fail_each_in_its_way(key, theta, expected, reason, steps):
     ladder = expected * np.linspace(0.8, 1.05, 51)
-    cells = outcomes(method_of(key), np.full(51, theta), ladder, steps)
-    failure = first_failure(ladder, cells)
-    assert failure.reason == reason
-    assert failure.z == pytest.approx(expected, rel=0.012)
-    assert failure.steps == cells["steps"][ladder == failure.z]
+    grid = Grid(np.array([theta]), ladder, steps, (method_of(key),))
+    cells = grid.cells()
+    (row,) = table(Scene(h=0.9999 * ladder[7] / Scene().w0), grid, cells)
+    assert (row.method.key, row.theta, row.here, row.reason) == (key, theta, cells[7], reason)
+    assert row.z == pytest.approx(expected, rel=0.012)
+    assert row.steps == cells["steps"][ladder == row.z]
 
 
 GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2:])
