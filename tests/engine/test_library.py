@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from pendu_tui import engine, recordings
-from pendu_tui.engine import METHODS, SCENES, judge, limits, recommend, simulate
-from pendu_tui.engine.methods import METHODS as LISTED
+from pendu_tui.engine import METHODS, judge, limits, recommend, simulate
 from pendu_tui.engine.run.lockstep import Lockstep
 
 GENERAL = [key for key, method in METHODS.items() if method.general]
@@ -28,14 +27,6 @@ def test_no_module_hides_a_name_of_the_library():
         assert names <= set(dir(package))
     for name in ("simulate", "judge", "limits", "recommend"):
         assert callable(getattr(engine, name))
-
-
-def test_the_lists_are_in_their_order_and_read_only():
-    assert list(METHODS) == [method.key for method in LISTED]
-    assert next(iter(SCENES)) == "drift"
-    for mapping in (METHODS, SCENES):
-        with pytest.raises(TypeError):
-            mapping["mine"] = None
 
 
 def test_a_run_has_every_step_of_the_lockstep_as_arrays():

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.scenes import SCENES, Z_LIMITS
@@ -39,7 +39,7 @@ def largest_error(scene, point, kind):
     ("name", "time", "target", "kind"),
     [
         ("large-swing", 3.0, 1e-5, "theta"),
-        ("drift", 3.0, 1e-5, "final"),
+        ("large-swing", 5.0, 1e-2, "final"),
         ("spin", 3.0, 1e-2, "energy"),
     ],
 )
@@ -48,7 +48,8 @@ def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     largest = largest_error(SCENES[name], point, kind)
     # 10,000 comparisons are every step of these runs, so not even rounding differs
     assert largest == pytest.approx(point.errors[kind], rel=1e-9)
-    assert largest <= target
+    finer = Study(SCENES[name], time).run(point.method, math.ceil(1.1 * point.steps))
+    assert max(largest, finer.errors[kind]) <= target  # no chance crossing of zero
 
 
 def test_a_target_near_the_rounding_floor_is_reached():
@@ -87,10 +88,9 @@ def test_a_method_far_dearer_than_another_is_given_up():
 
 def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
     study = Study(replace(DRIFT, cast=(V, R)), 10.0, LOOPS)
-    best, other = least_cost(study, "theta", 1e-4)
-    assert (best.method, best.times, other.method) == (R, 1.0, V)
-    ratio = other.point.force_evaluations / best.point.force_evaluations
-    assert 1 < other.times == ratio
+    best, other = least_cost(study, "energy", 1e-2)
+    assert (best.method, best.times, other.method) == (V, 1.0, R)
+    assert 1 < other.times == other.cost / best.cost
 
 
 def test_if_no_method_reaches_the_target_each_has_its_reason():
@@ -145,7 +145,7 @@ def test_steps_are_doubled_where_rounding_hides_the_order():
     study = Watched(replace(DRIFT, cast=(R,)), 2.0, LOOPS)
     (attempt,) = reach(study, "theta", 1e-17)
     assert attempt.why_not.startswith("rounding")
-    assert tried[-1] == 2 * tried[-2]
+    assert tried[-2:] == [2 * attempt.point.steps, 4 * attempt.point.steps]
 
 
 @pytest.mark.parametrize(("time", "most"), [(1e-6, 10_000), (1e6, 10)])
@@ -156,7 +156,7 @@ def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
 
 @pytest.mark.parametrize("kind", ["theta", "energy"])
 def test_no_recommended_step_is_longer_than_half_a_swing(kind):
-    scene = replace(DRIFT, theta=0.02, cast=(V, R))
+    scene = replace(DRIFT, theta=0.02, cast=(V, R, method_of("implicit_midpoint")))
     for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, 1e-2):
         assert attempt.succeeded
         assert attempt.point.z <= math.pi
