@@ -60,7 +60,7 @@ def test_verdicts_wait_for_nine_periods_as_a_rule():
     for method, start, z, letter in CELLS[::2]:
         scene = scene_at(start, z)
         period = scene.exact().period or math.inf
-        if 0.01 <= z <= 0.9 and period >= 8 * scene.h:
+        if 0.03 <= z <= 0.9 and period >= 8 * scene.h:
             given = verdicts(method, scene, LOOPS, round(60 * period / scene.h))
             assert is_true(letter, given), (method.key, start, z, letter, given)
             waits += [given[0][2]] if given else [60.0]
