@@ -94,7 +94,8 @@ class Part:
             return levels.UNLIKE_END
         limit = self.width / self.length / ahead
         if self.slope.bound > limit:
-            return self._open((3 * self.slope.uncertainty / limit) ** 2)
+            ratio = 3 * self.slope.uncertainty / limit
+            return self._open(ratio * ratio)  # a power of floats may overflow
         counts = ahead > 1 or self.exceeds(levels.MATERIAL, self.move)
         if self.exceeds(levels.LARGE, self.move) or (counts and is_suspect):
             return self._open(2.0) if is_new(self.values, self.values, self.move) else levels.TURNED

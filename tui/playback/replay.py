@@ -40,7 +40,7 @@ class Replay(Source):
         self.playhead = Playhead()
         self._clock = clock
         first = recording.at(0.0)
-        assert first is not None, "a recording without samples is refused before it gets here"
+        assert first is not None  # or it is not opened
         self._show(first, jump=True)
         self._know()
 
