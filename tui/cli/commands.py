@@ -211,7 +211,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 IN_LAB = "pendu-tui live, and there F3 and the key x"
 EXIT_CODE = "the exit code, or the pytest plugin and pytest --junit-xml"
 WORKERS = "--workers N, or --dask ADDRESS for other machines"
-COMPILED = "no option: compiled loops give the same bits"
+COMPILED = "nothing, because compiled loops give the same bits"
 DROPPED = {
     "methods --methods": "the names alone",
     "replay --methods": "the keys 1 to 6, which show and hide methods",
