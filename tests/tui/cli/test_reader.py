@@ -5,6 +5,7 @@ import io
 import json
 import lzma
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ import pytest
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
 from pendu_tui.tui.cli.tables import Series, Wanted
-from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS
+from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS, assignments
 
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
 TIMES = [t for _, t, _, _ in SAMPLES]
@@ -197,6 +198,21 @@ def test_words_that_were_no_head_may_be_one_later():
     early = f"Step A B TotEng\n{rows('{s} {k} {k} {e}', 0, 70)}Step TotEng\n1 2 3 4\n"
     found = tables(f"{early}Step TotEng\n{rows('{s} {e}')}")
     assert list(found[-1].energies) == ENERGIES
+
+
+@pytest.mark.parametrize(
+    ("text", "units"),
+    [
+        ("energy=eV", {"energy": "eV"}),
+        ("time=ps,energy=kJ/mol", {"time": "ps", "energy": "kJ/mol"}),
+        ("time=ps,mass=u", None),
+        ("time=,energy=eV", None),
+        ("", None),
+    ],
+)
+def test_units_are_given_of_time_of_energy_or_of_both(text, units):
+    with nullcontext() if units else pytest.raises(ValueError, match="names no units"):
+        assert assignments(text) == units
 
 
 def test_units_have_the_sizes_of_the_si():

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import time
+from contextlib import nullcontext
 
 import pytest
 
@@ -31,6 +32,14 @@ def test_json_has_the_numbers_of_the_engine():
     lockstep.advance(200)
     for row, reading in zip(answer["methods"], lockstep.sample().readings, strict=True):
         assert (row["theta"], row["max_energy_error"]) == (reading.theta, reading.max_energy_error)
+
+
+def test_the_progress_of_a_run_is_shown_to_its_end(monkeypatch):
+    shown = []
+    show = nullcontext(lambda done, steps: shown.append((done, steps)))
+    monkeypatch.setattr("pendu_tui.tui.commands.run.progress", lambda what: show)
+    assert pendu("run", "--time", 2, "--sample-every", 10).code == 0
+    assert shown == [(step, 40) for step in (0, 10, 20, 30, 40)]
 
 
 def test_the_table_says_what_each_method_does_and_what_happened():
