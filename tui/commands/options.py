@@ -199,7 +199,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--cost": option(
         None,
-        "what counts as cost (%(default)s); seconds are measured without Numba if a method is your own",
+        "what counts as cost (%(default)s); seconds without Numba if a method is your own",
         choices=("evaluations", "seconds"),
         default="evaluations",
     ),
