@@ -92,6 +92,11 @@ def test_what_is_not_certain_is_listed_and_asked_for(text):
     assert guess(text, "--energy", "E2").code == 0
 
 
+def test_where_the_time_is_not_certain_nothing_is_judged():
+    outcome = guess("x,y,E\n" + lines("{t},{t},{e}"))
+    assert (outcome.code, "which column is the time;" in outcome.err) == (2, True)
+
+
 def test_only_rows_in_the_range_of_time_are_judged():
     answer = judge(TABLE, "--json", "--from", 5, "--to", 20).json
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
