@@ -195,7 +195,7 @@ class Sheet:
         self._is_printed = is_printed
         self._once: dict[str, tuple[int, float]] = {}  # what was printed only once
         self._values: dict[Group, array[float]] = defaultdict(lambda: array("d"))
-        """The line and the values of some columns, in turn."""
+        """By columns: the line where they were found and their values, in turn."""
 
     def add_column(self, name: str, unit: str = "") -> None:
         self.kept += (len(self.names),)

@@ -97,7 +97,7 @@ def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
     shown = "stdin" if name == "-" else printable(name)
     try:
         seen = read(name, options)
-        series = choose(seen, options)
+        series = table_to_judge(seen, options)
         fields: dict[str, Any] = {"file": name, "seen": [_seen(each) for each in seen]}
         if series is None:
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
@@ -130,7 +130,7 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
     return found
 
 
-def choose(seen: Sequence[Series], options: argparse.Namespace) -> Series | None:
+def table_to_judge(seen: Sequence[Series], options: argparse.Namespace) -> Series | None:
     """Return the table to judge, None if that is not certain.  Raises UserError."""
     if options.table and options.table > len(seen):
         raise UserError(f"there is no table {options.table}; the input has {len(seen)}.")

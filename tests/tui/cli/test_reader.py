@@ -143,6 +143,31 @@ def test_documents_arrays_and_compressed_files_are_tables(data):
     assert list(series.energies) == ENERGIES
 
 
+@pytest.mark.parametrize("size", [30, 1 << 16])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,E\n" + rows("{t},{e}\n#{n},5\nwriting {s} to file"),
+        "ETITLE: TS TOTAL\n" + rows("ENERGY: {t} {e}\nInfo: {n} 1"),
+        rows(" time = {t}\n kinetic = {k}\n total energy = {e}"),
+        rows('{{"t": {t}, "E": [1, {n}], "a": {{"total": {e}}}}}'),
+    ],
+)
+def test_blocks_of_any_size_hold_the_same(text, size, monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.cli.reader.BLOCK", size)
+    (series,) = tables(text)
+    assert list(series.times) == TIMES
+    assert list(series.energies) == ENERGIES
+
+
+def test_columns_of_inner_arrays_have_numbers():
+    pairs = [[0.0, energy] for energy in ENERGIES]
+    for data in (array(t=TIMES, e=pairs), json.dumps({"t": TIMES, "e": pairs})):
+        (series,) = tables(data, energy="3")
+        assert columns(series) == "t, e_2"
+        assert list(series.energies) == ENERGIES
+
+
 @pytest.mark.parametrize(
     ("head", "form", "ends"),
     [
