@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import InputError, check_name, did_you_mean, number
+from pendu_tui.engine.inputs import InputError, check_name, did_you_mean, number, seconds
 from pendu_tui.tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
@@ -117,6 +117,14 @@ def above_zero(read: Callable[[str], Any], limit: float = math.inf) -> Callable[
 
 
 positive = above_zero(number)
+
+
+def moment(text: str) -> float:
+    """Return a time [s] of up to an hour."""
+    value = seconds(text)
+    if not 0 <= value <= 3600:  # also refuses nan
+        raise ValueError(f"{text!r} is out of range; use 0 to 3600 s")
+    return value
 
 
 def count(text: str, least: int = 1) -> int:

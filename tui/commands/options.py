@@ -27,6 +27,7 @@ from pendu_tui.tui.cli.options import (
     above_zero,
     count,
     ladder,
+    moment,
     positive,
     scale,
     step_sizes,
@@ -172,9 +173,7 @@ OPTIONS: dict[str, Settings] = {
         "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
     ),
     "accuracy --time": option("S", "simulated time (ten small swings)", above_zero(seconds)),
-    "snapshot --time": option(
-        "S", "simulated time (%(default)g)", above_zero(seconds, 3600), default=12.0
-    ),
+    "snapshot --time": option("S", "simulated time (%(default)g)", moment, default=12.0),
     "--sample-every": option("N", "record every N steps (default: every 1/30 s)", count),
     "stability --steps": option(
         "N", "steps for each swing (%(default)s)", above_zero(count, 2**31), default=10_000

@@ -109,7 +109,10 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    result = recover(resolve(options.file), options.output, options.force)
+    path = resolve(options.file)
+    if options.output.resolve() == path.resolve():
+        raise UserError(f"{options.output} is the damaged file itself; choose another name.")
+    result = recover(path, options.output, options.force)
     saved = counted(result["samples_kept"], "sample")
     lost = f"{result['entries_lost']} samples and events, and {counted(result['runs_lost'], 'run')}"
     why = result["reason"] or "it was complete"

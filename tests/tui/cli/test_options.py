@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.options import above_zero, values
+from pendu_tui.tui.cli.options import above_zero, moment, values
 from pendu_tui.tui.cli.scene import scene_of
 
 
@@ -91,3 +91,10 @@ def test_a_negative_number_after_an_option_is_its_value(text):
 def test_what_cannot_be_used_is_refused_with_its_name_and_what_to_do(argument, words):
     with pytest.raises(InputError, match=re.escape(words)):
         scene_from(argument)
+
+
+def test_a_picture_shows_any_moment_of_the_first_hour():
+    assert [moment("0"), moment("1min"), moment("3600")] == [0, 60, 3600]
+    for text in ("-0.1", "3600.1", "nan"):
+        with pytest.raises(ValueError, match="use 0 to 3600 s"):
+            moment(text)

@@ -57,6 +57,9 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     assert pendu(*recover).refused(5, "exists", "--force")
     assert out.read_bytes() == saved
     assert f"{answer['samples_kept']} samples saved; 0 " in pendu(*recover, "--force").out
+    saved = out.read_bytes()
+    assert pendu("recordings", "recover", out, "-o", out, "--force").refused(2, "another name")
+    assert out.read_bytes() == saved
 
 
 def test_the_library_is_listed_newest_first(library):
