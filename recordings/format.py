@@ -280,8 +280,8 @@ def _scene(fields: dict[str, Any]) -> Scene:
 def _milestone(fields: dict[str, Any]) -> Milestone:
     kind = fields["milestone"]
     method = method_named(fields["method"])
-    rises = fields[ENERGY_ERROR.name] > 0
-    verdict = word_of_before(fields["verdict"], rises, method.symplectic)
+    error = fields[ENERGY_ERROR.name]
+    verdict = word_of_before(fields["verdict"], error, method.symplectic)
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
     values = {name: fields[name] for name in Milestone._fields if name in fields}

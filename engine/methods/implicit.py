@@ -48,7 +48,9 @@ def implicit(share: float) -> Phases:
 
 
 def _root(square: float) -> float:
-    return math.nan if square < 0 else math.sqrt(square)
+    if square < 0:
+        return math.nan
+    return math.sqrt(square)
 
 
 def _solving(

@@ -140,15 +140,14 @@ class Measured(NamedTuple):
     linear_limit: float  # z; 0: none; inf: none found
 
     def __str__(self) -> str:
-        stable = f"up to z = h·w0 = {self.linear_limit:.4g}"
-        if self.linear_limit in (0.0, math.inf):
-            stable = "at any h" if self.linear_limit else "at no h"
+        stable = {0.0: "at no h", math.inf: "at any h"}
+        limit = f"up to z = h·w0 = {self.linear_limit:.4g}"
         lines = (
             f"order             {no_order(self.order) or f'{self.order:.3f}'}",
             f"force evaluations {self.force_evaluations:.3g} per step",
             f"symplectic        {yes(self.symplectic)}",
             f"reversible        {yes(self.reversible)}",
-            f"stable            {stable} (small swings)",
+            f"stable            {stable.get(self.linear_limit, limit)} (small swings)",
         )
         return "\n".join(lines)
 

@@ -154,7 +154,9 @@ def own_function(source: str, name: str, file: str) -> Phases:
     function = namespace.get(name)
     if not callable(function):
         others = [key for key, value in namespace.items() if callable(value) and key[0] != "_"]
-        has = f"; it has {', '.join(others[:6])}" if others else ""
+        has = ""
+        if others:
+            has = f"; it has {', '.join(others[:6])}"
         raise OwnMethodError(f"{file} has no function {name!r}{has}.")
     return guarded(function, file)
 

@@ -69,7 +69,9 @@ class DampedPendulum(Pendulum):
         energy = self.energy()((theta, omega))
         if energy == 0:
             return "equilibrium"
-        return "libration" if energy < 2 * self.w0_squared else "rotation"
+        if energy < 2 * self.w0_squared:
+            return "libration"
+        return "rotation"
 
     def area_share(self, t: float) -> float:
         return math.exp(-self.friction * t)

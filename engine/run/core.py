@@ -10,7 +10,7 @@ import numpy as np
 
 from pendu_tui.engine.run import levels
 from pendu_tui.engine.run.slope import Slope, student
-from pendu_tui.engine.run.verdicts import BOUNDED, GROWS, LOSES, UNDECIDED, Judgement
+from pendu_tui.engine.run.verdicts import BOUNDED, UNDECIDED, Judgement, direction
 
 
 class Bins(NamedTuple):
@@ -171,7 +171,7 @@ def _moved(whole: Part) -> Judgement | None:
             part = every.last(share)
             is_certain = part.slope.chance < level * share
             if is_certain and is_new(every.values, part.values, part.move):
-                return whole.described(GROWS if last.move > 0 else LOSES)
+                return whole.described(direction(last.move))
     return None
 
 
@@ -191,7 +191,7 @@ def _rested(whole: Part) -> Judgement | None:
         if not way:
             continue
         rests = not part.why_not_bounded()
-        found = part.described(GROWS if way > 0 else LOSES, rests=rests)
+        found = part.described(direction(way), rests=rests)
         if rests:
             return found
         if is_gone and not gone:
@@ -215,7 +215,9 @@ def _way_from_start(whole: Part, part: Part) -> float:
     between = whole.values[: len(whole.values) - len(part.values)]
     lowest = min(float(first.min()), level) - margin
     highest = max(float(first.max()), level) + margin
-    return level - start if lowest <= between.min() and between.max() <= highest else 0.0
+    if between.min() < lowest or highest < between.max():
+        return 0.0
+    return level - start
 
 
 def growth_of(bins: Bins) -> float | None:

@@ -26,10 +26,10 @@ from pendu_tui.engine.run.verdicts import (
     FAILED,
     GROWS,
     LEAVES,
-    LOSES,
     UNDECIDED,
     Judgement,
     Progress,
+    direction,
 )
 
 
@@ -213,7 +213,7 @@ class Judge:
         if found.verdict == UNDECIDED:
             found = self._kept(found, low, high)
         elif found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
-            found = found._replace(verdict=GROWS if low > 0 else LOSES, rests=True)
+            found = found._replace(verdict=direction(low), rests=True)
         elif reason := self._doubt(found.verdict, away > rounding):
             found = found._replace(verdict=UNDECIDED, reason=reason)
         if found.verdict in LEAVES:

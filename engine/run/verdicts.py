@@ -74,10 +74,17 @@ VERDICTS: dict[str, Verdict] = {
 }
 
 
-def word_of_before(word: str, rises: bool, symplectic: bool) -> str:
+def direction(change: float) -> str:
+    """Return the verdict of an energy that changes for good."""
+    if change > 0:
+        return GROWS
+    return LOSES
+
+
+def word_of_before(word: str, change: float, symplectic: bool) -> str:
     """Return today's word for a verdict of an older recording; other words as they are."""
     if word == "caught":
-        return GROWS if rises else LOSES
+        return direction(change)
     if word == "wanders":
         return CHAOTIC if symplectic else UNDECIDED
     if word == "too early":

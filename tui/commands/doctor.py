@@ -39,18 +39,20 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         size = shutil.get_terminal_size()
         too_small = size.columns < SMALLEST[0] or size.lines < SMALLEST[1]
         advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
-        yield "size", f"{size.columns}x{size.lines}", advice if too_small else ""
+        yield "size", f"{size.columns}x{size.lines}", advice * too_small
     if platform.system() == "Windows":
-        is_new = "WT_SESSION" in os.environ
-        advice = "use Windows Terminal, or --pixels half where dots are missing"
-        yield "console", "Windows Terminal" if is_new else "older", "" if is_new else advice
+        console = ("older", "use Windows Terminal, or --pixels half where dots are missing")
+        if "WT_SESSION" in os.environ:
+            console = ("Windows Terminal", "")
+        yield "console", *console
     encoding = sys.stdout.encoding
     advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
-    yield "encoding", encoding, "" if is_utf8(encoding) else advice
+    yield "encoding", encoding, advice * (not is_utf8(encoding))
     known = environment()
     advice = "with true colour, set COLORTERM=truecolor; without any colour, set TERM"
-    is_fine = known.get("NO_COLOR") or colours(known) > 256
-    yield "colours", f"{colours(known)}, TERM={known.get('TERM', '')}", "" if is_fine else advice
+    if known.get("NO_COLOR") or colours(known) > 256:
+        advice = ""
+    yield "colours", f"{colours(known)}, TERM={known.get('TERM', '')}", advice
     yield "recordings", *recordings()
     yield "python", f"{platform.python_version()}, {platform.system()} {platform.machine()}", ""
     yield "versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES), ""

@@ -214,7 +214,9 @@ def form_of(options: argparse.Namespace) -> Form:
         return "figure"
     if options.json or suffix == ".json":
         return "json"
-    return "csv" if options.output or options.csv else "table"
+    if options.output or options.csv:
+        return "csv"
+    return "table"
 
 
 def check_output(options: argparse.Namespace) -> Form:

@@ -279,7 +279,9 @@ def _rows_of_list(time: float, expected_steps: int, scene: Scene) -> list[Row]:
 
 
 def _column(name: str) -> str:
-    return f"start_{name}" if name in ("theta", "omega") else name
+    if name in ("theta", "omega"):
+        return f"start_{name}"
+    return name
 
 
 def run_list(scenes: Sequence[Scene], options: Namespace, gate: Gate) -> Exit:

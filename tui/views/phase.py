@@ -293,10 +293,14 @@ class PhaseView(StudyView):
 
 def area_text(ratio: float) -> str:
     """Return an area ratio as a text that differs from 1: "1 + 2.2e-16"."""
-    if not 0 < ratio < math.inf:
-        return "> 1e308" if ratio else "< 1e-308"
+    if ratio == 0:
+        return "< 1e-308"
+    if not ratio < math.inf:
+        return "> 1e308"
     if ratio == 1:
         return "1"
     if abs(ratio - 1) < 1e-6:
         return f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
-    return f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"
+    if 1e-3 <= ratio < 1e3:
+        return f"{ratio:.9f}"
+    return f"{ratio:.3e}"

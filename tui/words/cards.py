@@ -52,8 +52,10 @@ def glossary() -> str:
 def method_card(method: Method) -> str:
     """Return a method's properties; every line is a tested claim."""
     limit = method.linear_limit
-    stable = "at no h"
-    if limit == math.inf:
+    stable: str | None = "at no h"
+    if limit is None:
+        stable = None  # no single number
+    elif limit == math.inf:
         stable = "at any h (small swings)"
     elif limit:
         stable = f"up to z = h w0 = {limit:.4g} (small swings)"
@@ -62,15 +64,22 @@ def method_card(method: Method) -> str:
         order = f"{method.order}: as a rule, over one swing half of h divides the error by "
         order += f"{2**method.order}"
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
-    symplectic = "yes: conserves phase-space area"
+    if method.varies:
+        costs = f"about {costs}"
+    symplectic = "no: phase-space area changes"
+    if method.symplectic:
+        symplectic = "yes: conserves phase-space area"
+    reversible = "no"
+    if method.reversible:
+        reversible = "yes: run backwards, it returns to its start"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
         "order": order,
-        "costs": f"about {costs}" if method.varies else costs,
-        "symplectic": symplectic if method.symplectic else "no: phase-space area changes",
-        "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
-        "stable": None if limit is None else stable,  # None: no single number
+        "costs": costs,
+        "symplectic": symplectic,
+        "reversible": reversible,
+        "stable": stable,
         "note": method.note,
         "used in": method.used,
         "reference": method.reference,

@@ -151,7 +151,9 @@ def _is_conserved(source: Source) -> bool:
 def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
     """Return a method's energy over the true one; None if they hardly differ."""
     error = milestone.energy_error
-    ratio = 1 + error if conserved else math.exp(min(error, 700.0))
+    ratio = 1 + error
+    if not conserved:
+        ratio = math.exp(min(error, 700.0))
     if abs(ratio - 1) > UNCHANGED:
         return ratio
     return None

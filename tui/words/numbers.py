@@ -103,7 +103,9 @@ def regime(model: Model, theta: float, omega: float) -> str:
     level = model.level(theta, omega)
     if level == 0:
         return "separatrix"
-    return "libration" if level > 0 else "rotation"
+    if level > 0:
+        return "libration"
+    return "rotation"
 
 
 def energy_share(model: Model, theta: float, omega: float) -> str:
