@@ -330,6 +330,7 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
     text += '@ s0 legend "Temperature"\n@ s1 legend "Total Energy"\n' + rows("{t} {k} {e}")
     assert [each.units for each in tables(text)] == [("ps", "kJ/mol")]
     assert [each.units for each in tables(text, energy="Temperature")] == [("ps", "")]
+    assert [each.units for each in tables(text.replace("K", "eV"))] == [("ps", "")]
 
 
 def test_steps_and_units_of_the_owner_are_applied():
