@@ -62,6 +62,7 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
 def test_the_program_itself_notices_interrupts_that_a_callback_swallows(monkeypatch):
     monkeypatch.setattr(sys, "unraisablehook", before := sys.unraisablehook)
     monkeypatch.setattr(sys, "argv", ["pendu-tui", "--version"])
+    monkeypatch.setattr(os, "_exit", id)  # called where pytest's timer is a thread
     main()
     gc.enable()
     assert sys.unraisablehook is not before
