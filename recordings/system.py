@@ -76,15 +76,23 @@ def rename(source: Path, target: Path) -> None:
         source.unlink()
 
 
-def shell_command(arguments: list[str]) -> str:
-    """Return a command for the system's shell, which it replaces where it can."""
+def quoted(words: list[str]) -> str:
+    """Return words of a command as the system's shell reads them."""
     import shlex  # these are slow to load, and --help needs none
     import subprocess
 
     if sys.platform == "win32":
-        command = subprocess.list2cmdline(arguments)
+        command = subprocess.list2cmdline(words)
     else:
-        command = f"exec {shlex.join(arguments)}"
+        command = shlex.join(words)
+    return command
+
+
+def shell_command(arguments: list[str]) -> str:
+    """Return a command for the system's shell, which it replaces where it can."""
+    command = quoted(arguments)
+    if sys.platform != "win32":
+        command = f"exec {command}"
     return command
 
 

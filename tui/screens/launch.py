@@ -3,7 +3,6 @@
 import argparse
 import asyncio
 import gc
-import shlex
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -14,7 +13,7 @@ from textual.widget import Widget
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import NameTakenError, printable
-from pendu_tui.recordings.system import environment
+from pendu_tui.recordings.system import environment, quoted
 from pendu_tui.tui.cli.errors import Exit, warn
 from pendu_tui.tui.cli.files import stop_requests
 from pendu_tui.tui.drawing.cells import CellWidget
@@ -136,8 +135,7 @@ def say_goodbye(source: Source) -> int:
     if recorder.part.exists():
         file = recorder.part
     if file.exists():
-        quoted = shlex.quote(str(file))
-        for line in (f"saved {file}", f"replay it with: pendu-tui replay {quoted}"):
+        for line in (f"saved {file}", f"replay it with: pendu-tui replay {quoted([str(file)])}"):
             print(printable(line, limit=5000))  # whole, to be copied
     if recorder.failed:
         warn(f"the recording stopped: {recorder.failed}")

@@ -79,5 +79,6 @@ def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, ca
     live.recorder.abandon()
     assert say_goodbye(live) == 5
     printed = capsys.readouterr()
-    assert f"saved {tmp_path / 'lab.mcap.part'}" in printed.out
+    part = tmp_path / "lab.mcap.part"
+    assert printed.out == f"saved {part}\nreplay it with: pendu-tui replay {part}\n"
     assert "the recording stopped" in printed.err
