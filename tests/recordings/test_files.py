@@ -1,5 +1,6 @@
 """The library: where recordings are, and which one a name means."""
 
+import errno
 import os
 import time
 from pathlib import Path
@@ -119,3 +120,9 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
     files.check_target(taken, force=True)
     files.check_target(tmp_path / "free.mcap", force=None)
     files.check_target(files.Path(os.devnull))
+
+
+def test_an_error_of_the_disk_names_the_file_first(tmp_path):
+    with pytest.raises(DiskError) as failed, files.writing(tmp_path):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert str(failed.value) == f"{tmp_path}: No space left on device"

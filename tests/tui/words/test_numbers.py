@@ -76,6 +76,8 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (energy_share(MODEL, 0.0, 4 * W0), "4"),
         (energy_share(MODEL, math.pi - 1e-6, 0.0), "1 - 2.5e-13"),
         (energy_share(MODEL, math.pi, 2e-6 * W0), "1 + 1.0e-12"),
+        (energy_share(MODEL, math.acos(2 * 0.9e-3 - 1), 0.0), "1 - 9.0e-04"),
+        (energy_share(MODEL, math.acos(2 * 1.1e-3 - 1), 0.0), "0.9989"),
         (motion_text(Scene(), Scene().exact()), "exact period 2.13914 s  E/Es 0.2298  libration"),
         (regime(MODEL, math.pi - 1e-6, 0.0), "libration"),
         (regime(MODEL, math.pi - 1e-6, 1e-5), "rotation"),
