@@ -11,7 +11,13 @@ from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FAINT, FRAME, TEXT
 from pendu_tui.tui.drawing.plotted import Series, loglog_chart
-from pendu_tui.tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
+from pendu_tui.tui.drawing.time_chart import (
+    CROSSING,
+    MIN_COLUMNS,
+    MIN_ROWS,
+    _crossings,
+    time_chart,
+)
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
 from tests.tui.drawn import cells, inks, size
@@ -111,6 +117,13 @@ def test_lines_that_lie_on_each_other_have_no_cross_nor_has_a_pass_beside_a_clea
     assert not crosses(plot(window(t, errors), places=[0, 1], seconds=20))
     assert len(crosses(plot(window(t, errors), places=[1, 3], seconds=20))) == 1
     assert len(set(crosses(plot(window(t, errors), places=[1, 2, 3], seconds=20)))) == 1
+
+
+@pytest.mark.parametrize(("columns", "half_swing", "crosses"), [(3, 0, 0), (4, 3, 1), (4, 4, 0)])
+def test_a_pass_lasts_for_a_25th_of_the_chart_and_half_a_swing(columns, half_swing, crosses):
+    later = np.where(np.arange(100) < 100 - columns, 5.0, 15.0)
+    heights = np.column_stack((np.full(100, 10.0), later))
+    assert len(_crossings(heights, np.arange(100.0), half_swing)) == crosses
 
 
 @given(st.lists(st.floats(-2, 25), max_size=8), st.integers(1, 20))
