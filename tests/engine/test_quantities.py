@@ -1,6 +1,6 @@
 """Each quantity is named once, and what is read off the list agrees with it."""
 
-from pendu_tui.engine.models import MODELS
+from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.quantities import CHARTED, QUANTITIES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading
 
@@ -33,3 +33,19 @@ def test_every_chart_has_a_title_and_the_charted_are_those_with_one():
     assert {each for each in QUANTITIES if each.chart.title} == {*CHARTED}
     for model in MODELS.values():
         assert all(each.chart.title for each in model.charted())
+
+
+def test_the_numbers_of_a_scene_have_the_units_of_its_equations():
+    units = {name: number.unit for name, number in NUMBERS.items()}
+    known = {
+        "theta": "rad",
+        "omega": "rad/s",
+        "length": "m",
+        "gravity": "m/s²",
+        "h": "s",
+        "friction": "s⁻¹",
+        "stiffness": "s⁻²",
+        "coupling": "s⁻²",
+        "level_frequency": "s⁻¹",
+    }
+    assert known.items() <= units.items()

@@ -57,6 +57,8 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     assert pendu(*recover).refused(5, "exists", "--force")
     assert out.read_bytes() == saved
     assert f"{answer['samples_kept']} samples saved; 0 " in pendu(*recover, "--force").out
+    again = pendu("recordings", "recover", out, "-o", tmp_path / "again.mcap")
+    assert "it was complete" in again.out
     saved = out.read_bytes()
     assert pendu("recordings", "recover", out, "-o", out, "--force").refused(2, "another name")
     assert out.read_bytes() == saved
