@@ -46,10 +46,13 @@ class EnergyDrift(_Checks):
         """
         __tracebackhide__ = True
         from pendu_tui.engine import judge
-        from pendu_tui.engine.run.verdicts import UNDECIDED, not_within
+        from pendu_tui.engine.inputs import check_name
+        from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, not_within
 
         wanted = [verdict] if isinstance(verdict, str) else verdict
         try:
+            for word in wanted:
+                check_name("verdict", word, VERDICTS)
             judged = judge(times, energies, scale)
         except ValueError as error:
             raise pytest.fail.Exception(str(error)) from None

@@ -189,6 +189,11 @@ def test_a_record_that_cannot_tell_fails_and_says_how_long_it_must_be(energy_gat
         energy_gate.check(*record(seconds=2.0))
 
 
+def test_a_verdict_that_does_not_exist_fails_beside_one_that_fits(energy_gate):
+    with pytest.raises(pytest.fail.Exception, match="did you mean loses"):
+        energy_gate.check([0, 1, 2], [1, 1, 1], verdict=("undecided", "losses"))
+
+
 def test_several_verdicts_may_pass_and_a_drift_is_compared_with_its_bound(energy_gate):
     times, energies = record()
     drifting = energies * (1 + 0.01 * times)

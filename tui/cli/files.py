@@ -24,13 +24,17 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """
     from tempfile import TemporaryDirectory  # loads random and hashlib, which --help needs not
 
-    from pendu_tui.recordings.files import check_target, is_stream, publish
+    from pendu_tui.recordings.files import check_target, is_stream, publish, writing
 
     check_target(path, force)
     if is_stream(path):
         yield path
         return
-    with interruptible(), TemporaryDirectory(prefix=".pendu-", dir=path.parent) as folder:
+    with (
+        interruptible(),
+        writing(path),
+        TemporaryDirectory(prefix=".pendu-", dir=path.parent) as folder,
+    ):
         part = Path(folder, path.name)
         yield part
         publish(part, path, force)

@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
             asyncio.run(LabServer(file, options).run())
     except (OSError, OverflowError, UnicodeError) as error:
         where = f"{options.host} port {options.port}"
-        why = getattr(error, "strerror", None) or error
+        why = str(getattr(error, "strerror", None) or error).removesuffix(".")
         raise UserError(f"cannot listen on {where}: {why}; use another --port or --host.") from None
     return Exit.FINE
 

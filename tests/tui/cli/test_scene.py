@@ -72,7 +72,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("[shot]\nreturns = true", "line 2: it needs a moment; use for example moment ="),
         (
             "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
-            "line 3: a question has two to 4 answers, and the number of the right one",
+            "line 3: a question has 2 to 4 answers, and the number of the right one",
         ),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
         (f"theta = {'9' * 5000}", "is not TOML"),

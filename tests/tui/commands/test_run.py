@@ -106,6 +106,8 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
     [
         ("--time 1 --length -1", ["length"]),
         ("--time 0", ["above zero"]),
+        ("--time 0.01", ["shorter than one step"]),
+        ("--time 2 --h 0.05,5", ["--time 2", "5 s"]),
         ("--time 1e10", ["out of range"]),
         ("--time 1 --fail-if rk5.theta>1", ["--fail-if", "rk5"]),
         ("", ["--time is missing"]),
