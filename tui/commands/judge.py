@@ -46,6 +46,8 @@ def _check(options: argparse.Namespace) -> None:
         raise UserError(
             "several files take --steps, a step size for each, for example --steps 1,2."
         )
+    if "time" in options.units and (options.step or ("", ""))[1]:
+        raise UserError("--step has the unit of time already; leave out time= of --units.")
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
     if not options.start <= options.end:

@@ -113,6 +113,9 @@ def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
     assert answer["kt_per_ns_per_atom"] == pytest.approx(5000 / 0.025852, rel=0.01)
     assert guess(text, "--atoms", 10).refused(2, "--step 0.5fs")
     assert guess(text, "--temperature", 5).refused(2, "belongs to --atoms")
+    twice = ("--step", "0.5fs", "--units", "time=ps,energy=eV")
+    assert guess(text, *twice).refused(2, "--step has the unit", "leave out time=")
+    assert guess(text, "--step", 2, "--units", "time=ps", "--json").json["time_unit"] == "ps"
     for option in (("--step", "0"), ("--step", "fs"), ("--units", "ps"), ("--units", "mass=u")):
         assert guess(text, *option).refused(2, option[0])
 
