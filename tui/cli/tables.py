@@ -414,11 +414,19 @@ class Series:
         self.kinetic = self.kinetic[used]
 
     def _units(self) -> tuple[str, str]:
-        """Return the units of time and energy.  Raises UserError if --step contradicts one."""
+        """Return the units of time and energy.
+
+        Raises UserError if columns to be added have different ones, or --step contradicts one.
+        """
         wanted = self.sheet.wanted
         found = {}
         for kind, group in (("time", self.choice.time), ("energy", self.choice.energy)):
-            units = {self.sheet.units[place] for place in group}
+            units = {shown(kind, self.sheet.units[place]) for place in group}
+            if len(units - {""}) > 1:
+                raise UserError(
+                    f"the units of {self.named(group)} differ ({', '.join(sorted(units))}); "
+                    "add columns of one unit, or convert them first."
+                )
             found[kind] = units.pop() if len(units) == 1 else ""
         is_time = any(role(self.sheet.names[place])[0] == "time" for place in self.choice.time)
         if wanted.step and (found["time"] or is_time):

@@ -314,6 +314,14 @@ def test_columns_are_named_or_numbered_and_added(head, asked, found):
     assert series.energies == pytest.approx(ENERGIES)
 
 
+def test_columns_of_different_units_are_not_added():
+    table = "t,KE [kcal/mol],PE [{}]\n" + rows("{t},{k},{p}")
+    with pytest.raises(UserError, match=r"KE\+PE differ \(kJ/mol, kcal/mol\)"):
+        tables(table.format("kJ/mol"), energy="KE+PE")
+    (series,) = tables(table.format("kcal/mole"), energy="KE+PE")
+    assert list(series.energies) == pytest.approx(ENERGIES)
+
+
 @pytest.mark.parametrize("legends", [("Total Energy", "Potential"), ("Potential", "Total Energy")])
 def test_each_set_of_xmgrace_has_its_own_legend(legends):
     names = "".join(f'@ s{place} legend "{name}"\n' for place, name in enumerate(legends))
