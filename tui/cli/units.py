@@ -98,7 +98,14 @@ def quantity(text: str) -> tuple[float, str]:
     value = float(match[1]) if match else 0.0
     if match is None or not 0 < value < float("inf"):
         raise ValueError(f"{text!r} is not a step; use for example 2 or 0.5fs")
-    return value, match[2] or ""
+    return value, _unit_of_time(match[2]) if match[2] else ""
+
+
+def _unit_of_time(unit: str) -> str:
+    """Return a unit of time.  Raises ValueError if it is not known."""
+    if not plain("time", unit):
+        raise ValueError(f"{unit!r} is no known unit of time; use for example fs, ps or ns")
+    return unit
 
 
 def assignments(text: str) -> dict[str, str]:
@@ -107,4 +114,6 @@ def assignments(text: str) -> dict[str, str]:
     found = {kind.strip(): unit.strip() for kind, _, unit in pairs}
     if not found or not set(found) <= {"time", "energy"} or not all(found.values()):
         raise ValueError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
+    if "time" in found:
+        _unit_of_time(found["time"])
     return found

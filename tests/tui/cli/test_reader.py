@@ -13,7 +13,7 @@ import pytest
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
 from pendu_tui.tui.cli.tables import Series, Wanted
-from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS, assignments
+from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS, assignments, quantity
 
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
 TIMES = [t for _, t, _, _ in SAMPLES]
@@ -223,6 +223,17 @@ def test_words_that_were_no_head_may_be_one_later():
     early = f"Step A B TotEng\n{rows('{s} {k} {k} {e}', 0, 70)}Step TotEng\n1 2 3 4\n"
     found = tables(f"{early}Step TotEng\n{rows('{s} {e}')}")
     assert list(found[-1].energies) == ENERGIES
+
+
+@pytest.mark.parametrize(
+    ("read", "form"), [(quantity, "1{}"), (assignments, "time={},energy=parsec")]
+)
+def test_units_of_time_are_known_ones(read, form):
+    for unit in ("fs", "Picoseconds", "a.u.", "yr"):
+        assert unit in str(read(form.format(unit)))
+    for unit in ("kg", "parsec", "eV"):
+        with pytest.raises(ValueError, match=f"'{unit}' is no known unit of time; use for .* fs"):
+            read(form.format(unit))
 
 
 @pytest.mark.parametrize(
