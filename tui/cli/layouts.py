@@ -70,7 +70,8 @@ LAYOUTS = (
     ),
     Layout(
         programs="NAMD",
-        line=r"^(?P<names>ETITLE:.*)|^(?P<row>ENERGY:.*)|^TCL: (?P<part>Running|Minimizing) for",
+        line=r"^(?P<names>ETITLE:.*)|^(?P<row>ENERGY: +\S+ +[-+.\dn*].*)"
+        r"|^TCL: (?P<part>Running|Minimizing) for",
         units=("", "kcal/mol"),
     ),
     Layout(

@@ -96,6 +96,8 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ("INFO t={t}s E={e}J", "s, J"),
         ("Step {s}\n  time = {t}\n  kinetic = {k}\n  total energy = {e} Ry", ", Ry"),
         ("E = {e}\nt = {t}", ", "),
+        ("time: {t}\nenergy: {e}", ", "),
+        ("Time: {t} ps\nEnergy: {e} eV", "ps, eV"),
         ("({t}, {e})", ", "),
         ("{t}ps {e}eV", "ps, eV"),
         ('{{"t": {t}, "energy": {{"total": {e}, "kinetic": {k}}}}}', ", "),
