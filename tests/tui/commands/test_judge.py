@@ -185,7 +185,7 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     assert "goes as h^2.00" in outcome.out
     assert "order of the files" not in outcome.out
     assert "order of the files" in pendu(*files, "--steps", "2,1").out
-    assert pendu(*files, "--steps", "1,1").refused(2, "a step size for each")
+    assert pendu(*files, "--steps", "1,1").refused(2, "not all the same")
 
 
 def test_a_gate_gives_the_values():
