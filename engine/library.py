@@ -343,13 +343,15 @@ def recommend(
 
 
 def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
-    if isinstance(scene, str):
-        check_name("scene", scene, SCENES)
-        scene = SCENES[scene]
+    if not isinstance(scene, Scene):
+        check_name("scene", str(scene), SCENES)
+        scene = SCENES[str(scene)]
     for name in numbers:
         check_name("number", name, NUMBERS)
     scene = scene.altered(**{name: _number(name, value) for name, value in numbers.items()})
-    return scene if methods is None else scene.with_cast(_cast(methods))
+    if methods is None:
+        return scene
+    return scene.with_cast(_cast(methods))
 
 
 def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
@@ -361,8 +363,12 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 
 def _cast(methods: Methods) -> Cast:
-    given = methods.split(",") if isinstance(methods, str) else methods
-    return all_named([each.key if isinstance(each, Method) else each for each in given])
+    given: Iterable[Any] = [methods]
+    if isinstance(methods, str):
+        given = methods.split(",")
+    elif isinstance(methods, Iterable):
+        given = methods
+    return all_named([getattr(each, "key", str(each)) for each in given])
 
 
 def _number(name: str, value: Any) -> float:
@@ -429,10 +435,14 @@ def _series(
 
 def _size(energies: Any, scale: float | str) -> float:
     """Return the energy that errors are relative to."""
-    if scale == "std":
+    if not isinstance(scale, str):
+        size = _number("scale", scale)
+    elif scale == "std":
         largest = float(abs(energies).max()) or 1.0
         return float((energies / largest).std()) * largest or largest
-    size = abs(float(energies[0])) if scale == "first" else _number("scale", scale)
+    else:
+        check_name("scale", scale, ("first", "std"))
+        size = abs(float(energies[0]))
     if size <= 0:
         raise InputError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
     return size
