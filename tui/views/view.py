@@ -316,5 +316,9 @@ class StudyView(View):
     def compose(self) -> ComposeResult:
         yield self.with_source(self.pane)
 
+    def retry(self) -> None:
+        super().retry()
+        self.screen.set_focus(self.pane)  # before the next key
+
     def on_show(self) -> None:
         self.pane.focus()

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from textual import events
 
 from pendu_tui.engine.methods import VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
@@ -85,3 +86,11 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         await theatre.press("x")
         assert str(pane.border_title).startswith("Phase space")
         assert "E/Es" in pane.text
+
+
+async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():
+    async with lab(SCENE) as theatre:
+        for key in ("f3", "x"):
+            theatre.app.post_message(events.Key(key, None))
+        await theatre.run(0.2)
+        assert theatre.stage.query_one(SectionPane).shows_section
