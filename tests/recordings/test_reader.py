@@ -58,12 +58,15 @@ def limits(path: Path) -> dict[str, int]:
     return {
         "MAX_RECORD": max(head[4] for head in heads),
         "MAX_EXPANSION": max(-(-head[4] // (head[1] + 128)) for head in heads),
+        "MAX_SUMMARY": len(data) - FOOTER.unpack(data[-FOOTER.size :])[2],
         "MAX_TIME": max(head[3] for head in heads),
         "MAX_EVENTS": 10,  # that they are, with the stop
     }
 
 
-@pytest.mark.parametrize("name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_TIME", "MAX_EVENTS"])
+@pytest.mark.parametrize(
+    "name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_SUMMARY", "MAX_TIME", "MAX_EVENTS"]
+)
 def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
     limit = limits(path)[name]
     module = recording if name == "MAX_EVENTS" else reader
