@@ -35,6 +35,7 @@ TieredLoops(scene.cast[0], scene.equations).propagate((1.0, 0.0), 0.05, 10_000)
         (FIRST_PAINT, "numpy plotext mcap numba"),
         (FEW_STEPS, "numba"),
         ("import pendu_tui.engine", "pendu_tui.engine. numpy"),
+        ("import pendu_tui.recordings", "pendu_tui.recordings. pendu_tui.engine mcap"),
     ],
 )
 def test_what_takes_long_to_load_is_loaded_when_it_is_needed(work, later):

@@ -6,6 +6,7 @@ from itertools import count
 
 import pytest
 
+from pendu_tui import recordings
 from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
@@ -53,6 +54,16 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(verified):
     assert (verification.reason, verification.first_difference) == (None, None)
     assert (verification.runs, verification.samples) == (2, 10)
     assert verification.other_functions == ()
+
+
+def test_the_room_offers_what_programs_import_and_nothing_else(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs())
+    assert dir(recordings) == ["Recording", "verify"]
+    assert recordings.verify(path).identical
+    with recordings.Recording.open(path) as recording:
+        assert len(recording.runs) == 2
+    with pytest.raises(AttributeError, match="no attribute 'verfy'"):
+        recordings.verfy  # noqa: B018
 
 
 def test_a_value_that_an_older_version_did_not_record_is_not_compared(verified):
