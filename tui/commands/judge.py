@@ -44,7 +44,7 @@ def _check(options: argparse.Namespace) -> None:
     are_fit = len(set(steps)) > 1 and len(steps) == len(options.files)
     if (steps or len(options.files) > 1) and not are_fit:
         raise UserError(
-            "several files take --steps, a step size for each and not all the same, for example --steps 1,2."
+            "several files take --steps, one for each and not all the same, such as --steps 1,2."
         )
     if "time" in options.units and (options.step or ("", ""))[1]:
         raise UserError("--step has the unit of time already; leave out time= of --units.")
