@@ -396,6 +396,7 @@ class Series:
         self.skipped += skipped
         used = np.flatnonzero(is_later & (times >= start) & (times <= end))
         lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
+        is_lost = 0 < len(lost) == len(used)
         if len(lost):
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
@@ -406,7 +407,9 @@ class Series:
             )
         if not len(used):
             why = "no row has a usable time and energy in this range."
-            if self.diverged_at is not None:
+            if is_lost:
+                why = "each energy in this range is nan or infinite; repeat the run with a smaller step."
+            elif self.diverged_at is not None:
                 why += f" Use --from with a later time than {self.diverged_at:g}."
             raise unreadable(why)
         self.times = times[used]
