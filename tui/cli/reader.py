@@ -43,6 +43,7 @@ _NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
+_OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
 _COMMENTS = "#@!%;"
 _JSON_NUMBERS = msgspec.json.Decoder(list[float])
 _DELIMITERS = "\t;,|"
@@ -113,6 +114,12 @@ def _parsed(text: str) -> Any:
     with suppress(ValueError, RecursionError):
         return json.loads(text)
     return text
+
+
+def _is_broken(line: str) -> bool:
+    """Return whether a line is no JSON, even with other numbers, and does not go on below."""
+    bare = _NUMBERS.sub("0", _IS_FAILED.sub("0", line.rstrip(" ]\r")))
+    return not bare.endswith(",") and _parsed(bare) is bare
 
 
 def _records(document: Any) -> list[str]:
@@ -326,6 +333,9 @@ class _Text:
 
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
+        if _OBJECT.match(line) and self._prints[-1].puts and _is_broken(line):
+            self._prints[-1].skipped += 1
+            return
         names = self._over
         self._over = []
         if names and len(fields := line.split()) == len(names):
@@ -433,7 +443,13 @@ class _Text:
         fields, delimiter = self._fields(bare)
         numbers = [*map(number, fields)]
         if not any(each is not None for each in numbers):
-            self._heads[line] = _ways(bare)
+            ways = _ways(bare)
+            heads = chain(ways, *self._heads.values())
+            is_row = delimiter and len(fields) == self._form[1] and not self._begins
+            if is_row and not is_comment and not any(map(self._worth, heads)):
+                self._sheets[-1].skipped += 1
+                return False
+            self._heads[line] = ways
             if len(self._heads) > MAX_HEADS:
                 del self._heads[next(iter(self._heads))]
             return False

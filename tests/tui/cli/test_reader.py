@@ -200,6 +200,32 @@ def test_energies_that_are_only_rarer_have_not_failed(text, diverged_at, skipped
     assert series.skipped == skipped
 
 
+OBJECTS = rows('{{"t": {t}, "E": {e}}}')
+
+
+@pytest.mark.parametrize(
+    ("text", "odd", "skipped"),
+    [
+        (OBJECTS, '{"t": 3', 2),
+        (OBJECTS, '{"t": , "E": 5}', 2),
+        (OBJECTS, "{broken", 2),
+        (OBJECTS, '{"event": "checkpoint", "at": [1, 2]}', 0),
+        (OBJECTS, "a note", 0),
+        (OBJECTS.replace(", ", ",\n"), "a note", 0),
+        (OBJECTS, '{"k": -nan(ind), "p": +1.D+02}', 0),
+        ("t,E,K,P\n" + rows("{t},{e},{k},{p}"), "a gap,,,", 2),
+        ("t,E\n" + rows("{t},{e}"), "a note", 0),
+        ("t,E\n" + rows("{t},{e}"), "# a note, 5", 0),
+        ("t,E\n" + rows("{t},{e}"), "t,E", 0),
+        ("t E\n" + rows("{t} {e}"), "a note", 0),
+    ],
+)
+def test_lines_that_look_like_rows_are_counted(text, odd, skipped):
+    *lines, last, _ = text.split("\n")
+    (series,) = tables("\n".join([*lines, odd, last, odd]))
+    assert (list(series.energies), series.skipped) == (ENERGIES, skipped)
+
+
 @pytest.mark.parametrize("nan", ["nan", "1.#QNAN"])
 def test_printed_values_after_the_first_nan_are_nan_too(nan):
     text = rows(f"t = {{t}}, E = {nan}") + rows("t = 1{n:02}, E = {e}")
