@@ -146,10 +146,11 @@ def given_by(option: str) -> Iterator[None]:
 def ladder(text: str) -> tuple[float, float, int]:
     """Return the ends of a ladder of step sizes [s], the larger first, and its rungs: A:B:N."""
     match text.split(":"):
-        case [first, last, many]:
+        case [first, last, many] if count(many) <= 1000:
             low, high = sorted((positive(first), positive(last)))
             return high, low, count(many)
-    raise ValueError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
+    why = "is not a list of up to 1000 step sizes; use A:B:N, for example 0.2:0.001:10"
+    raise ValueError(f"{text!r} {why}")
 
 
 def scale(text: str) -> Any:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.options import above_zero, moment, values
+from pendu_tui.tui.cli.options import above_zero, ladder, moment, values
 from pendu_tui.tui.cli.scene import scene_of
 
 
@@ -31,6 +31,12 @@ def test_a_list_is_ascending_and_what_is_none_is_refused(text):
     assert values(number)("1:2:3") == [1.0, 1.5, 2.0]
     with pytest.raises(ValueError, match="is not a list"):
         values(number)(text)
+
+
+def test_a_ladder_has_up_to_1000_step_sizes_the_largest_first():
+    assert ladder("0.001:0.2:1000") == (0.2, 0.001, 1000)
+    with pytest.raises(ValueError, match="is not a list of up to 1000 step sizes"):
+        ladder("0.2:0.1:1001")
 
 
 DEFAULTS = {

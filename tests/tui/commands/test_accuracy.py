@@ -53,7 +53,7 @@ def test_a_target_that_no_method_reaches_is_reported():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--h-values", "0.2:0.1"], ["not a list of step sizes", "0.2:0.001:10"]),
+        (["--h-values", "0.2:0.1"], ["not a list of up to 1000 step sizes", "0.2:0.001:10"]),
         (["--h-values", "1e9:0.1:3"], ["1e+09"]),
         (["--methods", "taylor_20"], ["--cost seconds"]),
         (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
