@@ -187,15 +187,21 @@ def refuse_to_replace_inputs(options: Namespace) -> None:
     """Raise UserError if an output is a file that another argument names, even with --force."""
     arguments = dict(vars(options))
     outputs = [arguments.pop(name, None) for name in ("output", "record")]
-    inputs: set[Path] = set()
+    inputs: list[str] = []
     for value in arguments.values():
         for text in value if isinstance(value, list) else [value]:
             if isinstance(text, str):
-                names = (text, text.rpartition(":")[0])  # FILE.py:FUNCTION
-                inputs.update(Path(name).resolve() for name in names)
+                inputs += [text, text.rpartition(":")[0]]  # FILE.py:FUNCTION
     for output in outputs:
-        if isinstance(output, Path) and output.is_file() and output.resolve() in inputs:
+        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
             raise UserError(f"{output} is read by this command; choose another name to write.")
+
+
+def _is_same(path: Path, other: str) -> bool:
+    try:
+        return path.is_file() and path.samefile(other)
+    except (OSError, ValueError):  # an argument may be no name of a file
+        return False
 
 
 def repeat_swallowed_interrupts() -> None:

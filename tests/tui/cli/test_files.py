@@ -132,6 +132,7 @@ def test_two_commands_may_write_the_same_name_at_once(tmp_path):
     [
         "recordings recover one.mcap -o one.mcap --force",
         "recordings recover one.mcap -o link.mcap --force",
+        "recordings recover one.mcap -o hard.mcap --force",
         "run --time 1 --scene one.toml --record one.toml --force",
         "run --time 1 --method one.py:mine --record one.py --force",
     ],
@@ -142,6 +143,7 @@ def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, comm
     for name in ("one.toml", "one.py", "one.csv"):
         Path(name).write_text("theta = 1.0\n", encoding="utf-8")
     Path("one.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes()[:-500])
+    Path("hard.mcap").hardlink_to("one.mcap")
     if "link.mcap" in command:
         with suppress(OSError):
             Path("link.mcap").symlink_to("one.mcap")
@@ -150,3 +152,12 @@ def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, comm
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     assert pendu(*command.split()).refused(2, "is read by this command")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_loop_of_links_is_an_ordinary_error(tmp_path):
+    loop = tmp_path / "loop"
+    with suppress(OSError):
+        loop.symlink_to(loop)
+    if not loop.is_symlink():
+        pytest.skip("needs symbolic links")
+    assert pendu("judge", loop).refused(3, "loop")
