@@ -408,7 +408,7 @@ class Series:
         if not len(used):
             why = "no row has a usable time and energy in this range."
             if is_lost:
-                why = "each energy in this range is nan or infinite; repeat the run with a smaller step."
+                why = "each energy in this range is nan or infinite; repeat it with a smaller step."
             elif self.diverged_at is not None:
                 why += f" Use --from with a later time than {self.diverged_at:g}."
             raise unreadable(why)
