@@ -1,6 +1,7 @@
 """The phase portrait of a method's own map, as a picture and in the view."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -92,5 +93,5 @@ async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():
     async with lab(SCENE) as theatre:
         for key in ("f3", "x"):
             theatre.app.post_message(events.Key(key, None))
-        await theatre.run(0.2)
-        assert theatre.stage.query_one(SectionPane).shows_section
+        panes = partial(theatre.stage.query, SectionPane)
+        await until(theatre.pilot, lambda: any(pane.shows_section for pane in panes()))
