@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # the first paint needs none
 
 FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
 CHUNK = 256  # steps between clock readings, about a millisecond
+ALTERED = " (altered)"  # after the name of a scene whose start or step was changed
 ROW_RATE = 30  # rows of the history and samples of the recording per second
 
 
@@ -173,8 +174,10 @@ class Live(Source):
         changed.
         """
         before = self.scene
-        if before != scene == before.altered(theta=scene.theta, omega=scene.omega, h=scene.h):
-            scene = replace(scene, name=f"{before.name.partition(',')[0]}, altered")
+        altered = before.altered(theta=scene.theta, omega=scene.omega, h=scene.h)
+        if scene == altered and scene != before:
+            name = before.name.removesuffix(ALTERED) + ALTERED
+            scene = replace(scene, name=name)
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
         self._runs += 1

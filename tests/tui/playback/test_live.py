@@ -7,6 +7,7 @@ import sys
 import threading
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -300,3 +301,13 @@ def test_a_frame_takes_as_much_after_four_hours_as_after_half_an_hour():
         frames()  # whose samples are close to each other again
         taken.append(calls(frames))
     assert taken[1] < 1.1 * taken[0]
+
+
+@pytest.mark.parametrize("what", ["theta", "omega", "h"])
+def test_a_scene_whose_start_or_step_is_changed_keeps_its_name_and_says_so_once(what):
+    lab = live.Live(replace(DEFAULT_SCENE, name="Verlet, then RK4"))
+    for value in (0.3, 0.2):
+        lab.start(lab.scene.altered(**{what: value}))
+        assert lab.scene.name == "Verlet, then RK4 (altered)"
+    lab.start(lab.scene.altered(length=2.0))
+    assert lab.scene.name == "custom"

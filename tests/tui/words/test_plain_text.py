@@ -150,7 +150,7 @@ def test_changes_and_marks_are_listed_pauses_are_not_and_a_step_back_removes_wha
         " 1  8.10 s mark 2: question 2",
         " 1  8.10 s time runs back, h 0.1 s",
         " 1  8.10 s h 0.4 s, equal cost",
-        " 2  0.00 s start drift, altered, h 0.05 s",
+        " 2  0.00 s start drift (altered), h 0.05 s",
         " 2  0.00 s h 0.2 s, equal cost",
     ]
     live = after(DRIFT, 8)
