@@ -78,13 +78,16 @@ def _contents(recording: Recording) -> Report:
     if recording.damaged:
         health = f"damaged: {health}"
     samples = counted(recording.samples, "sample")  # reads them all
+    notes = []
+    if len(runs) > MAX_RUNS:
+        notes = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
     return Report(
         name="recordings-show",
         title=f"{recording.path}: {health}\n"
         f"{seconds(recording.length)}, {samples}, {file_size(recording.bytes)}\n"
         f"methods: {', '.join(cast)}\n",
         columns=RUN_COLUMNS,
-        rows=[run["scene"] | run for run in runs],
+        rows=[run["scene"] | run for run in runs[:MAX_RUNS]],
         fields={
             "file": str(recording.path),
             "runs": runs,
@@ -92,9 +95,11 @@ def _contents(recording: Recording) -> Report:
             "methods": cast,
             **fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
         },
+        notes=notes,
     )
 
 
+MAX_RUNS = 500  # in the table, of which Rich draws a thousand rows a second
 RUN_COLUMNS = (
     Column("run", "run", "d"),
     Column("scene", "name"),

@@ -47,6 +47,18 @@ def test_show_shows_what_a_recording_contains(whole):
     assert "damaged:" not in shown
 
 
+def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path, monkeypatch):
+    for runs, more in ((500, ""), (503, "and 3 runs more")):
+        monkeypatch.setattr(hostile, "MANY", runs + 1)
+        path = tmp_path / f"{runs}.mcap"
+        hostile.write(path, hostile.runs())
+        out = pendu("recordings", "show", path).out
+        assert more in out
+        assert ("runs more" in out) == (runs > 500)
+        assert out.count("字") >= 500 > out.count("\n501")
+        assert len(pendu("recordings", "show", path, "--json").json["runs"]) == runs
+
+
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whole, tmp_path):
     out = tmp_path / "saved.mcap"
     recover = ("recordings", "recover", whole, "-o", out)
