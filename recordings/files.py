@@ -19,6 +19,7 @@ PART = ".part"  # appended to the name of an unfinished recording
 GOLDEN = Path(__file__).parent / "golden"
 MAGIC = b"\x89MCAP0\r\n"
 PROFILE = "pendu"  # in the file's header
+_PROFILE_AT = len(MAGIC) + 9  # after the header's opcode and length
 MAX_TEXT = 200  # characters of one text from a file; a mark or a scene's name is shorter
 
 
@@ -173,7 +174,8 @@ def _is_recording(path: Path) -> bool:
         return False
     with path.open("rb") as file:
         head = file.read(64)
-    return head.startswith(MAGIC) and PROFILE.encode() in head
+    profile = len(PROFILE).to_bytes(4, "little") + PROFILE.encode()
+    return head.startswith(MAGIC) and head.startswith(profile, _PROFILE_AT)
 
 
 def in_use(path: Path) -> bool:

@@ -65,9 +65,13 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
     (library / "notes.txt").touch()
     (library / "folder.mcap").mkdir()
     (library / "empty.mcap.part").touch()
-    for name in ("robot.mcap", "robot.mcap.part"):  # a browser's download is called so, too
+    for name, profile in (
+        ("robot.mcap", "ros2"),
+        ("robot.mcap.part", "ros2"),  # a browser's download is called so, too
+        ("clock.mcap", "pendulum"),
+    ):
         with (library / name).open("wb") as stream:
-            Writer(stream).start("ros2")
+            Writer(stream).start(profile, "pendu")
     with Recorder(library / "running.mcap") as recorder:
         recorder.add(start(), 0.0)
         recorder.flush()
