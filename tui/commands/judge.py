@@ -161,11 +161,11 @@ def _missing(series: Series) -> UserError:
 def _seen(series: Series) -> dict[str, Any]:
     """Return a table as it is listed."""
     names = zip(series.sheet.names, series.sheet.units, strict=True)
-    times = series.times[[0, -1]] if series.rows else ()
+    times = series.times[np.isfinite(series.times)]
     return {
         "table": series.number,
         "rows": series.rows,
-        "span": [float(time) for time in times],
+        "span": [float(time) for time in (*times[:1], *times[-1:])],
         "columns": [{"name": printable(name), "unit": printable(unit)} for name, unit in names],
         "time": printable(series.named(series.choice.time)),
         "energy": printable(series.named(series.choice.energy)),

@@ -273,3 +273,10 @@ def test_any_input_is_columns_or_one_sentence(data):
         for series in found:
             assert all(map(math.isfinite, series.energies))
             assert all(a < b for a, b in pairwise(series.times))
+
+
+def test_a_time_that_is_no_number_is_not_in_the_span_of_a_table(tmp_path):
+    file = tmp_path / "energies.csv"
+    file.write_text("t,energy\nnan,-5\n1,-5\n2,-5.1\ninf,-5\n")
+    (table,) = pendu("judge", file, "--json").json["seen"]
+    assert (table["rows"], table["span"]) == (4, [1.0, 2.0])
