@@ -9,7 +9,14 @@ import pytest
 from mcap.writer import Writer
 
 from pendu_tui.recordings import files
-from pendu_tui.recordings.files import GOLDEN, DiskError, RecordingError, listing, new_path
+from pendu_tui.recordings.files import (
+    GOLDEN,
+    DiskError,
+    RecordingError,
+    golden_names,
+    listing,
+    new_path,
+)
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.tui.cli.options import resolve
 from tests.recordings.examples import record, start, two_runs
@@ -98,9 +105,9 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("latest", "there is no recording .latest.; pendu-tui recordings"),
+        ("latest", "there is no recording .latest.: choose a file, or one of "),
         ("drfit", "did you mean drift?"),
-        ("../../etc/passwd.mcap", "; pendu-tui recordings lists yours"),
+        ("../../etc/passwd.mcap", f": choose a file, or one of {', '.join(golden_names())}.$"),
         ("\x1b[2J", r"there is no recording '\\x1b"),
     ],
 )

@@ -80,8 +80,11 @@ def resolve(name: str) -> Path:
     items = files.listing(folder)
     if name == "latest" and items:
         return items[0].path
-    names = [*["latest"][: len(items)], *files.golden_names(), *(each.path.name for each in items)]
-    advice = did_you_mean(name, names) or "; pendu-tui recordings lists yours."
+    known = files.golden_names()
+    if items:
+        known.insert(0, "latest")
+    advice = did_you_mean(name, [*known, *(each.path.name for each in items)])
+    advice = advice or f": choose a file, or one of {', '.join(known)}."
     raise RecordingError(f"there is no recording {name!r}{advice}")
 
 
@@ -103,10 +106,10 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
     return read
 
 
-def above_zero(read: Callable[[str], Any], limit: float = math.inf) -> Callable[[str], Any]:
+def above_zero(read: Callable[[str], float], limit: float = math.inf) -> Callable[[str], float]:
     """Return a reader of numbers above zero and below a limit."""
 
-    def read_one(text: str) -> Any:
+    def read_one(text: str) -> float:
         value = read(text)
         if not 0 < value < limit:  # also refuses nan
             below = "" if limit == math.inf else f" and below {limit:g}"
@@ -128,6 +131,7 @@ def moment(text: str) -> float:
 
 
 def count(text: str, least: int = 1) -> int:
+    """Return a whole number, `least` or more."""
     if not re.fullmatch(r"\d{1,18}", text) or int(text) < least:
         raise ValueError(f"{text!r} is not a count; use a whole number, {least} or more")
     return int(text)
@@ -153,7 +157,7 @@ def ladder(text: str) -> tuple[float, float, int]:
     raise ValueError(f"{text!r} {why}")
 
 
-def scale(text: str) -> Any:
+def scale(text: str) -> float | str:
     """Return a positive number, or the text: first, std or kinetic:COLUMN."""
     if text in ("first", "std") or text.startswith("kinetic:"):
         return text
