@@ -175,7 +175,8 @@ def not_within(
     if excess + margin <= 0:
         return ""
     if excess > margin:
-        return f"{name} is {slope:.3g}"
+        side = {1.0: "above", -1.0: "below"}[sign]
+        return f"{name} is {slope:.3g}, {side} {limit:g}"
     advice = "a longer record may not tell"
     if excess:
         longer = math.ceil((margin / abs(excess)) ** (2 / 3))

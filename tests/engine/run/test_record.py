@@ -239,11 +239,11 @@ def test_64_samples_are_needed():
     [
         (1.0, 2.0, 2.0, ""),
         (1.0, 2.0, 1.999, "cannot tell: it is 1 ± 1 at 99 %"),
-        (5.0, 6.0, 3.999, "it is 5"),
+        (5.0, 6.0, 3.999, "it is 5, above 3.999"),
         (5.0, 6.0, 4.001, "cannot tell: it is 5"),
         (-5.0, 6.0, -4.0, ""),
         (0.0, 0.0, 0.0, ""),
-        (2.0, 1.0, 1.5, "it is 2"),
+        (2.0, 1.0, 1.5, "it is 2, above 1.5"),
         (None, None, 1.0, "cannot tell: it is not known"),
         (math.nan, 0.1, 1.0, "cannot tell: it is not known"),
         (0.0, math.inf, 1.0, "cannot tell: it is not known"),
@@ -256,6 +256,8 @@ def test_a_slope_is_within_a_limit_beyond_it_or_not_known(slope, bound, limit, e
     found = not_within(limit, "it", slope, bound)
     assert found.startswith(expected)
     assert bool(found) == bool(expected)
+    other = not_within(-limit, "it", slope and -slope, bound, sign=-1.0)
+    assert ("below" in other) == ("above" in found)
 
 
 def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():
