@@ -169,7 +169,7 @@ class InsightLine(Pane):
 
 def without_folder(failure: str) -> str:
     """Return a sentence that begins with a path without its folder: the reason must fit."""
-    return re.sub(r"^(\w:)?[^:`]*[/\\]", "", failure)
+    return re.sub(r"^(\w:)?[^:=`]*[/\\]", "", failure)
 
 
 def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = None) -> list[Row]:

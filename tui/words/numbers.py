@@ -86,9 +86,11 @@ def file_size(count: int) -> str:
 
 def factor(value: float) -> str:
     """Write a factor in full: "4", "262144", "-1/8"."""
-    if abs(value) < 1 and (1 / value).is_integer():
-        return f"{'-' * (value < 0)}1/{abs(1 / value):.0f}"
-    if 1e3 <= abs(value) < 1e9:
+    if value < 0:
+        return f"-{factor(-value)}"
+    if 1e-9 < value < 1 and (1 / value).is_integer():
+        return f"1/{1 / value:.0f}"
+    if 1e3 <= value < 1e9:
         return f"{value:.0f}"
     return f"{value:.4g}"
 

@@ -121,3 +121,4 @@ def test_why_something_failed_is_told_without_a_folder():
     for folder in ("", "/home/me/a b/", "C:\\Users\\me\\", "own/"):
         for told in ("e.py, line 7: `a / b` raises Error: x.", "run.mcap.part: 1 of 2/3 is full."):
             assert without_folder(folder + told) == told
+    assert without_folder(told := "omega = 1e10 rad/s is too fast.") == told
