@@ -38,13 +38,14 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
 
 
 def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
-    sources = []
+    screens = []
     monkeypatch.setattr("pendu_tui.tui.screens.launch.check_terminal", lambda: None)
     monkeypatch.setattr(
         "pendu_tui.tui.screens.launch.show",
-        lambda screen, options: sources.append(screen.source) or 0,
+        lambda screen, options: screens.append(screen) or 0,
     )
-    replay = ("replay", "drift", "--loop", "--paused", "--start-at", 3, "--speed", 2)
+    looping = ("--loop", "--paused", "--start-at", 3, "--speed", 2, "--no-record")
+    replay = ("replay", "drift", *looping)
     for command in (
         replay,
         ("replay", "drift"),
@@ -52,6 +53,8 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
         ("live",),
     ):
         assert pendu(*command).code == 0
+    assert ["record" in vars(screen) for screen in screens] == [False, True, False, True]
+    sources = [screen.source for screen in screens]
     given, usual, equal, live = sources
     assert (given.looping, given.playhead.paused, given.playhead.position) == (True, True, 3.0)
     assert (given.playhead.speed, usual.playhead.speed) == (2.0, 1.0)
