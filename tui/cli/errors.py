@@ -39,7 +39,7 @@ def explained(error: BaseException) -> UserError:
     """Return the error as a sentence for the user.  Raises it again if it is a bug."""
     if isinstance(error, UserError):
         return error
-    # or it is a library's error about the interrupt
+    # a library may raise an error of its own about the interrupt
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
         return UserError("interrupted.", Exit.INTERRUPTED)
     # imported here: --help and --version do not need them

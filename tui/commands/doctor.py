@@ -37,17 +37,20 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         yield "lab", "cannot start here", str(error)
     if sys.stdout.isatty():
         size = shutil.get_terminal_size()
-        too_small = size.columns < SMALLEST[0] or size.lines < SMALLEST[1]
-        advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
-        yield "size", f"{size.columns}x{size.lines}", advice * too_small
+        advice = ""
+        if size.columns < SMALLEST[0] or size.lines < SMALLEST[1]:
+            advice = f"the lab needs {SMALLEST[0]}x{SMALLEST[1]}; 120x40 shows all panes"
+        yield "size", f"{size.columns}x{size.lines}", advice
     if platform.system() == "Windows":
         console = ("older", "use Windows Terminal, or --pixels half where dots are missing")
         if "WT_SESSION" in os.environ:
             console = ("Windows Terminal", "")
         yield "console", *console
     encoding = sys.stdout.encoding
-    advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
-    yield "encoding", encoding, advice * (not is_utf8(encoding))
+    advice = ""
+    if not is_utf8(encoding):
+        advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
+    yield "encoding", encoding, advice
     known = environment()
     advice = "with true colour, set COLORTERM=truecolor; without any colour, set TERM"
     if known.get("NO_COLOR") or colours(known) > 256:

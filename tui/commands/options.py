@@ -279,7 +279,7 @@ GROUPS: dict[str, tuple[str, str | None, tuple[str, ...]]] = {
     "PICTURE": ("display", DETECTED, PICTURE),
     "TERMINAL": ("display", DETECTED, (*PICTURE, "--plain", "--no-mouse", "--fps")),
     "RECOVER": ("recover", None, ("-o", "--force")),
-    # of these at most one is given
+    # At most one option of each of these groups can be given.
     "FORM": ("", "", ("--json", "--csv", "-o")),
     "RECORDING": ("", "", ("--record", "--no-record")),
     "WORKERS": ("", "", ("--workers", "--dask")),

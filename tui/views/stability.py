@@ -208,8 +208,10 @@ def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: fl
     text = f"{where}: {outcome(row[z])}"
     if row[z]["fate"] == UNKNOWN:
         return text
-    words = "held", "lost"
-    here, there = words[:: -1 if is_lost(row[z]) else 1]
+    words = ["held", "lost"]
+    if is_lost(row[z]):
+        words.reverse()
+    here, there = words
     known = row["fate"] != UNKNOWN
     other = np.flatnonzero(known & (np.isin(row["fate"], HELD) != (here == "held")))
     if len(other):
