@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 ORDER_TOLERANCE = 0.1  # errors are measured at finite steps: an order of 6 reads 5.91
 
+NO_RECORDING = "no recording"  # the name of the test that fails for want of one
+
 
 class _Checks:
     def __init__(self, properties: list[tuple[str, object]]) -> None:
@@ -155,8 +157,10 @@ def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
     """
     names = sorted(path.relative_to(folder).as_posix() for path in Path(folder).rglob("*.mcap"))
 
-    @pytest.mark.parametrize("name", names or ["*.mcap"])
+    @pytest.mark.parametrize("name", names or [NO_RECORDING])
     def test(name: str) -> None:
+        if name == NO_RECORDING:
+            pytest.fail(f"{folder}: there is no recording below this folder", pytrace=False)
         if flaw := _flaw(Path(folder, name)):
             pytest.fail(flaw, pytrace=False)
 

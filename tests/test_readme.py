@@ -180,7 +180,9 @@ def test_recordings_below_a_folder_are_tests(project, tmp_path):
     (line,) = re.findall(r"`(test_recordings = [^`]*)`", README)
     imports = "from pendu_tui.recordings.pytest import verify_recordings"
     test = f"from pathlib import Path\n{imports}\n{line}"
-    assert "*.mcap: No such file" in project(test)
+    told = project(test)
+    assert "test_recordings[no recording]" in told
+    assert "there is no recording below this folder" in told
     data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
