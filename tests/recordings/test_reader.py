@@ -98,23 +98,38 @@ def test_a_chunk_in_which_time_runs_back_is_lost(out):
         assert is_whole(out) == passes
 
 
-@pytest.mark.parametrize(("field", "later"), [(2, -1), (3, 1)], ids=["start", "end"])
-def test_a_summary_whose_times_are_not_those_of_a_chunk_is_damage(path, field, later):
+def change_index(path, number, field, more):
+    """Add to a field of a chunk's index in the summary, which keeps a right checksum."""
     data = bytearray(path.read_bytes())
     footer = list(FOOTER.unpack(data[-FOOTER.size :]))
+    places = []
     at = footer[2]
-    while data[at] != 8:  # an index of a chunk
+    while at < len(data) - FOOTER.size:
+        if data[at] == 8:  # an index of a chunk
+            places.append(at)
         at += 9 + int.from_bytes(data[at + 1 : at + 9], "little")
-    index = list(INDEX.unpack_from(data, at))
-    index[field] += later
-    INDEX.pack_into(data, at, *index)
+    index = list(INDEX.unpack_from(data, places[number]))
+    index[field] += more
+    INDEX.pack_into(data, places[number], *index)
     footer[4] = zlib.crc32(data[footer[2] : -12])
     FOOTER.pack_into(data, len(data) - FOOTER.size, *footer)
     path.write_bytes(data)
+
+
+@pytest.mark.parametrize(("field", "later"), [(2, -1), (3, 1)], ids=["start", "end"])
+def test_a_summary_whose_times_are_not_those_of_a_chunk_is_damage(path, field, later):
+    change_index(path, 0, field, later)
     with Recording.open(path) as read:
         assert "summary" in read.reason
         assert read.damaged
         assert [run.number for run in read.runs] == [2]  # the first start is in that chunk
+
+
+def test_a_summary_whose_chunks_overlap_is_not_used(path):
+    path.unlink()
+    offsets = [place.offset for place in places_in(ten_seconds(path))]
+    change_index(path, 1, 4, offsets[0] - offsets[1])
+    assert [place.offset for place in places_in(path)] == offsets
 
 
 def ten_seconds(path):

@@ -137,12 +137,19 @@ def test_an_impossible_recording_is_refused_in_a_sentence(verified, kept, more, 
 def test_where_sin_differs_numbers_may_differ_within_a_tolerance(tmp_path, monkeypatch):
     entries = two_runs()
     right = entries[7].value.readings[2].theta
+    small = entries[7].value.readings[2].energy_error
+    assert 0 < abs(small) < 0.1
     here = arithmetic_here()._replace(sin="another")
-    for off, is_close in ((5e-7, True), (5e-6, False)):
+    for field, wrong, is_close in (
+        ("energy_error", small + 5e-7, True),
+        ("energy_error", small + 5e-6, False),
+        ("theta", right * (1 + 5e-7), True),
+        ("theta", right * (1 + 5e-6), False),
+    ):
         with monkeypatch.context() as elsewhere:
             elsewhere.setattr(events, "fingerprint", lambda name: getattr(here, name))
-            wrong = altered(entries, 7, 2, theta=right * (1 + off))
-            path = record(tmp_path / f"{off}.mcap", wrong)
+            changed = altered(entries, 7, 2, **{field: wrong})
+            path = record(tmp_path / f"{wrong}.mcap", changed)
         verification = verify(path)
         found = verification.first_difference
         assert verification.other_functions == ("sin",)

@@ -208,6 +208,18 @@ def lab(tmp_path_factory):
     return live, first, said, path
 
 
+def test_at_equal_cost_each_method_is_as_far_to_a_verdict_as_in_the_lab(tmp_path):
+    live = []
+
+    def change(lab):
+        lab.change(Stepping(0.05, equal_cost=True))
+
+    replay = Table(recorded(tmp_path / "lab.mcap", live.append, change, 3.0)).replay
+    replay.seek(replay.length)
+    assert told(replay) == told(live[0])
+    assert len({judgement.progress for judgement in replay.judgements}) > 1
+
+
 def told(source):
     judged = [(each.verdict, each.progress) for each in source.judgements]
     return judged, list(source.milestones)
