@@ -31,7 +31,7 @@ except ImportError:
     Server = object  # `run` refuses
 
 THIS_COMPUTER = ("127.0.0.1", "::1", "localhost")
-# It also keeps pages from loading textual-serve's fonts from elsewhere.
+# Pages load nothing from elsewhere, such as textual-serve's fonts.
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
