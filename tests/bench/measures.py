@@ -21,15 +21,15 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 869_000,
-    "characters_of_engine": 266_300,
-    "characters_of_recordings": 71_900,
-    "characters_of_tui": 531_000,
-    "characters_of_tests": 688_000,
-    "characters_of_bench": 86_000,
+    "characters": 843_800,
+    "characters_of_engine": 258_900,
+    "characters_of_recordings": 68_800,
+    "characters_of_tui": 516_200,
+    "characters_of_tests": 686_200,
+    "characters_of_bench": 77_000,
     "files": 127,
     "long_lines": 0,
-    "parallel_assignments": 15,
+    "parallel_assignments": 9,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
     "numeric_constants": 232,
