@@ -32,7 +32,7 @@ LIMITS = {
     "frame_p99_ms": 45,
     "key_p95_ms": 50,
     "kilobytes_per_second": 200,
-    "first_pendulum_ratio": 1.4,
+    "first_pendulum_ratio": 1.35,
     "opening_ratio": 0.2,
     "slow_line_key_max_ms": 1000,  # 64 KiB/s and 5 frames a second
 }
