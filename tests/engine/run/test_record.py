@@ -170,6 +170,20 @@ def test_a_wave_of_some_cycles_leaves_no_trend_behind():
         assert told(np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE) == "bounded"
 
 
+@pytest.mark.parametrize(
+    ("freedom", "t", "chance"),  # of printed tables
+    [(6, 2.447, 0.975), (10, 2.228, 0.975), (10, 3.169, 0.995), (120, 2.617, 0.995)],
+)
+def test_students_distribution_is_that_of_tables(freedom, t, chance):
+    assert student(2 * t, 2.0, freedom) == pytest.approx(chance, abs=2e-4)
+    assert student(-2 * t, 2.0, freedom) == pytest.approx(1 - chance, abs=2e-4)
+
+
+@pytest.mark.parametrize(("rise", "verdict"), [(0.45e-12, "bounded"), (0.6e-12, "grows")])
+def test_what_roundings_may_add_up_to_is_no_trend(rise, verdict):
+    assert judge_record(T, 1 + rise * T / T[-1]).verdict == verdict
+
+
 def test_an_end_is_unlike_the_rest_at_a_chance_of_1e_3():
     values = np.random.default_rng(1).standard_normal(64)
     *others, _ = core.blocks_of(values, 2)

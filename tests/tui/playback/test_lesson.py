@@ -80,6 +80,16 @@ def test_the_lab_pauses_at_the_moment_and_again_after_the_user_went_back(lesson,
     assert len(times) > 1
 
 
+def test_a_question_stays_asked_when_the_user_goes_back_before_its_moment(lesson, live):
+    lesson.begin(live, 0)
+    lesson.forward(live)
+    assert lesson.stage == "asked"
+    before = live.sample
+    live.step(-2)
+    assert not lesson.follow(live, before)
+    assert lesson.stage == "asked"
+
+
 def test_where_time_returns_the_pause_comes_at_the_start(live):
     lesson = Lesson("Page", [replace(ASKS, shot=replace(QUESTION, returns=True))])
     lesson.begin(live, 0)

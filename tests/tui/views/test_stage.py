@@ -133,6 +133,8 @@ async def test_small_swings_are_enlarged_though_explicit_euler_leaves_and_o_show
         stage = theatre.stage.query_one(Stage)
         assert abs(theatre.source.sample.readings[0].theta) > 1
         assert "small angles ×" in stage.border_title
+        widest = 1e-4 * stage._lens(1e-4).times
+        assert [stage._lens(widest / by).times for by in (1.9, 2.1, 3.1)] == [1, 2, 3]
         rk4 = next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3))
         await theatre.press("o")
         assert "×" not in stage.border_title

@@ -138,6 +138,9 @@ def test_a_loss_is_a_rate_up_to_half_of_the_energy_and_then_a_share(judged):
 def test_growth_is_a_rate_of_the_first_or_of_the_true_energy_or_a_time_for_tenfold(judged):
     grows = {"verdict": "grows", "slope": 0.02}
     assert "gains 2.0 % of E0 per s" in drift(changed(judged, RK4, **grows), RK4).text
+    for slope, text in ((1.1e-6, "0.00011 % of E0"), (0.9e-6, "9.0e-07 of E0")):
+        found = drift(changed(judged, RK4, verdict="grows", slope=slope), RK4)
+        assert f"gains {text} per s" in found.text
     assert drift(changed(judged, RK4, verdict="grows"), RK4) is None  # its slope falls
     found = drift(changed(judged, RK4, growth=0.5, **grows), RK4)
     assert "tenfold every 4.6 s" in found.text
