@@ -39,6 +39,8 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
         assert any(row[name] is not None for name in MEASURED) == method.general
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
+        told = {True: "yes", False: "no"}
+        assert words[-3:-1] == [told[method.symplectic], told[method.reversible]]
         texts = {None: "-", 0.0: "none", math.inf: "any"}
         limit = method.linear_limit
         assert words[-1] == (texts.get(limit) or f"{limit:.3f}")
