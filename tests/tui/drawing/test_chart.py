@@ -107,6 +107,7 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross():
     assert crossing.at(column).t == pytest.approx(10, abs=0.6)
     assert crossing.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert crossing.at(crossing.left - 1) is None
+    assert crossing.at(crossing.left).t < 0.5
 
 
 def test_lines_that_lie_on_each_other_have_no_cross_nor_has_a_pass_beside_a_clearer_one():
