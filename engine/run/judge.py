@@ -46,7 +46,7 @@ class LookPoint(NamedTuple):
 
 
 def stride(period: float, h: float, model: Model) -> int:
-    """Return how many steps of h [s] lie between two look points; `period` [s] as of `Judge`."""
+    """Return how many steps of h [s] lie between two look points; for `period` [s] see `Judge`."""
     if not model.turns:  # it may vibrate faster than it swings
         period = math.tau / model.fastest
     return max(1, round(period / levels.LOOKS / abs(h)))

@@ -171,7 +171,7 @@ class Lockstep:
         for track in self._tracks:
             track.look_low = track.look_high = track.error
         self._judges: list[Judge] = []
-        # pairs of a leaving method and a bounded one whose error is still the larger
+        # (leaving, bounded) methods, of which the bounded one still has the larger error
         self._below: frozenset[tuple[int, int]] = frozenset()
         if self._judged:
             methods = zip(self.scene.cast, self._tracks, self.stepping.own, strict=True)
@@ -265,9 +265,9 @@ class Lockstep:
         self._note_crossings()
 
     def _note_crossings(self) -> None:
-        """Note where the largest error of a method that leaves passes that of a bounded one.
+        """Note where a method whose energy leaves overtakes a bounded one in largest error.
 
-        With other pairs it might pass back.
+        In other pairs the first might overtake again.
         """
         for (index, leaving), (other, bounded) in permutations(enumerate(self._judges), 2):
             leaves = leaving.judgement.verdict in LEAVES

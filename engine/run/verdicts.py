@@ -164,7 +164,7 @@ LONGEST = 1e4  # a record of this many times the length is no advice
 def not_within(
     limit: float, name: str, slope: float | None, bound: float | None, sign: float = 1.0
 ) -> str:
-    """Return why a slope, whose magnitude is below a bound at 99 %, may be above a limit, else "".
+    """Return why a slope may be above a limit; "" if its bound of 99 % rules that out.
 
     With `sign` -1: below it.  The uncertainty of a slope in white noise falls like length**-1.5.
     """
