@@ -168,7 +168,9 @@ class Judged:
     def lines(self, time_unit: str = "", energy_unit: str = "", step: str = "") -> list[str]:
         """Return the answer in lines, with these units, per `step` where time has none."""
         per = f"per {time_unit or step or 'unit of time'}"
-        verdict = f"{self.verdict}{', then settles' * self.rests}"
+        verdict = self.verdict
+        if self.rests:
+            verdict += ", then settles"
         if self.reason:
             verdict += f": {self.reason}"
         if self.diverged_at is not None:

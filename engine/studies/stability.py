@@ -361,8 +361,10 @@ def table(scene: Scene, grid: Grid, cells: Cells) -> list[Row]:
     for (m, method), (t, theta) in product(enumerate(grid.methods), enumerate(grid.theta.tolist())):
         column = cells[:, m, t]
         row = Row(method, theta, column[here])
-        for place in np.flatnonzero(is_lost(column))[:1]:
-            steps, _, fate = column[place].tolist()
-            row = replace(row, z=float(grid.z[place]), steps=steps, reason=FATES[fate])
+        lost = np.flatnonzero(is_lost(column))
+        if len(lost):
+            first = column[lost[0]]
+            z = float(grid.z[lost[0]])
+            row = replace(row, z=z, steps=int(first["steps"]), reason=FATES[first["fate"]])
         rows.append(row)
     return rows

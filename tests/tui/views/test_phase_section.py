@@ -95,3 +95,4 @@ async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():
             theatre.app.post_message(events.Key(key, None))
         panes = partial(theatre.stage.query, SectionPane)
         await until(theatre.pilot, lambda: any(pane.shows_section for pane in panes()))
+        assert [pane.shows_section for pane in panes()] == [True]
