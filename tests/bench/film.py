@@ -10,8 +10,8 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.tui.commands.lab import still
 from pendu_tui.tui.screens.app import normalised
-from pendu_tui.tui.screens.launch import still
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held
 from tests.tui.harness import Theatre, lab

@@ -35,10 +35,10 @@ class Pane(NamedTuple):
 async def film(size: tuple[int, int]) -> list[Pane]:
     """Film the lab."""
     from pendu_tui.engine.scenes import DEFAULT_SCENE
+    from pendu_tui.tui.commands.lab import settled
     from pendu_tui.tui.playback.live import Live
     from pendu_tui.tui.screens.app import PenduApp
     from pendu_tui.tui.screens.lab import LabScreen
-    from pendu_tui.tui.screens.launch import settled
 
     now = 0.0
     panes: dict[Widget, Pane] = {}

@@ -13,13 +13,13 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.recording import Recording
+from pendu_tui.tui.commands.lab import settled
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.launch import settled
 from pendu_tui.tui.terminal.options import FPS
 from pendu_tui.tui.views import VIEWS
 

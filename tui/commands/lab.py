@@ -1,27 +1,50 @@
-"""The lab, and a tour, a replay and an image of it."""
+"""The lab, and a tour, a replay and an image of it; on screen or as sentences."""
 
 import argparse
 import asyncio
+import gc
 import os
+import sys
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
+from textual.widget import Widget
+
+from pendu_tui.engine.scenes import Scene
+from pendu_tui.recordings import files
 from pendu_tui.recordings.events import remember
+from pendu_tui.recordings.files import NameTakenError, printable
+from pendu_tui.recordings.system import environment, quoted
 from pendu_tui.tui.cli.cast import own_methods
-from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.errors import Exit, UserError, warn
+from pendu_tui.tui.cli.files import stop_requests, whole_file
 from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.cli.scene import read_scenes, scene_of
+from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback import lesson as lessons
 from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
-from pendu_tui.tui.screens import launch
-from pendu_tui.tui.terminal.options import terminal_options_of
+from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.screens.app import PenduApp, normalised
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.terminal.options import (
+    FPS,
+    USUAL,
+    TerminalOptions,
+    background,
+    check_terminal,
+    terminal_options_of,
+)
+from pendu_tui.tui.words.plain_text import tell
+
+# The commands
 
 
 def live(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    launch.check(options)
+    check(options)
     lab = Live(scene, options.speed or scene.speed)
     if options.equal_cost:
         lab.change(lab.stepping.toggled())
@@ -29,7 +52,7 @@ def live(options: argparse.Namespace) -> int:
     lesson = None
     if name.endswith(".toml"):
         lesson = lesson_of(Path(name))
-    return launch.open_lab(lab, options, lesson)
+    return play(lab, options, lesson)
 
 
 def lesson_of(file: Path) -> Lesson | None:
@@ -41,9 +64,9 @@ def lesson_of(file: Path) -> Lesson | None:
 
 
 def tour(options: argparse.Namespace) -> int:
-    launch.check(options)
+    check(options)
     pages = lessons.tour()
-    return launch.open_lab(Live(pages.page), options, pages)
+    return play(Live(pages.page), options, pages)
 
 
 def replay(options: argparse.Namespace) -> int:
@@ -51,7 +74,7 @@ def replay(options: argparse.Namespace) -> int:
 
     path = resolve(options.file)
     remember(own_methods(options))
-    launch.check(options)
+    check(options)
     played = Replay(Recording.open(path))
     if not 0 <= options.start_at <= played.length:
         raise UserError(
@@ -62,9 +85,7 @@ def replay(options: argparse.Namespace) -> int:
     played.looping = options.loop
     played.seek(options.start_at)
     played.pause(options.paused)
-    if options.plain:
-        return launch.print_sentences(played)
-    return launch.show(launch.replay_screen(played, options.no_record), options)
+    return play(played, options)
 
 
 def snapshot(options: argparse.Namespace) -> int:
@@ -72,6 +93,155 @@ def snapshot(options: argparse.Namespace) -> int:
     display = terminal_options_of(options, os.environ, "utf-8")
     path = options.output or Path(f"{scene.name}.svg")
     with whole_file(path, options.force) as file:
-        svg = asyncio.run(launch.still(scene, options.time, options.size, display))
+        svg = asyncio.run(still(scene, options.time, options.size, display))
         file.write_text(svg, encoding="utf-8")
     return Exit.FINE
+
+
+# On screen or as sentences
+
+
+def check(options: argparse.Namespace) -> None:
+    if not options.plain:
+        check_terminal()
+        # until the screen is up; collections would delay the first paint by 3 %
+        gc.disable()
+
+
+def play(source: Source, options: argparse.Namespace, lesson: Lesson | None = None) -> int:
+    """Play a lab, perhaps with a lesson, or a replay, and return the exit code.
+
+    A lab is recorded from its start, a replay from where it continues live.
+    """
+    if isinstance(source, Live) and not options.no_record:
+        recording_path(options.record)  # a name that cannot be used is refused before the screen
+        if options.plain:
+            start_recording(source, options.record)
+    if options.plain:
+        return print_sentences(source, lesson)
+    screen = LabScreen(source)
+    screen.guide = lesson
+    if not options.no_record:
+        screen.record = partial(start_recording, file=options.record)
+    return show(screen, options)
+
+
+def print_sentences(source: Source, lesson: Lesson | None = None) -> int:
+    """Print what happens until Ctrl+C or another signal, which is no error here."""
+    try:
+        with stop_requests() as stopped:
+            tell(source, partial(print, flush=True), stopped, lesson=lesson)
+    finally:
+        source.close()
+    return say_goodbye(source)
+
+
+def show(screen: LabScreen, options: argparse.Namespace) -> int:
+    """Run the app with this screen first, say goodbye, and return the exit code."""
+    assert sys.__stderr__ is not None  # where Textual draws
+    known = environment()
+    terminal = terminal_options_of(options, known, sys.__stderr__.encoding)
+    if options.theme == "auto" and terminal.theme != "ansi" and not known.get("COLORFGBG"):
+        terminal = terminal._replace(theme=background() or terminal.theme)
+    app = PenduApp(screen, terminal)
+    try:
+        result = app.run(mouse=terminal.mouse)
+    finally:
+        app.finish()
+    codes = [say_goodbye(source) for source in screen.sources]
+    if isinstance(result, BaseException):
+        raise getattr(result, "error", result)  # of a worker
+    if result is not None:
+        return result
+    return max([app.return_code or Exit.FINE, *codes])
+
+
+def say_goodbye(source: Source) -> int:
+    if not isinstance(source, Live) or source.recorder is None:
+        return Exit.FINE
+    recorder = source.recorder
+    file = recorder.path
+    if recorder.part.exists():
+        file = recorder.part
+    if file.exists():
+        for line in (f"saved {file}", f"replay it with: pendu-tui replay {quoted([str(file)])}"):
+            print(printable(line, limit=5000))  # whole, to be copied
+    if recorder.failed:
+        warn(f"the recording stopped: {recorder.failed}")
+        return Exit.DISK
+    return Exit.FINE
+
+
+# Its recording
+
+
+def recording_path(file: Path | None, folder: Path | None = None) -> Path:
+    """Return where to record: the given file, or a new one in the library.
+
+    Raises OSError if it cannot be written.
+    """
+    path = file or files.new_path(folder)
+    if file is None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        files.check_target(path, force=None)
+    except files.DiskError as error:
+        if file is None:
+            error.strerror = f"{error.strerror}, with PENDU_RECORDINGS, or use --no-record"
+        raise
+    return path
+
+
+def start_recording(live: Live, file: Path | None = None, folder: Path | None = None) -> None:
+    """Record a lab in this file, or in a folder (the library) under a free name."""
+    from pendu_tui.recordings.recorder import LiveRecorder  # mcap's writer, after the first paint
+
+    path = recording_path(file, folder)
+    while live.recorder is None:
+        try:
+            live.record(LiveRecorder(path))
+        except NameTakenError:
+            if file is not None:
+                raise
+            path = files.free_path(path)
+
+
+# Its image
+
+
+async def still(
+    scene: Scene,
+    seconds: float,
+    size: tuple[int, int],
+    terminal: TerminalOptions = USUAL,
+    keys: Sequence[str] = (),
+) -> str:
+    """Return the lab as an SVG picture, `seconds` after the start, with `keys` pressed then."""
+    now = 0.0
+    live = Live(scene, clock=lambda: 0.0)
+    screen = LabScreen(live, clock=lambda: now)
+    app = PenduApp(screen, terminal=terminal)
+    async with app.run_test(size=size) as pilot:
+        for frame in range(round(seconds * FPS) + 1):
+            now = frame / FPS
+            live.tick(now)
+        screen.show_now()
+        await pilot.press(*keys)
+        await settled(app)
+        await pilot.pause()
+        return normalised(app.export_screenshot())
+
+
+async def settled(app: PenduApp) -> None:
+    panes = app.lab.query("#views *").results
+    async with asyncio.timeout(30):
+        while not all(map(_is_settled, panes(Widget))):
+            await asyncio.sleep(0.01)
+    for pane in panes(CellWidget):
+        pane.draw()
+
+
+def _is_settled(pane: Widget) -> bool:
+    # a pane on screen that is not drawable does not know its size yet
+    is_shown = getattr(pane, "drawable", True) or not pane.is_on_screen
+    return is_shown and getattr(pane, "settled", True)

@@ -61,7 +61,7 @@ class LabServer(Server):  # type: ignore[misc]
     """Serves a limited number of labs, to its own pages only."""
 
     def __init__(self, settings: Path, options: argparse.Namespace) -> None:
-        lab = [sys.executable, "-P", "-m", "pendu_tui.tui.screens.served", str(settings)]
+        lab = [sys.executable, "-P", "-m", "pendu_tui.tui.commands.served", str(settings)]
         super().__init__(shell_command(lab), options.host, options.port, title="pendu-tui")
         self._max_labs = options.at_most
         self._labs = 0

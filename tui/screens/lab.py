@@ -81,8 +81,6 @@ class LabScreen(SizedScreen[None]):
     fps = FPS
     record: Callable[[Live], object] = staticmethod(lambda live: None)
     """Begins a lab's recording, after the first paint; may raise OSError or UserError."""
-    notice = ""
-    """What is said first."""
     guide: Lesson | None = None
     """The lesson that key T begins; None: the tour, which is read then."""
 
@@ -159,8 +157,8 @@ class LabScreen(SizedScreen[None]):
         gc.freeze()  # never collect what exists now, which would cost frames
         gc.enable()
         self.frame_timer.resume()
-        if self.notice:
-            self.warn(self.notice)
+        if isinstance(self.source, Replay) and (reason := self.source.recording.reason):
+            self.warn(f"This recording is incomplete ({reason}); showing what is intact.")
         if self.guide and self.source.scene == self.guide.page:
             await self.action_lesson()
 

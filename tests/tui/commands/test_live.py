@@ -6,9 +6,8 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.files import DiskError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.commands.lab import lesson_of
+from pendu_tui.tui.commands.lab import lesson_of, say_goodbye
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.launch import say_goodbye
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 
@@ -39,9 +38,9 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
 
 def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
     screens = []
-    monkeypatch.setattr("pendu_tui.tui.screens.launch.check_terminal", lambda: None)
+    monkeypatch.setattr("pendu_tui.tui.commands.lab.check_terminal", lambda: None)
     monkeypatch.setattr(
-        "pendu_tui.tui.screens.launch.show",
+        "pendu_tui.tui.commands.lab.show",
         lambda screen, options: screens.append(screen) or 0,
     )
     looping = ("--loop", "--paused", "--start-at", 3, "--speed", 2, "--no-record")

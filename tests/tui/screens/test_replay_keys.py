@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.screens.launch import start_recording
+from pendu_tui.tui.commands.lab import start_recording
 from pendu_tui.tui.screens.lines import SeekBar, StatusLine
 from pendu_tui.tui.views.lab import EventList
 from tests.tui.harness import eventful, player, recorded

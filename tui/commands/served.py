@@ -9,10 +9,10 @@ from typing import Any
 
 from textual.drivers.web_driver import WebDriver
 
+from pendu_tui.tui.commands.lab import start_recording
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.launch import start_recording
 from pendu_tui.tui.terminal.options import LARGEST
 
 RESIZE_EVERY = 0.2  # s
