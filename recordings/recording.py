@@ -69,7 +69,8 @@ class Run:
         except InputError as error:
             why = f"run {self.number} cannot have been recorded: {error}"
             raise RecordingError(why) from error
-        self.changes.append(SteppingChange(step, t, stepping))
+        x = self.changes[-1].x_at(t) if self.changes else 0.0
+        self.changes.append(SteppingChange(step, t, stepping, x))
 
     @property
     def inputs(self) -> int:

@@ -37,7 +37,6 @@ class RewindableRun:
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
         self._reset = 0  # the step of the last sample that reset the extremes
-        self._x = [0.0]  # x at each change
         self._applied = 1
         self.lockstep = Lockstep(scene, run, loops=loops, judged=True)
         self._copies = [self._copy()]
@@ -67,7 +66,7 @@ class RewindableRun:
         """Return the simulated time [s] on the way to a step."""
         last = bisect_right(self.changes, step, key=attrgetter("step")) - 1
         change = self.changes[last]
-        return self._x[last] + (step - change.step) * abs(change.stepping.h)
+        return change.x + (step - change.step) * abs(change.stepping.h)
 
     @property
     def in_past(self) -> bool:
@@ -76,11 +75,10 @@ class RewindableRun:
 
     def step_at(self, x: float) -> int:
         """Return the last step that is not after x."""
-        following = max(bisect_right(self._x, x), 1)
+        following = max(bisect_right(self.changes, x, key=attrgetter("x")), 1)
         last = self.changes[following - 1]
-        begin = self._x[following - 1]
         # x is a sum of floats, and the step must not lag because of that
-        step = last.step + int((x - begin) / abs(last.stepping.h) + 1e-6)
+        step = last.step + int((x - last.x) / abs(last.stepping.h) + 1e-6)
         if following < len(self.changes):
             return min(step, self.changes[following].step)
         return step
@@ -142,15 +140,14 @@ class RewindableRun:
 
     def change(self, stepping: Stepping) -> None:
         """Step like this from here on; in the past, branch first."""
-        x = self.x
+        x = self.changes[-1].x_at(self.t)
         self.lockstep.set_stepping(stepping)
-        self.changes.append(SteppingChange(self.step, self.t, stepping))
-        self._x.append(x)
+        self.changes.append(SteppingChange(self.step, self.t, stepping, x))
         self._applied += 1
 
     def branch(self, run: int) -> None:
         """Go on from here as another run, which shares this one's past only."""
-        del self.changes[self._applied :], self._x[self._applied :]
+        del self.changes[self._applied :]
         while self._copies[-1].lockstep.step > self.step:
             self._copies.pop()
         self.run = self.lockstep.run = run

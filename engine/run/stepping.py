@@ -81,6 +81,11 @@ class SteppingChange(NamedTuple):
     step: int  # it applies from here on
     t: float  # s, simulated
     stepping: Stepping
+    x: float = 0.0  # s, the simulated time covered so far, which grows even while t goes back
+
+    def x_at(self, t: float) -> float:
+        """Return the simulated time [s] covered up to t, before the next change."""
+        return self.x + abs(t - self.t)
 
 
 def change_before(changes: Sequence[SteppingChange], step: int) -> SteppingChange:

@@ -108,18 +108,8 @@ class History:
         if with_extremes:
             low = [LOWEST(reading) for reading in readings]
             high = [HIGHEST(reading) for reading in readings]
-        x = self.x(sample.step, sample.t)
+        x = change_before(self.changes, sample.step).x_at(sample.t)
         return Row(sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others])
-
-    def x(self, step: int, t: float) -> float:
-        """Return the simulated time [s] covered up to a step at t, forwards or backwards."""
-        x = turn = 0.0
-        for change in self.changes:
-            if change.step >= step:
-                break
-            x += abs(change.t - turn)
-            turn = change.t
-        return x + abs(t - turn)
 
     def _shadow_errors(self, sample: Sample) -> list[float]:
         """Return the relative change of each modified energy since the step size changed.
@@ -192,7 +182,7 @@ class History:
         Returns None where no sample up to the change has been read.
         """
         window = self.window()
-        count = int((window.x <= self.x(change.step, change.t)).sum())
+        count = int((window.x <= change.x).sum())
         if not count:
             return None
         low = -window.low[ENERGY_ERROR.name][count:]

@@ -282,7 +282,7 @@ class Live(Source):
         """Record the run's start; a branch begins with its parent's changes and milestones."""
         run = self._run.run
         self._note(Event("start", run, 0, 0.0, scene=self._run.scene))
-        for step, t, stepping in self._run.changes[1:]:
+        for step, t, stepping, _ in self._run.changes[1:]:
             change = Event("set_h", run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
             self._note(change)
         self._noticed_step = -1  # milestones up to here have been recorded

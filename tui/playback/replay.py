@@ -61,7 +61,7 @@ class Replay(Source):
     def _know(self) -> None:
         """Read what was known at the playhead off the events."""
         step = self.sample.step
-        since, _, self.stepping = self._past_changes[-1]
+        since, _, self.stepping, _ = self._past_changes[-1]
         self.milestones = [each for each in self.run.milestones if each.step <= step]
         verdicts = {
             each.method: each

@@ -122,7 +122,7 @@ def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_sample
     history = filled(4)
     for later in (sample(4, low=-9, high=2), sample(5)):
         history.add(later)
-    errors, _ = history.since(SteppingChange(3, 0.3, Stepping(0.1)))
+    errors, _ = history.since(SteppingChange(3, 0.3, Stepping(0.1), 0.3))
     assert errors == [9] * 4
 
 
