@@ -20,6 +20,7 @@ from pendu_tui.engine.run.verdicts import (
     Judgement,
     Milestone,
     MilestoneKind,
+    Progress,
 )
 from pendu_tui.engine.scenes import Scene
 
@@ -130,7 +131,7 @@ class Lockstep:
             for method in scene.cast
         ]
         exact = scene.exact()
-        self._period = exact.period or math.tau / model.w0
+        self.period = exact.period or math.tau / model.w0  # s
         self.milestones: list[Milestone] = []  # up to this step; none without judges
         self._judged = judged
         self._bottom = math.tau * round(scene.theta / math.tau)  # rad
@@ -156,6 +157,13 @@ class Lockstep:
         """Judgements since the last change of the stepping, by method; none without judges."""
         return [judge.judgement for judge in self._judges]
 
+    def progress(self, index: int, steps: int) -> Progress | None:
+        """Return what the verdict on a method lacks, so many steps after the last change."""
+        looked = steps - steps % self._stride
+        if not looked:
+            return None
+        return self._judges[index].progress_at(looked * self.stepping.parts[index])
+
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from the next step on; `Stepping.check` has approved it."""
         self._t_base = self.t
@@ -167,7 +175,7 @@ class Lockstep:
 
     def _restart(self) -> None:
         """Count look points, and judge, from here on."""
-        self._stride = stride(self._period, self.stepping.h, self._model)
+        self._stride = stride(self.period, self.stepping.h, self._model)
         for track in self._tracks:
             track.look_low = track.look_high = track.error
         self._judges: list[Judge] = []
@@ -180,7 +188,7 @@ class Lockstep:
 
     def _judge_of(self, method: Method, track: _Track, h: float) -> Judge:
         start = self._look_point(track)
-        judge = Judge(h=h, period=self._period, method=method, model=self._model, start=start)
+        judge = Judge(h=h, period=self.period, method=method, model=self._model, start=start)
         if track.diverged_at is not None:
             judge.fail(0)
         return judge

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from typing import TYPE_CHECKING
 
-from pendu_tui.engine.run.judge import Judge, LookPoint, stride
-from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import SteppingChange
 from pendu_tui.engine.run.verdicts import FAILED, UNDECIDED, Judgement, Milestone
 from pendu_tui.recordings.events import Event, check_present, is_present
@@ -42,6 +41,7 @@ class Replay(Source):
         first = recording.at(0.0)
         assert first is not None  # or it is not opened
         self._show(first, jump=True)
+        self._judging = Lockstep(self.scene, judged=True)  # knows what a verdict needs
         self._know()
 
     # The state at the playhead
@@ -62,6 +62,9 @@ class Replay(Source):
         """Read what was known at the playhead off the events."""
         step = self.sample.step
         since, _, self.stepping, _ = self._past_changes[-1]
+        if (self.scene, self.stepping) != (self._judging.scene, self._judging.stepping):
+            self._judging = Lockstep(self.scene, judged=True)
+            self._judging.set_stepping(self.stepping)
         self.milestones = [each for each in self.run.milestones if each.step <= step]
         verdicts = {
             each.method: each
@@ -75,27 +78,15 @@ class Replay(Source):
 
     def _judgement(self, index: int, steps: int, last: Milestone | None) -> Judgement:
         """Return what is known of a method, so many steps after a change, by its last verdict."""
-        method = self.scene.cast[index]
-        period = self.exact.period or math.tau / self.scene.w0
-        swings = steps * abs(self.stepping.h) / period
         if self.sample.readings[index].diverged_at is not None:
             return Judgement(FAILED)
+        found = Judgement(periods=steps * abs(self.stepping.h) / self._judging.period)
         if last is not None and last.verdict != UNDECIDED:
-            is_evident = last.trend is not None
-            found = Judgement(last.verdict, last.trend, is_evident=is_evident)
-            return found._replace(periods=swings, lyapunov=last.lyapunov)
-        looked = steps - steps % stride(period, self.stepping.h, self.scene.equations)
-        progress = None
-        if looked and is_present(method):
-            judge = Judge(
-                h=self.stepping.own[index],
-                period=period,
-                method=method,
-                model=self.scene.equations,
-                start=LookPoint(0, 0.0, 0.0, 0.0),
-            )
-            progress = judge.progress_at(looked * self.stepping.parts[index])
-        return Judgement(periods=swings, progress=progress)
+            found = found._replace(verdict=last.verdict, lyapunov=last.lyapunov)
+            return found._replace(slope=last.trend, is_evident=last.trend is not None)
+        if is_present(self.scene.cast[index]):
+            found = found._replace(progress=self._judging.progress(index, steps))
+        return found
 
     @property
     def recording_status(self) -> RecordingStatus:
