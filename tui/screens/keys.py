@@ -3,6 +3,7 @@
 from textual.binding import Binding, BindingType
 
 from pendu_tui.engine.scenes import MAX_METHODS
+from pendu_tui.recordings.system import CAN_STOP
 from pendu_tui.tui.views import VIEWS
 
 _H = Binding.Group("larger, smaller step h")
@@ -68,8 +69,9 @@ KEYS: list[BindingType] = [
     Binding("d", "describe", "describe it in words", show=False),
     Binding("s", "screenshot", "save a screenshot", show=False),
     Binding("S,shift+s", "save_scene", "save it as a scene file", show=False),
-    Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
     Binding("enter", "lesson_forward"),  # the lesson's panel shows these two
     Binding("backspace", "lesson_back"),
 ]
 """In the order of the help, and of the last line, which shows what fits of the first ones."""
+if CAN_STOP:
+    KEYS.append(Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False))

@@ -1,5 +1,6 @@
 """Every key of the lab does what the help says."""
 
+import runpy
 from collections import Counter
 
 import pytest
@@ -10,6 +11,7 @@ from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import WINDOWS, quantities
+from pendu_tui.tui.screens import keys
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
 from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lab import LabScreen
@@ -239,6 +241,13 @@ async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
             runs = theatre.source.sample.run
             assert await theatre.stage.start(Scene(h=100.0)) == is_possible
             assert theatre.source.sample.run == runs + is_possible
+
+
+def test_ctrl_z_is_a_key_where_programs_can_be_stopped(monkeypatch):
+    for can_stop in (True, False):
+        monkeypatch.setattr("pendu_tui.recordings.system.CAN_STOP", can_stop)
+        listed = runpy.run_path(keys.__file__)["KEYS"]
+        assert ("ctrl+z" in [each.key for each in listed]) == can_stop
 
 
 def test_keys_that_stand_in_one_line_of_the_help_are_two_or_more():
