@@ -127,13 +127,16 @@ def play(source: Source, options: argparse.Namespace, lesson: Lesson | None = No
 
 
 def print_sentences(source: Source, lesson: Lesson | None = None) -> int:
-    """Print what happens until Ctrl+C or another signal, which is no error here."""
+    """Print what happens, to the end or until Ctrl+C or another signal."""
     try:
         with stop_requests() as stopped:
             tell(source, partial(print, flush=True), stopped, lesson=lesson)
     finally:
         source.close()
-    return say_goodbye(source)
+    code = say_goodbye(source)
+    if stopped():
+        return Exit.INTERRUPTED
+    return code
 
 
 def show(screen: LabScreen, options: argparse.Namespace) -> int:

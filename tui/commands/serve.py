@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
         where = f"{options.host} port {options.port}"
         why = str(getattr(error, "strerror", None) or error).removesuffix(".")
         raise UserError(f"cannot listen on {where}: {why}; use another --port or --host.") from None
-    return Exit.FINE
+    return Exit.INTERRUPTED
 
 
 class LabServer(Server):  # type: ignore[misc]

@@ -39,7 +39,7 @@ def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, f
         assert process.stdout.readline().startswith(first)
         process.send_signal(number)
         out, err = process.communicate(timeout=30)
-    assert (process.returncode, err) == (0, "")
+    assert (process.returncode, err) == (130, "")
     assert f"saved {recorded_whole(tmp_path)}" in out
 
 

@@ -178,7 +178,7 @@ async def test_a_signal_ends_the_server_and_its_labs(name):
             (lab,) = server.labs
             server.process.send_signal(number)
             code = await asyncio.to_thread(server.process.wait, PATIENCE)
-            assert code == (-number if name == "SIGKILL" else 0)
+            assert code == (-number if name == "SIGKILL" else 130)
             status = Path(f"/proc/{lab}/status")
             async with asyncio.timeout(PATIENCE):
                 while status.exists() and "State:\tZ" not in status.read_text():
