@@ -206,14 +206,18 @@ class Live(Source):
 
     @property
     def run_state(self) -> RunState:
-        return RunState(self._run, self.history, self.ghost)
+        return super().run_state._replace(run=self._run)
 
     def return_to(self, state: RunState) -> None:
         """Continue an earlier run from where it was left, as a new run that shares its past."""
-        self.ghost = state.ghost
-        self._runs += 1
-        state.run.branch(self._runs)
-        self._enter(state.run, state.history)
+        if state.run is not None and state.run is not self._run:
+            self.ghost = state.ghost
+            self._runs += 1
+            state.run.branch(self._runs)
+            self._enter(state.run, state.history)
+        if state.stepping != self.stepping:
+            self.change(state.stepping)
+        super().return_to(state)
 
     def _enter(self, run: RewindableRun, history: History) -> None:
         self._run = run

@@ -45,9 +45,13 @@ class RecordingStatus(NamedTuple):
 
 
 class RunState(NamedTuple):
-    run: RewindableRun
+    """What leads back to an earlier state of a source."""
+
+    speed: float
+    stepping: Stepping
     history: History
     ghost: "Ghost | None"  # the previous run, if it is laid under this one
+    run: RewindableRun | None = None  # of a lab
 
 
 class Source(ABC):
@@ -99,9 +103,11 @@ class Source(ABC):
         return None
 
     @property
-    def run_state(self) -> RunState | None:
-        """What a lab needs to return to its run."""
-        return None
+    def run_state(self) -> RunState:
+        return RunState(self.playhead.speed, self.stepping, self.history, self.ghost)
+
+    def return_to(self, state: RunState) -> None:
+        self.set_speed(state.speed)
 
     @property
     @abstractmethod

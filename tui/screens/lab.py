@@ -60,10 +60,8 @@ class State(NamedTuple):
     """Everything that undo restores."""
 
     source: Source
-    stepping: Stepping
-    speed: float
+    run: RunState
     shown: Shown
-    run: RunState | None  # None in a replay
 
 
 class LabScreen(SizedScreen[None]):
@@ -394,7 +392,7 @@ class LabScreen(SizedScreen[None]):
         self.is_guided = False
         self._undo.append(before)
         self.shown = before.shown
-        self.source.set_speed(abs(before.speed))
+        self.source.set_speed(abs(before.run.speed))
         self.source.pause(False)
         self.call_next(self.action_view, view)
         self.notify(notice, timeout=6)
@@ -492,9 +490,7 @@ class LabScreen(SizedScreen[None]):
 
     @property
     def state(self) -> State:
-        source = self.source
-        speed = source.playhead.speed
-        return State(source, source.stepping, speed, self.shown, source.run_state)
+        return State(self.source, self.source.run_state, self.shown)
 
     def action_undo(self) -> None:
         if not self._undo:
@@ -507,12 +503,7 @@ class LabScreen(SizedScreen[None]):
             self._undo = deque(ours, maxlen=self._undo.maxlen)
             self._enter(state.source)
             notice = "Back in the replay"
-        elif isinstance(self.source, Live) and state.run is not None:
-            if state.run.run is not self.source.run_state.run:
-                self.source.return_to(state.run)
-            if state.stepping != self.source.stepping:
-                self.source.change(state.stepping)
-        self.source.set_speed(state.speed)
+        self.source.return_to(state.run)
         self.shown = state.shown
         self.show_now()
         self.notify(notice, timeout=3)
