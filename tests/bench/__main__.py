@@ -3,7 +3,6 @@
 python -m tests.bench                     # everything; takes hours
 python -m tests.bench kill peers          # some benches
 python -m tests.bench kill --share 0.1    # a tenth of the attempts
-python -m tests.bench golden OUT          # what the program says, to compare after a move: golden.py
 
 A bench is a module with `measure(share)`, which returns figures, and LIMITS, the largest values
 allowed for some of them.  The exit code is 1 if a figure is above its limit.
@@ -18,14 +17,7 @@ from importlib import import_module
 from multiprocessing import get_context
 from typing import Any
 
-BENCHES = (
-    "foreign",
-    "ink",
-    "judging",
-    "kill",
-    "peers",
-    "yardstick",
-)
+BENCHES = ("foreign", "ink", "judging", "kill", "peers", "yardstick")
 
 
 def report(name: str, share: float) -> tuple[dict[str, Any], bool]:
@@ -40,8 +32,6 @@ def report(name: str, share: float) -> tuple[dict[str, Any], bool]:
 
 
 def main() -> int:
-    if sys.argv[1:2] == ["golden"]:
-        return import_module("tests.bench.golden").main(*sys.argv[2:])
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], prog="tests.bench")
     parser.add_argument("benches", nargs="*", help=f"of {', '.join(BENCHES)}")
     parser.add_argument("--share", type=float, default=1.0, help="of the attempts (default: 1)")

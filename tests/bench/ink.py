@@ -24,84 +24,69 @@ SCENES_SHOWN = (
 SIZES = ((60, 16), (80, 24), (120, 40), (200, 60))
 SECONDS = 18.0
 
-Layers = dict[int, list[bytes]]
-"""The dots that were set in each ink, shown or not: a byte for each cell, by row."""
-
-DRAWN: list[tuple[Picture, Layers]] = []
+DRAWN: list[tuple[Picture, Canvas]] = []
+"""The pictures, with the dots that were set in each ink, shown or not."""
 draw = Canvas.picture
 
 
 def observed(canvas: Canvas) -> Picture:
     """Draw a canvas and remember who set its dots."""
     picture = draw(canvas)
-    starts = range(0, canvas.columns * canvas.rows, canvas.columns)
-    layers = {
-        ink: [bytes(layer[start : start + canvas.columns]) for start in starts]
-        for ink, layer in canvas._layers.items()
-    }
-    DRAWN.append((picture, layers))
+    DRAWN.append((picture, canvas.copy()))
     return picture
 
 
-def counted(picture: Picture, layers: Layers) -> tuple[int, int, list[float]]:
+def counted(picture: Picture, canvas: Canvas) -> tuple[int, int, list[float]]:
     """Return the dots in a wrong ink, all dots of methods, and each method's share of columns."""
     wrong = 0
     dots = 0
-    shown = {(column, ink) for (_, column), (_, ink) in cells(picture).items()}
-    for (row, column), (character, ink) in cells(picture).items():
+    shown = cells(picture)
+    for (row, column), (character, ink) in shown.items():
         if not "⠀" < character <= "⣿":
             continue
+        place = row * canvas.columns + column
         for bit in _BITS:
-            owners = [each for each, layer in layers.items() if layer[row][column] & bit]
+            owners = [each for each, layer in canvas._layers.items() if layer[place] & bit]
             if ord(character) & bit and max(owners) >= 0:
                 dots += 1
                 wrong += ink not in owners
-    data = {
-        (column, ink)
-        for ink, layer in layers.items()
-        if 0 <= ink < FAINT
-        for row in layer
-        for column, bits in enumerate(row)
-        if bits
-    }
-    columns = Counter(ink for _, ink in data)
-    kept = Counter(ink for _, ink in data & shown)
-    return wrong, dots, [kept[ink] / columns[ink] for ink in columns]
+    shares = []
+    for ink, layer in canvas._layers.items():
+        columns = {place % canvas.columns for place, bits in enumerate(layer) if bits}
+        if columns and 0 <= ink < FAINT:
+            kept = {column for (_, column), (_, used) in shown.items() if used == ink}
+            shares.append(len(columns & kept) / len(columns))
+    return wrong, dots, shares
+
+
+def shows(pane: CellWidget, picture: Picture) -> bool:
+    """Return whether a pane shows a picture, alone or inside axes."""
+    rows = pane._picture.rows[: len(picture.rows)]
+    fields = [[tuple(row[left:]) for row in rows] for left in (0, 2)]
+    return bool(rows) and [*picture.rows] in fields
 
 
 async def of_screen(scene: str, size: tuple[int, int]) -> dict[str, Any]:
     DRAWN.clear()
+    found: Counter[str] = Counter()
+    in_charts = [1.0]
     async with lab(SCENES[scene], size) as theatre:
         await theatre.run(SECONDS)
-        shown = [pane for pane in theatre.stage.query(CellWidget) if pane.drawable]
-        panes = [(isinstance(pane, TimeChart), pane._picture.rows) for pane in shown]
-    found = []
-    in_charts = [1.0]
-    for is_chart, rows in panes:
-        fields = [[tuple(row[left:]) for row in rows] for left in (0, 2)]  # 2: inside axes
-        drawn = [
-            each
-            for each in DRAWN
-            if rows and [*each[0].rows] in [field[: len(each[0].rows)] for field in fields]
-        ]
-        for last in drawn[-1:]:
-            found.append(counted(*last))
-            in_charts += found[-1][2] * is_chart
-    return {
-        "wrong": sum(wrong for wrong, _, _ in found),
-        "dots": sum(dots for _, dots, _ in found),
-        "kept": round(min(in_charts), 2),
-        "vanished": sum(not share for *_, shares in found for share in shares),
-    }
+        for pane in theatre.stage.query(CellWidget):
+            drawn = [each for each in DRAWN if pane.drawable and shows(pane, each[0])]
+            for last in drawn[-1:]:
+                wrong, dots, shares = counted(*last)
+                found.update(wrong=wrong, dots=dots, vanished=shares.count(0.0))
+                in_charts += shares * isinstance(pane, TimeChart)
+    return {**found, "kept": round(min(in_charts), 2)}
 
 
 def measure(share: float) -> dict[str, Any]:
     Canvas.picture = observed
-    sizes = SIZES[: max(round(share * len(SIZES)), 1)]
     table = {
         f"{scene} {size[0]}x{size[1]}": asyncio.run(of_screen(scene, size))
         for scene in SCENES_SHOWN
-        for size in sizes
+        for size in SIZES[: max(round(share * len(SIZES)), 1)]
     }
     return {
         **table,
