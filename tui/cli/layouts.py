@@ -151,7 +151,8 @@ LAYOUTS = (
 """The layouts, in the order in which they are tried on a line."""
 
 ROLES = (
-    ("time", r"time|t|sim(ulat(ion|ed))?time|mdtime|currenttime"),
+    ("time", r"time|t"),
+    ("time", r"sim(ulat(ion|ed))?time|mdtime|currenttime"),
     ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle|row"),
     ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
     ("conserved", r"conserved(en(ergy)?)?"),

@@ -157,12 +157,15 @@ def ladder(text: str) -> tuple[float, float, int]:
     raise ValueError(f"{text!r} {why}")
 
 
-def scale(text: str) -> float | str:
-    """Return a positive number, or the text: first, std or kinetic:COLUMN."""
-    if text in ("first", "std") or text.startswith("kinetic:"):
-        return text
+def scale(text: str) -> tuple[float | str | None, str | None]:
+    """Return what errors are relative to: a number, first or std; or the column of kinetic:."""
+    kind, _, column = text.partition(":")
+    if kind == "kinetic" and column:
+        return None, column
+    if text in ("first", "std"):
+        return text, None
     try:
-        return positive(text)
+        return positive(text), None
     except ValueError:
         raise ValueError(
             f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"

@@ -8,21 +8,24 @@ restart from a checkpoint: the same series.
 import math
 from array import array
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
-from pendu_tui.tui.cli.units import plain, shown, split_unit
+from pendu_tui.tui.cli.units import Moment, plain, shown, size, split_unit
 
 LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
-NOT_TIMES = "its time never increases; name the column of times with --time."
+MIXED = (
+    "most of its times are not later than those before; name the column of times with --time, or, "
+    "if it holds several methods, judge one of them, for example filtered with grep."
+)
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 Group = tuple[int, ...]
 """Columns to add up."""
@@ -42,7 +45,7 @@ class Wanted:
     energy: str | None = None
     kinetic: str | None = None
     units: dict[str, str] = field(default_factory=dict)
-    step: tuple[float, str] | None = None  # and its unit
+    step: Moment | None = None
 
 
 class Choice(NamedTuple):
@@ -65,31 +68,26 @@ def choose(
 
     `samples` are the first values of each column; a column without a name is called "".
     """
-    groups: list[Group] = []
-    for name in (wanted.time, wanted.energy, wanted.kinetic):
-        group = find(names, name) if name else ()
-        if group is None:
-            return None
-        groups.append(group)
+    groups = [find(names, text) for text in (wanted.time, wanted.energy, wanted.kinetic)]
+    if None in groups:
+        return None
     time, energy, kinetic = groups
-    doubts = []
     if not wanted.time:
-        guess = _time(names, samples, excluded=energy)
-        time = guess or ()
-        if guess is None:
-            doubts.append("the time")
-    if not energy:
-        energy = _energy(names, units, excluded=time)
-        if not energy:
-            doubts.append("the total energy")
-    return Choice(time, energy, kinetic, " and ".join(doubts))
+        time = _time(names, samples, excluded=energy or ())
+    if not wanted.energy:
+        energy = _energy(names, units, excluded=time or ())
+    guessed = {"the time": time, "the total energy": energy}
+    doubt = " and ".join(what for what, group in guessed.items() if group is None)
+    return Choice(time or (), energy or (), kinetic or (), doubt)
 
 
-def find(names: Sequence[str], text: str) -> Group | None:
+def find(names: Sequence[str], text: str | None) -> Group | None:
     """Return the columns of a name, a number from 1, or several joined by +, None without them.
 
     Case and unit of a name do not count, if it is not there to the letter.
     """
+    if not text:
+        return ()
     for parts in ([text], text.split("+")):
         places = [_place(names, part.strip()) for part in parts]
         if -1 not in places:
@@ -102,14 +100,23 @@ def _place(names: Sequence[str], text: str) -> int:
     if text.isdecimal() and 0 < int(text) <= len(names):
         return int(text) - 1
     for way in (str.strip, str.casefold, _bare):
-        for place, name in enumerate(names):
-            if name and way(name.strip()) == way(text):
-                return place
+        keys = [way(name.strip()) for name in names]
+        if text and way(text) in keys:
+            return keys.index(way(text))
     return -1
 
 
 def _bare(name: str) -> str:
     return split_unit(name)[0].casefold()
+
+
+def _by_role(names: Sequence[str], places: Iterable[int]) -> dict[str, Group]:
+    """Return those of some columns that have the best name for each role."""
+    found: dict[tuple[int, str], Group] = defaultdict(tuple)
+    for place in places:
+        kind, rank = role(names[place])
+        found[rank, kind] += (place,)
+    return {kind: group for (_, kind), group in sorted(found.items(), reverse=True)}
 
 
 def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Group | None:
@@ -119,53 +126,39 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         for place, sample in enumerate(samples)
         if place not in excluded and len(sample) > 2 and (np.diff(sample) > 0).all()
     ]
-    for known in ("time", "step"):
-        found = [
-            place
-            for place, name in enumerate(names)
-            if role(name)[0] == known
-            # T is a temperature, unless it increases
-            and (_bare(name) != "t" or name[0] == "t" or place in rising)
-        ]
-        if found:
-            return (min(found, key=lambda place: _bare(names[place]) not in ("t", "time")),)
+    # T is a temperature, unless it increases
+    is_hot = [_bare(name) == "t" and name[0] == "T" for name in names]
+    best = _by_role(names, (n for n in range(len(names)) if n in rising or not is_hot[n]))
+    for kind in ("time", "step"):
+        if kind in best:
+            return best[kind][:1]
     if not rising:
         return ()
     steps = np.diff(samples[rising[0]])
     is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
-    if len(rising) == 1 and (is_even or not names[rising[0]]):
-        return (rising[0],)
-    return None
+    return _only(rising) if is_even or not names[rising[0]] else None
 
 
-def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Group:
-    """Return the columns whose sum is the conserved energy, () if that is not certain."""
+def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Group | None:
+    """Return the columns whose sum is the conserved energy, None if that is not certain."""
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
         return _only(places)
-    roles: dict[str, dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
-    for place in places:
-        unit = units[place]
-        if plain("energy", unit) or not (plain("time", unit) or unit.casefold() in NO_ENERGIES):
-            name, rank = role(names[place])
-            roles[name][rank].append(place)
-    for name in ("conserved", "total"):
-        if name in roles:
-            return _only(roles[name][min(roles[name])])
-    parts = [
-        place
-        for name in ("kinetic", "potential")
-        for found in roles[name].values()
-        for place in found
-    ]
-    if len(roles["kinetic"]) == len(roles["potential"]) == 1 and len(parts) == 2:
-        return tuple(parts) if units[parts[0]] == units[parts[1]] else ()
-    return _only([place for place in places if role(names[place])[0] == "error"])
+    others = [plain("time", unit) or unit.casefold() in NO_ENERGIES for unit in units]
+    fit = (place for place in places if plain("energy", units[place]) or not others[place])
+    best = _by_role(names, fit)
+    for kind in ("conserved", "total"):
+        if kind in best:
+            return _only(best[kind])
+    parts = best.get("kinetic", ()) + best.get("potential", ())
+    if len(best.get("kinetic", ())) == 1 and len(parts) == 2:
+        return parts if units[parts[0]] == units[parts[1]] else None
+    return _only(best.get("error", ()))
 
 
-def _only(places: Sequence[int]) -> Group:
-    """Return the only one of some columns, () if there are more."""
-    return tuple(places) if len(places) == 1 else ()
+def _only(places: Sequence[int]) -> Group | None:
+    """Return the only one of some columns, None if there are more or none."""
+    return tuple(places) if len(places) == 1 else None
 
 
 def known_names(names: Sequence[str]) -> int:
@@ -188,31 +181,30 @@ class Sheet:
         self.choice: Choice | None = None
         self.skipped = 0  # rows of another width
         self.puts = 0
-        self.last: dict[int, float] = {}  # values
         self.last_line = line
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
         self._is_printed = is_printed
         self._once: dict[str, tuple[int, float]] = {}  # what was printed only once
-        self._values: dict[Group, array[float]] = defaultdict(lambda: array("d"))
-        """By columns: the line where they were found and their values, in turn."""
+        self._lines: list[array[int]] = []  # of the values of each column
+        self._values: list[array[float]] = []
 
     def add_column(self, name: str, unit: str = "") -> None:
         self.kept += (len(self.names),)
         self.names.append(name)
         self.units.append(unit)
+        self._lines.append(array("q"))
+        self._values.append(array("d"))
 
     def put(
         self, lines: Sequence[int], places: Group, columns: Sequence[Sequence[float | None]]
     ) -> None:
         """Add the values of some columns at these lines, at a single one only the numbers."""
-        pairs = zip(places, columns, strict=True)
-        some: dict[int, Any] = {place: column for place, column in pairs if column[0] is not None}
-        self._values[tuple(some)].extend(
-            chain.from_iterable(zip(lines, *some.values(), strict=True))
-        )
-        self.last = {place: column[-1] for place, column in some.items()}
         self.last_line = lines[-1]
+        for place, column in zip(places, columns, strict=True):
+            if column[0] is not None:
+                self._lines[place].extend(lines)
+                self._values[place].extend(column)  # type: ignore[arg-type]
         is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
         if self.puts >= SAMPLE and not is_sampled:
@@ -232,16 +224,8 @@ class Sheet:
 
     def _column(self, place: int) -> tuple[Any, Any]:
         """Return the lines and values of a column, in the order of the lines."""
-        tables = [
-            np.frombuffer(values).reshape(-1, 1 + len(places)).T[[0, 1 + places.index(place)]]
-            for places, values in self._values.items()
-            if place in places
-        ]
-        if len(tables) == 1:
-            return tables[0][0], tables[0][1]
-        lines, values = np.concatenate([np.empty((2, 0)), *tables], axis=1)
-        order = np.argsort(lines, kind="stable")
-        return lines[order], values[order]
+        order = np.argsort(self._lines[place], kind="stable")
+        return np.asarray(self._lines[place])[order], np.asarray(self._values[place])[order]
 
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
@@ -257,23 +241,22 @@ class Sheet:
         if self.choice is None:
             self.choose()
         time = (self.choice or Choice()).time
-        return len(time) == 1 and self.last.get(time[0]) == row[time[0]]
+        return len(time) == 1 and [*self._values[time[0]][-1:]] == [row[time[0]]]
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
         self.choose()
         choice = self.choice or Choice()
-        leading = [*choice.time, *choice.energy, 0]
-        lines, _ = self._column(leading[0])
+        lines, _ = self._column([*choice.time, *choice.energy, 0][0]) if self.names else ((), ())
         if not len(lines):
             return
-        here, sums = self._sums((choice.time, choice.energy, choice.kinetic), lines)
-        last = np.flatnonzero(here).max(initial=-1)
-        inner = np.diff(np.flatnonzero(here), prepend=-1).max(initial=0) - 1
-        missing = len(here) - 1 - last  # rows after the last energy
-        if last >= 0 and missing > max(inner, 1):  # it ended, it is not only rarer
-            here[last + 1 :] = True
-        times, energies, kinetic = (total[here] for total in sums)
+        sums = [self._sum(group, lines) for group in choice[:3]]
+        here = ~np.ma.getmaskarray(sum(sums))
+        found = np.flatnonzero(here)
+        *inner, missing = np.diff(found, prepend=-1, append=len(here)) - 1
+        if len(found) and missing > max(1, *inner):  # it ended, it is not only rarer
+            here[found[-1] :] = True
+        times, energies, kinetic = (total.filled(np.nan)[here] for total in sums)
         rows = len(times)
         if not choice.time:
             times = np.arange(rows, dtype=float)
@@ -282,47 +265,34 @@ class Sheet:
                 f"{self.skipped} rows have another number of columns than the {rows} that fit the "
                 "head; cut the file there."
             )
-        runs = list(_runs(times))
-        if len(runs) == rows > 1:
-            raise unreadable(NOT_TIMES)
         seen = len(here) if self._is_printed else self.puts
         skipped = self.skipped + seen - rows
+        times[~(np.abs(times) < LATEST)] = np.nan
+        runs = list(islice(_runs(times), MAX_SERIES))
+        if len(runs) in (rows, MAX_SERIES) and rows > 1:
+            raise unreadable(MIXED)
         for run in runs:
-            series = Series(self, choice, times[run], energies[run], kinetic[run])
-            series.skipped = skipped
+            yield Series(self, choice, times[run], energies[run], kinetic[run], skipped=skipped)
             skipped = 0
-            yield series
 
-    def _sums(self, groups: Sequence[Group], lines: Any) -> tuple[Any, list[Any]]:
-        """Return the leading lines where all columns have a value, and the sum of each group."""
-        here = np.ones(len(lines), dtype=bool)
-        sums = []
-        for group in groups:
-            sums.append(np.zeros(len(lines)))
-            for place in group:
-                column, has_value = self._joined(place, lines)
-                here &= has_value
-                sums[-1] += column
-        return here, sums
-
-    def _joined(self, place: int, lines: Any) -> tuple[Any, Any]:
-        """Return a column at the lines of the leading one, nan where it has no value, and where.
+    def _sum(self, group: Group, lines: Any) -> Any:
+        """Return the sum of some columns at the lines of the leading one, masked where one is not.
 
         What is printed belongs to the time before it, or to that after it if all come before.
         """
-        own, values = self._column(place)
-        record = np.searchsorted(lines, own, side="right") - 1
-        if self._is_printed and np.array_equal(record + 1, np.arange(len(lines))):
-            record += 1
-        fits = record >= 0
-        if not self._is_printed:
-            fits &= lines[record] == own
-        record = record[fits]
-        column = np.full(len(lines), np.nan)
-        column[record] = values[fits]
-        has_value = np.zeros(len(lines), dtype=bool)
-        has_value[record] = True
-        return column, has_value
+        total = np.ma.zeros(len(lines))
+        for place in group:
+            own, values = self._column(place)
+            record = np.searchsorted(lines, own, side="right") - 1
+            if self._is_printed and np.array_equal(record + 1, np.arange(len(lines))):
+                record += 1
+            fits = record >= 0
+            if not self._is_printed:
+                fits &= lines[record] == own
+            column = np.ma.array(np.zeros(len(lines)), mask=True)
+            column[record[fits]] = values[fits]
+            total = total + column
+        return total
 
 
 def _counts(samples: Sequence[Any]) -> bool:
@@ -336,81 +306,64 @@ def _counts(samples: Sequence[Any]) -> bool:
 
 
 def _runs(times: Any) -> Iterator[slice]:
-    """Yield each part of the times that ends where time starts again."""
+    """Yield each part of the times that ends where time starts again; nan is no time."""
     first = 0
-    for _ in range(MAX_SERIES):
-        usable = np.abs(times[first:]) < LATEST
-        if not usable.any():
-            return
-        start = first + int(np.argmax(usable))
-        again = np.flatnonzero(usable[start - first + 1 :] & (times[start + 1 :] <= times[start]))
-        last = start + 1 + int(again[0]) if len(again) else len(times)
+    while len(usable := times[first:][np.isfinite(times[first:])]):
+        starts = first + np.flatnonzero(times[first:] <= usable[0])
+        last = int(starts[1]) if len(starts) > 1 else len(times)
         yield slice(first, last)
         first = last
-    raise unreadable(NOT_TIMES)
 
 
-@dataclass
+@dataclass(eq=False)
 class Series:
     """Times that increase, and their energies; before `finish`, as they are in the sheet."""
 
     sheet: Sheet
     choice: Choice
-    times: Any
+    times: Any  # nan where there is none
     energies: Any
     kinetic: Any
-    number: int = 0  # from 1
     skipped: int = 0  # rows without numbers, or not later than one before
     diverged_at: float | None = None  # the time of the first energy that is no finite number
     units: tuple[str, str] = ("", "")  # of time and energy
 
     @property
-    def rows(self) -> int:
-        return len(self.times)
-
-    @property
     def holds_errors(self) -> bool:
         """Whether the energies are relative errors already."""
-        energy = self.choice.energy
-        return len(energy) == 1 and role(self.sheet.names[energy[0]])[0] == "error"
+        return [role(self.sheet.names[place])[0] for place in self.choice.energy] == ["error"]
 
     def named(self, group: Sequence[int]) -> str:
         """Return the names of columns that are added up, "row" if there is none."""
-        names = (self.sheet.names[place] for place in group)
-        bare = (split_unit(name)[0] for name in names)
-        parts = zip(bare, group, strict=True)
-        return "+".join(name or f"column {place + 1}" for name, place in parts) or "row"
+        names = (split_unit(self.sheet.names[place])[0] or f"column {place + 1}" for place in group)
+        return "+".join(names) or "row"
 
-    def finish(self, start: float = -math.inf, end: float = math.inf) -> None:
+    def finish(self, start: Moment = (-math.inf, ""), end: Moment = (math.inf, "")) -> None:
         """Apply step and units; leave out rows that cannot be used or are not in this range.
 
         Raises UserError if none is left.
         """
         self.units = self._units()
-        size, _ = self.sheet.wanted.step or (1.0, "")
-        is_time = np.abs(self.times) < LATEST
-        times = np.where(is_time, self.times * size, -np.inf)
-        before = np.maximum.accumulate(np.concatenate([[-np.inf], times[:-1]]))
-        is_later = is_time & (times > before)
-        skipped = int(np.count_nonzero(~is_later))
+        begin, last = (self._moment(each) for each in (start, end))
+        if not begin <= last:
+            raise UserError(f"there is no time from {begin:g} to {last:g}.")
+        step, _ = self.sheet.wanted.step or (1.0, "")
+        times = self.times * step
+        is_later = times > np.fmax.accumulate(np.append(-np.inf, times[:-1]))
+        skipped = len(times) - int(is_later.sum())
+        if skipped > len(times) / 2:
+            raise unreadable(MIXED)
         self.skipped += skipped
-        used = np.flatnonzero(is_later & (times >= start) & (times <= end))
+        used = np.flatnonzero(is_later & (times >= begin) & (times <= last))
         lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
-        is_lost = 0 < len(lost) == len(used)
         if len(lost):
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
-        if skipped > len(times) - skipped:
-            raise unreadable(
-                "most rows are not later than the row before, so this table seems to hold several "
-                "methods; judge one of them, for example filtered with grep."
-            )
         if not len(used):
             why = "no row has a usable time and energy in this range."
-            if is_lost:
-                why = "each energy in this range is nan or infinite; repeat it with a smaller step."
-            elif self.diverged_at is not None:
-                why += f" Use --from with a later time than {self.diverged_at:g}."
+            if self.diverged_at is not None:
+                why = f"at {self.diverged_at:g} its energy is nan or infinite already; "
+                why += "begin later with --from, or repeat it with smaller steps."
             raise unreadable(why)
         self.times = times[used]
         self.energies = self.energies[used]
@@ -419,25 +372,41 @@ class Series:
     def _units(self) -> tuple[str, str]:
         """Return the units of time and energy.
 
-        Raises UserError if columns to be added have different ones, or --step contradicts one.
+        Raises UserError if those of energies differ, or --step contradicts that of time.
         """
         wanted = self.sheet.wanted
-        found = {}
-        for kind, group in (("time", self.choice.time), ("energy", self.choice.energy)):
-            units = {shown(kind, self.sheet.units[place]) for place in group}
-            if len(units - {""}) > 1:
-                raise UserError(
-                    f"the units of {self.named(group)} differ ({', '.join(sorted(units))}); "
-                    "add columns of one unit, or convert them first."
-                )
-            found[kind] = units.pop() if len(units) == 1 else ""
-        is_time = any(role(self.sheet.names[place])[0] == "time" for place in self.choice.time)
+        time, energy, kinetic, _ = self.choice
+        found = {"time": self._unit("time", time), "energy": self._unit("energy", energy)}
+        is_time = any(role(self.sheet.names[place])[0] == "time" for place in time)
         if wanted.step and (found["time"] or is_time):
             raise UserError(
-                f"--step is for steps, but {self.named(self.choice.time)} is a time already; "
+                f"--step is for steps, but {self.named(time)} is a time already; "
                 "name the column of steps with --time, or leave out --step."
             )
         if wanted.step:
             found["time"] = wanted.step[1]
-        time, energy = (shown(kind, unit) for kind, unit in (found | wanted.units).items())
-        return time, energy
+        time_unit, energy_unit = (shown(*each) for each in (found | wanted.units).items())
+        if kinetic:
+            self._unit("energy", energy + kinetic, energy_unit)
+        return time_unit, energy_unit
+
+    def _unit(self, kind: str, group: Group, *others: str) -> str:
+        """Return the unit of all these columns, "" if it is not certain.
+
+        Raises UserError if they have different ones, or another.
+        """
+        units = {*others, *(shown(kind, self.sheet.units[place]) for place in group)}
+        known = sorted(units - {""})
+        if len(known) > 1:
+            raise UserError(
+                f"the units of {self.named(group)} differ ({', '.join(known)}); "
+                "use columns of one unit, or convert them first."
+            )
+        return units.pop() if len(units) == 1 else ""
+
+    def _moment(self, moment: Moment) -> float:
+        """Return a moment in the unit of the times.  Raises UserError if that is not known."""
+        value, unit = moment
+        if unit:
+            value *= size("time", unit) / size("time", self.units[0])
+        return value

@@ -92,13 +92,25 @@ def split_unit(name: str) -> tuple[str, str]:
     return name, ""
 
 
-def quantity(text: str) -> tuple[float, str]:
-    """Return a number above zero and its unit of time, for example of `0.5fs` or `2`."""
-    match = re.fullmatch(r"(\d*\.?\d+(?:e[-+]?\d+)?)\s*([^\W\d]\S*)?", text.strip())
-    value = float(match[1]) if match else 0.0
-    if match is None or not 0 < value < float("inf"):
+Moment = tuple[float, str]
+"""A time and its unit, "" for that of the table."""
+
+
+def moment(text: str) -> Moment:
+    """Return a number and its unit of time, for example of `50ps` or `-2`."""
+    number = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+    match = re.fullmatch(rf"{number}\s*([^\W\d]\S*)?", text.strip())
+    if match is None:
+        raise ValueError(f"{text!r} is not a time; use for example 2 or 0.5fs")
+    return float(match[1]), _unit_of_time(match[2]) if match[2] else ""
+
+
+def quantity(text: str) -> Moment:
+    """Return a time above zero, and its unit."""
+    value, unit = moment(text)
+    if not 0 < value < float("inf"):
         raise ValueError(f"{text!r} is not a step; use for example 2 or 0.5fs")
-    return value, _unit_of_time(match[2]) if match[2] else ""
+    return value, unit
 
 
 def _unit_of_time(unit: str) -> str:

@@ -6,19 +6,17 @@ certain which it is.  Results have the units of its heads.  A verdict of failed 
 """
 
 import argparse
-import math
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from statistics import linear_regression
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from pendu_tui.engine import library
 from pendu_tui.engine.inputs import did_you_mean
-from pendu_tui.engine.run.record import Order, fluctuation, order_of
+from pendu_tui.engine.run.record import Fluctuation, Order, fluctuation, order_of
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli import units
@@ -27,7 +25,7 @@ from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.reader import read_sheets
 from pendu_tui.tui.cli.tables import Series, Wanted, find, unreadable
-from pendu_tui.tui.commands.report import Report, fields_of, finite, form_of, publish
+from pendu_tui.tui.commands.report import Report, fields_of, finite, publish
 from pendu_tui.tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -37,6 +35,44 @@ MAX_LISTED = 30
 MIN_CHART = 10  # rows
 MAX_CHART = 20
 CHOOSE = "choose with --time, --energy"
+
+
+class Answer(NamedTuple):
+    """What there is to say about a file."""
+
+    fields: dict[str, Any]  # as in --json
+    series: Series
+    judged: library.Judged
+
+
+def run(options: argparse.Namespace) -> int:
+    gate = parse(options.fail_if, fields=JUDGED)
+    _check(options)
+    answers = [judge(name, options) for name in options.files]
+    files = [answer.fields for answer in answers]
+    lines = [line for answer in answers for line in lines_of(answer)]
+    fields = files[0]
+    gated: dict[str, Any] = {}
+    if options.steps:
+        order, drift = _orders(options.steps, answers)
+        lines += [_goes_as("fluctuation", order), _goes_as("drift", drift)]
+        gated = {"drift_order": drift and drift.power, **_gated(order)}
+        fields = {
+            "steps": options.steps,
+            "files": files,
+            "fluctuation_order": order and order.power,
+            "fluctuation_order_uncertainty": order and order.uncertainty,
+            "drift_order": gated["drift_order"],
+        }
+    charts = []
+    if sys.stdout.isatty() and not options.json:
+        columns = shutil.get_terminal_size().columns
+        rows = sum(1 + len(line) // columns for line in lines)
+        charts = [line for answer in answers for line in _chart(answer, rows)]
+    publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
+    failures = dict.fromkeys(gate({"": each | gated}) for each in files)
+    code = conclude(options.fail_if, [Check("", "; ".join(filter(None, failures)))])
+    return Exit.CHECK_FAILED if FAILED in [each["verdict"] for each in files] else code
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -50,95 +86,60 @@ def _check(options: argparse.Namespace) -> None:
         raise UserError("--step has the unit of time already; leave out time= of --units.")
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
-    if not options.start <= options.end:
-        raise UserError(f"there is no time from {options.start:g} to {options.end:g}.")
-
-
-def run(options: argparse.Namespace) -> int:
-    gate = None
-    if options.fail_if is not None:
-        gate = parse(options.fail_if, fields=JUDGED)
-    _check(options)
-    results = [judge(name, options) for name in options.files]
-    lines = [line for result in results for line in lines_of(result)]
-    fields = results[0]
-    gated: dict[str, Any] = {}
-    if options.steps:
-        order = _fluctuation_order(options.steps, results)
-        drift = _drift_order(options.steps, results)
-        power, uncertainty = order or (None, None)
-        lines.append(_line("fluctuation", _goes_as(power, str(order), uncertainty or 0.0)))
-        lines.append(_line("drift", _goes_as(drift, f"h^{drift:.2f}" if drift else "")))
-        gated = {"drift_order": drift, **_gated(order)}
-        fields = {
-            "steps": options.steps,
-            "files": results,
-            "fluctuation_order": power,
-            "fluctuation_order_uncertainty": uncertainty,
-            "drift_order": drift,
-        }
-    charts = []
-    if form_of(options) == "table" and sys.stdout.isatty():
-        columns = shutil.get_terminal_size().columns
-        rows = sum(1 + len(line) // columns for line in lines)
-        charts = [line for result in results for line in _chart(result, rows)]
-    for result in results:
-        del result["series"], result["judged"]
-    publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
-    failures = [gate({"": result | gated}) for result in results if gate]
-    failure = "; ".join(filter(None, dict.fromkeys(failures)))
-    code = conclude(options.fail_if, [Check("", failure)])
-    if any(result["verdict"] == FAILED for result in results):
-        return Exit.CHECK_FAILED
-    return code
 
 
 @np.errstate(over="ignore", invalid="ignore")  # energies may be as large as a number can be
-def judge(name: str, options: argparse.Namespace) -> dict[str, Any]:
-    """Return the fields of the result for one file; - is stdin.  Raises UserError."""
-    shown = "stdin" if name == "-" else printable(name)
+def judge(name: str, options: argparse.Namespace) -> Answer:
+    """Return the answer for one file; - is stdin.  Raises UserError."""
     try:
         seen = read(name, options)
-        series = table_to_judge(seen, options)
-        fields: dict[str, Any] = {"file": name, "seen": [_seen(each) for each in seen]}
+        tables = [_seen(number, each) for number, each in enumerate(seen, 1)]
+        fields: dict[str, Any] = {"file": name, "seen": tables}
+        series = table_to_judge(seen, options.table)
         if series is None:
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
             doubt = seen[-1].choice.doubt or "the total energy"
             raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
-        fields |= {"tables": len(seen), **_judged(series, options)}
+        series.finish(options.start, options.end)
+        judged = _judged(series, options.scale[0])
+        table = tables[seen.index(series)]
+        fields |= {"tables": len(seen)} | {
+            name: table[name] for name in ("table", "time", "energy")
+        }
+        fields |= _fields(series, judged)
+        if options.atoms is not None:
+            fields |= _per_atom(fields, options.atoms, options.temperature)
     except UserError as error:
-        raise UserError(f"{shown}: {error}", error.code) from None
-    except OSError as error:
-        why = f"{shown}: {error.strerror or error}; give a log or a table, or - for stdin."
-        raise UserError(why, Exit.INPUT_UNREADABLE) from None
+        raise UserError(f"{_shown(name)}: {error}", error.code) from None
     fields["is_guess"] = options.time is None or options.energy is None
-    return fields
+    return Answer(finite(fields), series, judged)
+
+
+def _shown(name: str) -> str:
+    return "stdin" if name == "-" else printable(name)
 
 
 def read(name: str, options: argparse.Namespace) -> list[Series]:
     """Return all tables of a file.  Raises UserError if there is none."""
-    kinetic = None
-    if str(options.scale).startswith("kinetic:"):
-        kinetic = options.scale.partition(":")[2]
+    _, kinetic = options.scale
     wanted = Wanted(options.time, options.energy, kinetic, options.units, options.step)
     source = 0 if name == "-" else name
-    with open(source, "rb", closefd=source != 0) as stream:
-        sheets = read_sheets(stream, wanted, name)
-    found = [series for sheet in sheets for series in sheet.series()]
+    try:
+        with open(source, "rb", closefd=source != 0) as stream:
+            found = [each for sheet in read_sheets(stream, wanted, name) for each in sheet.series()]
+    except OSError as error:
+        why = f"{error.strerror or error}; give a log or a table, or - for stdin."
+        raise unreadable(why) from None
     if not found:
         raise unreadable("no row of numbers is in it.")
-    for place, series in enumerate(found, 1):
-        series.number = place
     return found
 
 
-def table_to_judge(seen: Sequence[Series], options: argparse.Namespace) -> Series | None:
+def table_to_judge(seen: Sequence[Series], table: int | None) -> Series | None:
     """Return the table to judge, None if that is not certain.  Raises UserError."""
-    if options.table and options.table > len(seen):
-        raise UserError(f"there is no table {options.table}; the input has {len(seen)}.")
-    some = seen
-    if options.table:
-        some = [seen[options.table - 1]]
+    if table and table > len(seen):
+        raise UserError(f"there is no table {table}; the input has {len(seen)}.")
+    some = [seen[table - 1]] if table else seen
     named = [series for series in some if series.sheet.choice]
     if not named:
         raise _missing(some[-1])
@@ -150,75 +151,34 @@ def _missing(series: Series) -> UserError:
     """Return the error that a table has no column of a name that the user gave."""
     names = series.sheet.names
     wanted = series.sheet.wanted
-    asked = [text for text in (wanted.time, wanted.energy, wanted.kinetic) if text]
-    parts = [part.strip() for text in asked for part in text.split("+") if not find(names, text)]
-    lost = next(part for part in parts if not find(names, part))
+    asked = (wanted.time, wanted.energy, wanted.kinetic)
+    lost = next(text for text in asked if text and not find(names, text))
+    part = next(part.strip() for part in lost.split("+") if not find(names, part))
     present = [printable(name, 40) or str(n) for n, name in enumerate(names[:20], 1)]
-    advice = did_you_mean(lost, present) or f"; choose from {', '.join(present)}."
-    return UserError(f"there is no column {printable(lost, 40)!r}{advice}")
+    advice = did_you_mean(part, present) or f"; choose from {', '.join(present)}."
+    return UserError(f"there is no column {printable(part, 40)!r}{advice}")
 
 
-def _seen(series: Series) -> dict[str, Any]:
+def _seen(number: int, series: Series) -> dict[str, Any]:
     """Return a table as it is listed."""
     names = zip(series.sheet.names, series.sheet.units, strict=True)
     times = series.times[np.isfinite(series.times)]
     return {
-        "table": series.number,
-        "rows": series.rows,
-        "span": [float(time) for time in (*times[:1], *times[-1:])],
+        "table": number,
+        "rows": len(series.times),
+        "span": [*times[:1], *times[-1:]],
         "columns": [{"name": printable(name), "unit": printable(unit)} for name, unit in names],
         "time": printable(series.named(series.choice.time)),
         "energy": printable(series.named(series.choice.energy)),
     }
 
 
-def _judged(series: Series, options: argparse.Namespace) -> dict[str, Any]:
-    """Return the fields of the result for one table.  Raises UserError."""
-    series.finish(options.start, options.end)
-    judged = _judgement(series, options.scale)
-    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
-    fields = {
-        "table": series.number,
-        "time": printable(series.named(series.choice.time)),
-        "energy": printable(series.named(series.choice.energy)),
-        **fields_of(judged, "verdict", "reason", "rests", "share", "scale"),
-        **fields_of(judged, "slope", "uncertainty", "bound"),
-        "trend": judged.slope,
-        "trend_unit": time_unit and f"1/{time_unit}",
-        "time_unit": time_unit,
-        "energy_unit": energy_unit,
-        "independent_samples": judged.independent,
-        "max_energy_error": judged.max_error,
-        "energy_error": judged.error,
-        "first_energy": float(series.energies[0]),
-        "lowest_energy": float(series.energies.min()),
-        "highest_energy": float(series.energies.max()),
-        "samples": series.rows,
-        "first_time": float(series.times[0]),
-        "last_time": float(series.times[-1]),
-        "diverged_at": series.diverged_at,
-        "skipped": series.skipped,
-    }
-    for name, value in (
-        ("absolute_trend", judged.slope),
-        ("absolute_uncertainty", judged.uncertainty),
-        ("absolute_bound", judged.bound),
-        ("fluctuation", judged.fluctuation),
-    ):
-        fields[name] = value and value * judged.scale
-    if options.atoms is not None:
-        fields |= _per_atom(fields, options.atoms, options.temperature)
-    return finite(fields) | {"series": series, "judged": judged}
-
-
-def _judgement(series: Series, scale: float | str | None) -> library.Judged:
+def _judged(series: Series, scale: float | str | None) -> library.Judged:
     """Return what the library says of a table.  Raises UserError if the scale is 0."""
-    if scale is None:
-        scale = "first"
-        if series.holds_errors:
-            scale = 1.0
-    elif str(scale).startswith("kinetic:"):
+    if series.choice.kinetic:
         scale = abs(float(series.kinetic.mean()))
+    elif scale is None:
+        scale = 1.0 if series.holds_errors else "first"
     times = series.times
     energies = series.energies
     if series.diverged_at is not None:
@@ -231,23 +191,71 @@ def _judgement(series: Series, scale: float | str | None) -> library.Judged:
         raise UserError(why) from None
 
 
+def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
+    """Return the fields of the result for one table."""
+    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
+    fields = {
+        **fields_of(judged, "verdict", "reason", "rests", "share", "scale", "diverged_at"),
+        **fields_of(judged, "slope", "uncertainty", "bound"),
+        "trend": judged.slope,
+        "trend_unit": time_unit and f"1/{time_unit}",
+        "time_unit": time_unit,
+        "energy_unit": energy_unit,
+        "independent_samples": judged.independent,
+        "max_energy_error": judged.max_error,
+        "energy_error": judged.error,
+        "first_energy": series.energies[0],
+        "lowest_energy": series.energies.min(),
+        "highest_energy": series.energies.max(),
+        "samples": len(series.times),
+        "first_time": series.times[0],
+        "last_time": series.times[-1],
+        "skipped": series.skipped,
+    }
+    absolute = {
+        "absolute_trend": judged.slope,
+        "absolute_uncertainty": judged.uncertainty,
+        "absolute_bound": judged.bound,
+        "fluctuation": judged.fluctuation,
+    }
+    return fields | {name: value and value * judged.scale for name, value in absolute.items()}
+
+
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
     """Return the trend per nanosecond and atom.  Raises UserError if a unit is not known."""
     trend = fields["absolute_trend"]
     energy = trend and trend / units.size("time", fields["time_unit"]) / atoms
     result = {"atoms": atoms, "energy_per_ns_per_atom": energy}
-    if temperature is None:
-        return result
-    in_kt = energy and energy / (units.size("energy", fields["energy_unit"]) * temperature)
-    return result | {"temperature": temperature, "kt_per_ns_per_atom": in_kt}
+    if temperature is not None:
+        kt = units.size("energy", fields["energy_unit"]) * temperature
+        result |= {"temperature": temperature, "kt_per_ns_per_atom": energy and energy / kt}
+    return result
 
 
-def _goes_as(power: float | None, shown: str, uncertainty: float = 0.0) -> str:
-    """Return a sentence's end on the power of h with which something goes."""
-    if power is None:
-        return "no clear power of h"
-    question = "; are the steps in the order of the files?"
-    return f"goes as {shown}{question * (power < -2 * uncertainty)}"
+def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | None]:
+    """Return the powers of the step size with which fluctuations go, and drifts.
+
+    None: a record is too short or failed, or its drift is not significant.
+    """
+    drifts = []
+    for judged in (each.judged for each in answers if each.judged.verdict in LEAVES):
+        slope, uncertainty = (judged.slope or 0.0, judged.uncertainty or 0.0)
+        drifts.append(Fluctuation(abs(slope) * judged.scale, uncertainty * judged.scale))
+    orders: list[Order | None] = [None, None]
+    with suppress(ValueError):
+        whole = [each.series for each in answers if each.judged.verdict != FAILED]
+        orders[0] = order_of(steps, [fluctuation(each.times, each.energies) for each in whole])
+    with suppress(ValueError):
+        orders[1] = order_of(steps, drifts)
+    return orders
+
+
+def _goes_as(name: str, order: Order | None) -> str:
+    """Return a line on the power of h with which something goes."""
+    text = f"goes as {order}" if order else "no clear power of h"
+    if order and order.power < -2 * order.uncertainty:
+        text += "; are the steps in the order of the files?"
+    return _line(name, text)
 
 
 def _gated(order: Order | None) -> dict[str, Any]:
@@ -259,32 +267,12 @@ def _gated(order: Order | None) -> dict[str, Any]:
     return {"fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
 
 
-def _fluctuation_order(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> Order | None:
-    """Return the power of the step size with which fluctuations go, if that can be told."""
-    series = [fields["series"] for fields in results if fields["verdict"] != FAILED]
-    if len(series) < len(steps):
-        return None
-    with suppress(ValueError):  # too few samples, or an energy that never changes
-        return order_of(steps, [fluctuation(each.times, each.energies) for each in series])
-    return None
-
-
-def _drift_order(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> float | None:
-    """Return the power of the step size with which drifts go, if all of them are significant."""
-    drifts = [fields["absolute_trend"] for fields in results if fields["verdict"] in LEAVES]
-    logs = [math.log(abs(drift)) for drift in drifts if drift]
-    if len(logs) < len(steps):
-        return None
-    return linear_regression([math.log(step) for step in steps], logs).slope
-
-
-def lines_of(fields: dict[str, Any]) -> list[str]:
+def lines_of(answer: Answer) -> list[str]:
     """Return the lines on one file."""
-    step = ""
-    if role(fields["time"])[0] == "step":
-        step = fields["time"].casefold()
+    fields = answer.fields
     energy_unit = fields["energy_unit"]
-    lines = fields["judged"].lines(fields["time_unit"], energy_unit, step)
+    step = fields["time"].casefold() if role(fields["time"])[0] == "step" else ""
+    lines = answer.judged.lines(fields["time_unit"], energy_unit, step)
     lines = [_title(fields), *_listed(fields), *lines]
     if fields.get("energy_per_ns_per_atom") is not None:
         text = f"{fields['energy_per_ns_per_atom']:+.2e}{_spaced(energy_unit)} per ns"
@@ -299,14 +287,13 @@ def lines_of(fields: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _chart(fields: Mapping[str, Any], rows_below: int) -> "list[Text]":
+def _chart(answer: Answer, rows_below: int) -> "list[Text]":
     """Return the lines of a chart of the energy, which leave room for what is printed below."""
     from pendu_tui.tui.drawing.picture import PALETTES
     from pendu_tui.tui.drawing.picture import lines_of as drawn
     from pendu_tui.tui.drawing.plotted import record_chart
 
-    series = fields["series"]
-    judged = fields["judged"]
+    fields, series, judged = answer
     width, height = shutil.get_terminal_size()
     scale = f"{judged.scale:.6g}{_spaced(fields['energy_unit'])}"
     chart = record_chart(
@@ -344,9 +331,8 @@ def _column(place: int, column: Mapping[str, str]) -> str:
 
 
 def _title(fields: dict[str, Any]) -> str:
-    name = "stdin" if fields["file"] == "-" else printable(fields["file"])
     span = f"{fields['first_time']:g} to {fields['last_time']:g}{_spaced(fields['time_unit'])}"
-    text = f"{name}: {counted(fields['samples'], 'sample')} from {span}"
+    text = f"{_shown(fields['file'])}: {counted(fields['samples'], 'sample')} from {span}"
     if fields["tables"] > 1:
         text += f", table {fields['table']} of {fields['tables']}"
     if fields["skipped"]:

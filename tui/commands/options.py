@@ -244,13 +244,16 @@ OPTIONS: dict[str, Settings] = {
         units.assignments,
         default={},
     ),
-    "--from": option("T", "begin at time T", number, dest="start", default=-math.inf),
-    "--to": option("T", "end at time T", number, dest="end", default=math.inf),
+    "--from": option(
+        "T", "begin at time T, such as 50ps", units.moment, dest="start", default=(-math.inf, "")
+    ),
+    "--to": option("T", "end at time T", units.moment, dest="end", default=(math.inf, "")),
     "--scale": option(
         None,
         "divide errors by the first energy (first), the standard deviation (std), the mean of "
         "a column (kinetic:COLUMN) or a number; default: first, and 1 for relative errors",
         scale,
+        default=(None, None),
     ),
     "--atoms": option("N", "print the trend per ns and atom, too", count),
     "--temperature": option("K", "with --atoms: give the trend in kT, too", positive),

@@ -46,7 +46,7 @@ DEFAULTS = {
     "serve": {"host": "127.0.0.1", "port": 8000, "at_most": 20, "theme": "dark"},
     "accuracy": {"error": "theta", "cost": "evaluations", "workers": 1, "all": False},
     "stability": {"steps": 10_000, "workers": 1},
-    "judge a.csv": {"start": -math.inf, "end": math.inf, "scale": None},
+    "judge a.csv": {"start": (-math.inf, ""), "end": (math.inf, "")},
     "recordings": {"verb": "list"},
 }
 

@@ -35,7 +35,7 @@ def tables(data: str | bytes, file="", start=-math.inf, **wanted) -> list[Series
     found = [series for sheet in sheets for series in sheet.series()]
     for series in found:
         if series.choice.energy:
-            series.finish(start)
+            series.finish((start, ""))
     return found
 
 
@@ -229,7 +229,7 @@ def test_lines_that_look_like_rows_are_counted(text, odd, skipped):
 @pytest.mark.parametrize("nan", ["nan", "1.#QNAN"])
 def test_printed_values_after_the_first_nan_are_nan_too(nan):
     text = rows(f"t = {{t}}, E = {nan}") + rows("t = 1{n:02}, E = {e}")
-    with pytest.raises(UserError, match="later time than 40"):
+    with pytest.raises(UserError, match="at 40 "):
         tables(text, start=40.0)
 
 

@@ -101,6 +101,9 @@ def test_only_rows_in_the_range_of_time_are_judged():
     answer = judge(TABLE, "--json", "--from", 5, "--to", 20).json
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
     assert judge(TABLE, "--from", 5, "--to", 4).refused(2, "no time from 5 to 4")
+    assert judge(TABLE, "--from", "5fs").refused(2, "the unit of time is not known")
+    answer = guess("t (ps),E\n" + lines("{t},{e}"), "--from", "5e3fs", "--to=20", "--json").json
+    assert (answer["first_time"], answer["last_time"]) == (5, 20)
     assert judge(TABLE, "--to", "nan").refused(2, "nan")
 
 
@@ -172,6 +175,15 @@ def test_scales():
         assert error == pytest.approx(99 / size)
 
 
+def test_a_scale_of_another_unit_is_refused():
+    text = "t,E [kJ/mol],K [kcal/mol]\n" + lines("{t},{e},5")
+    asked = ("--scale", "kinetic:K")
+    assert guess(text, *asked).refused(2, "of E+K differ (kJ/mol, kcal/mol)")
+    given = (*asked, "--units", "energy=kJ/mol")
+    assert guess(text.replace(" [kJ/mol]", ""), *given).refused(2, "(kJ/mol, kcal/mol)")
+    assert guess(text.replace("kcal", "kJ"), *given).code == 0
+
+
 def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_step():
     for step in (1, 2):
         rows = [(t, 100 + step**2 * (e - 100)) for t, e in ROWS]
@@ -212,8 +224,8 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
         ("1 2\n", "t E", 2, "choose from 1, 2"),
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
-        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "each energy in this range is nan or inf"),
-        ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "its time never increases"),
+        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan or inf"),
+        ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
         ("\x1b[31m,\x07\n", "t E", 3, "no row of numbers"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
