@@ -141,7 +141,9 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     if first in SCENES:
         return "live", arguments
     hint = did_you_mean(first, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
-    raise UserError(f"there is no command, scene or file {first!r}{hint}")
+    if os.path.isfile(first):  # noqa: PTH113  # False for a name that is too long
+        hint = f"; for the energies in this file use pendu-tui judge {first}."
+    raise UserError(f"there is no command or scene {first!r}{hint}")
 
 
 def refuse_dropped(command: str, arguments: Sequence[str]) -> None:

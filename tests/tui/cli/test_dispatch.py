@@ -23,6 +23,7 @@ from tests.tui.command_line import PENDU, pendu
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("swing.toml").write_text("theta = 0.5\n", encoding="utf-8")
+    Path("swing.csv").touch()
     for name in ("swing.mcap", "killed.mcap.part"):
         Path(name).write_bytes((GOLDEN / "drift.mcap").read_bytes())
 
@@ -42,6 +43,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
     [
         ("nothing.toml", 3, "nothing.toml"),
         ("nothing.mcap", 3, "nothing.mcap"),
+        ("swing.csv", 2, "pendu-tui judge swing.csv"),
         ("crosover", 2, "did you mean crossover?"),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),
