@@ -12,7 +12,7 @@ from os.path import lexists
 from pathlib import Path
 from typing import NamedTuple
 
-from pendu_tui.recordings.system import lock, rename
+from pendu_tui.recordings.system import is_reserved, lock, rename
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of an unfinished recording
@@ -99,10 +99,10 @@ def check_target(path: Path, force: bool | None = False) -> None:
 
     With `force` it may be taken; None: where --force is no option.  A device or a pipe is fine.
     """
+    if str(path) == "-" or is_reserved(path.name):
+        raise DiskError("is no name for a file; choose another", path)
     if is_stream(path):
         return
-    if str(path) == "-":
-        raise DiskError("is no name for a file; choose another", path)
     why = "already exists; choose another name"
     if path.is_dir() or (force is None and lexists(path)):
         raise NameTakenError(why, path)

@@ -1,6 +1,7 @@
 """What one operating system has and another lacks; only this module asks for it."""
 
 import os
+import re
 import signal
 import sys
 from collections.abc import Iterator
@@ -74,6 +75,13 @@ def rename(source: Path, target: Path) -> None:
             with source.open("rb") as old, target.open("xb") as new:
                 shutil.copyfileobj(old, new)
         source.unlink()
+
+
+def is_reserved(name: str) -> bool:
+    """Return whether no file can have this name, as con.mcap on Windows; NUL alone is a device."""
+    device, dot, _ = name.lower().partition(".")
+    devices = r"con|prn|aux|nul|(com|lpt)[1-9¹²³]"
+    return sys.platform == "win32" and dot == "." and bool(re.fullmatch(devices, device.strip()))
 
 
 def quoted(words: list[str]) -> str:

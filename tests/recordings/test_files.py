@@ -2,6 +2,7 @@
 
 import errno
 import os
+import sys
 import time
 from pathlib import Path
 
@@ -45,7 +46,7 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, mon
     assert files.folder().parts[-2:] == ("pendu-tui", "recordings")
     monkeypatch.setenv("PENDU_RECORDINGS", "~/runs")
     assert files.folder() == Path.home() / "runs"
-    no_folders = ["s3://bucket/runs"]
+    no_folders = ["s3://bucket/runs", __file__]
     if not IS_WINDOWS:  # where any name stands for a folder
         no_folders.append("~nosuchuser/runs")
     for no_folder in no_folders:
@@ -131,6 +132,14 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
     files.check_target(taken, force=True)
     files.check_target(tmp_path / "free.mcap", force=None)
     files.check_target(files.Path(os.devnull))
+
+
+@pytest.mark.parametrize("name", ["con.mcap", "LPT1.csv", "nul .svg"])
+def test_a_name_that_windows_keeps_for_a_device_is_refused_there(tmp_path, monkeypatch, name):
+    monkeypatch.setattr(sys, "platform", "win32")
+    with pytest.raises(DiskError, match="is no name for a file"):
+        files.check_target(tmp_path / name)
+    files.check_target(tmp_path / "console.mcap")
 
 
 def test_an_error_of_the_disk_names_the_file_first(tmp_path):
