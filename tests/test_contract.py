@@ -101,7 +101,7 @@ JUDGE = "judge energies.csv --time t --energy E"
         (0, f"{JUDGE} --fail-if 'verdict != bounded'"),
         (1, f"{JUDGE} --fail-if 'max_energy_error > 0.1'"),
         (1, "verify cut.mcap"),
-        (2, "run --time 2 --method mine.py:other"),
+        (3, "run --time 2 --method mine.py:other"),
         (2, "diff whole.mcap other.mcap"),
         (2, "nothing"),
         (3, "replay absent.mcap"),

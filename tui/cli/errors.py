@@ -47,9 +47,9 @@ def explained(error: BaseException) -> UserError:
     from pendu_tui.recordings.files import RecordingError
 
     match error:
-        case InputError() | OwnMethodError():
+        case InputError():
             return UserError(str(error))
-        case RecordingError():
+        case RecordingError() | OwnMethodError():
             return UserError(str(error), Exit.INPUT_UNREADABLE)
         case MemoryError():
             why = "not enough memory; use less of it, or smaller input."

@@ -80,11 +80,11 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
 @pytest.mark.parametrize(
     ("text", "code", "words"),
     [
-        ("mine.py", 2, "mine.py has no function 'mine'; it has kick_drift, rk4"),
+        ("mine.py", 3, "mine.py has no function 'mine'; it has kick_drift, rk4"),
         ("mine.py:größer", 2, "cannot be a method's name"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),
         ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
-        ("long.py:kick_drift", 2, "too long; use a file of at most 30,000 characters"),
+        ("long.py:kick_drift", 3, "too long; use a file of at most 30,000 characters"),
     ],
 )
 def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
@@ -105,7 +105,7 @@ def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(mine, monkeypa
     Path("hostile.py").write_text(
         f"import os\ndef hostile(force, phase, h):\n    {work}\n    yield"
     )
-    assert pendu("run", "--time", "2", "--method", "hostile.py").refused(2, "hostile.py", why)
+    assert pendu("run", "--time", "2", "--method", "hostile.py").refused(3, "hostile.py", why)
 
 
 @pytest.mark.slow
