@@ -31,6 +31,7 @@ from pendu_tui.engine.scenes import (
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.cast import cast_of, check_fits, own_method_at
 from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.options import moment
 
 
 def scenes_of(options: argparse.Namespace) -> list[Scene]:
@@ -84,7 +85,7 @@ MAX_ANSWERS = 4
 MAX_TEXT = 400  # characters of a sentence
 
 _READERS = {name: each.read for name, each in NUMBERS.items()}
-_READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
+_READERS |= {"seconds": seconds, "moment": moment, "speed": number}
 _SCENE = {
     "name": str,
     "from": str,

@@ -69,6 +69,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
+        ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
         ("[shot]\nreturns = true", "line 2: it needs a moment; use for example moment ="),
         (
             "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
