@@ -52,6 +52,7 @@ class Verification:
     runs: int = 0
     samples: int = 0
     numerics: int = NUMERICS  # the version of the numbers
+    methods: tuple[str, ...] = ()  # keys
     other_functions: tuple[str, ...] = ()  # that this machine computes differently
     changed_sources: tuple[str, ...] = ()  # keys of own methods whose file is not as recorded
     identical: bool = False  # every sample, or within the tolerance where sin differs; no damage
@@ -108,6 +109,7 @@ def _rerun(
     if only is not None and not any(method.key in only for method in cast):
         raise RecordingError(f"run {run.number} has none of the methods {', '.join(only)}")
     result.runs += 1
+    result.methods = tuple(dict.fromkeys((*result.methods, *(method.key for method in cast))))
     result.numerics = run.arithmetic.numerics
     result.other_functions = run.arithmetic.other_functions()
     recorded = {source for _, event in run.events for source in event.sources}

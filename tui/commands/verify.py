@@ -18,7 +18,8 @@ from pendu_tui.tui.words.numbers import counted
 
 
 def run(options: argparse.Namespace) -> int:
-    remember(own_methods(options))
+    own = own_methods(options)
+    remember(own)
     only = None
     if options.methods is not None:
         only = [method.key for method in cast_of(options, ())]
@@ -30,6 +31,10 @@ def run(options: argparse.Namespace) -> int:
             warn(row["error"])
         elif not options.json:
             say(_sentence(row))
+    used = {key for row in rows for key in row["methods"]}
+    for method in own:
+        if method.key not in used:
+            warn(f"no recording has the method {method.key}; --method was not needed for it.")
     passed = sum(row["passes"] for row in rows)
     if options.json:
         Report(name="verify", fields={"files": rows}).show("json")

@@ -3,7 +3,7 @@ import pytest
 from pendu_tui.recordings.files import golden_names
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
-from tests.tui.command_line import Outcome, pendu
+from tests.tui.command_line import Outcome, own_method, pendu
 
 
 @pytest.fixture
@@ -103,6 +103,12 @@ def test_only_the_methods_asked_for_are_compared(other, tmp_path):
     alone = tmp_path / "alone.mcap"
     pendu("run", "--time", "2", "--methods", "rk4", "--record", alone)
     assert pendu("verify", alone, "--methods", "s,v").refused(3, "run 1 has none of the methods")
+
+
+def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path):
+    outcome = pendu("verify", whole, "--method", own_method(tmp_path))
+    assert (outcome.code, first_words(outcome)) == (0, ["identical"])
+    assert "no recording has the method mine" in outcome.err
 
 
 def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
