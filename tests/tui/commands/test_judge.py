@@ -292,24 +292,3 @@ def test_a_time_that_is_no_number_is_not_in_the_span_of_a_table(tmp_path):
     file.write_text("t,energy\nnan,-5\n1,-5\n2,-5.1\ninf,-5\n")
     (table,) = pendu("judge", file, "--json").json["seen"]
     assert (table["rows"], table["span"]) == (4, [1.0, 2.0])
-
-
-@pytest.mark.parametrize(
-    ("energy", "rows", "verdict"),
-    [
-        ("nan", [200], "failed"),
-        ("****", [200], "failed"),
-        ("", [200], "bounded"),
-        ("", range(390, 400), "failed"),
-    ],
-)
-def test_an_energy_that_is_no_number_fails_and_a_blank_one_only_at_the_end(
-    tmp_path, energy, rows, verdict
-):
-    energies = [f"{-5 + 0.01 * math.sin(row)}" for row in range(400)]
-    for row in rows:
-        energies[row] = energy
-    lines = ["t,E", *(f"{row},{each}" for row, each in enumerate(energies))]
-    file = tmp_path / "energies.csv"
-    file.write_text("\n".join(lines) + "\n")
-    assert pendu("judge", file, "--json").json["verdict"] == verdict
