@@ -11,7 +11,9 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.content import Content
+from textual.geometry import Region
 from textual.message import Message
+from textual.strip import Strip
 from textual.worker import Worker, WorkerState
 
 from pendu_tui.engine.inputs import InputError
@@ -73,7 +75,10 @@ class Memo(Generic[Result]):
 
 
 class Box(Container):
-    BLANK = True  # covered by its children; saves Textual a style lookup per paint
+    """Is covered by its children, and so not painted."""
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        return []
 
 
 class View(Box):
