@@ -3,12 +3,13 @@
 import re
 from collections.abc import Callable
 from functools import partial
-from typing import Self
+from typing import Any, Self
 
 from rich.segment import Segment
 from rich.style import Style
+from textual.cache import FIFOCache
 from textual.filter import ANSIToTruecolor
-from textual.geometry import Region, Size
+from textual.geometry import NULL_OFFSET, Offset, Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -21,15 +22,30 @@ _segment: Callable[[tuple[str, Style, None]], Segment] = partial(tuple.__new__, 
 
 
 class _Line(Strip):
-    """A line whose front is painted; Textual would look for its end character by character."""
+    """A line whose front is painted; Textual would look for its end character by character.
+
+    Most lines last for a frame, so each of the caches is made when it is first used.
+    """
 
     __slots__ = ("behind", "front")
-    front: int  # columns
-    behind: int  # segments
+
+    def __init__(self, segments: list[Segment], width: int, front: int, behind: int) -> None:
+        self._segments = segments
+        self._cell_length = width
+        self._render_cache = None
+        self._link_ids = None
+        self._cell_count = None
+        self.front = front  # columns
+        self.behind = behind  # segments
+
+    def __getattr__(self, name: str) -> Any:
+        setattr(self, name, FIFOCache(4))
+        return getattr(self, name)
 
     def crop(self, start: int, end: int | None = None) -> Strip:
         if (start, end) == (0, self.front):
-            return Strip(self._segments[: len(self._segments) - self.behind], self.front)
+            painted = self._segments[: len(self._segments) - self.behind]
+            return _Line(painted, self.front, self.front, 0)
         return super().crop(start, end)
 
 
@@ -61,11 +77,17 @@ class CellWidget(Widget):
         self._changed: dict[int, tuple[int, int]] = {}  # rows: columns, pieces behind
         self.room = Size()
         """Columns and rows of a picture.  Textual walks through the screen for `size`."""
+        self._origin = NULL_OFFSET
 
     @property
     def drawable(self) -> bool:
         """Whether it is on screen and not empty."""
         return bool(self.room) and self.is_on_screen
+
+    @property
+    def content_offset(self) -> Offset:
+        """Where the picture begins.  Textual walks through the style sheet for it."""
+        return self._origin
 
     def draw(self) -> None:
         """Show the current state."""
@@ -105,26 +127,29 @@ class CellWidget(Widget):
                 self.draw()
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
-            self._top, right, bottom, left = self.gutter
+            top, right, bottom, left = self.gutter
+            self._origin = Offset(left, top)
             filters = self.get_line_filters()  # the palettes have true colours
             self._filters = [each for each in filters if not isinstance(each, ANSIToTruecolor)]
             self._background = self.background_colors[1]
             self._end = len(self._lines) - bottom  # `room` may still be the old one
             if self._lines:
-                inside = self._lines[min(self._top, len(self._lines) - 1)]
-                self._left_width = left
+                inside = self._lines[min(top, len(self._lines) - 1)]
                 self._left = [*inside.crop(0, left)]
                 self._right = [*inside.crop(crop.width - right)]
         else:
+            left, top = self._origin
             for y, (columns, behind) in self._changed.items():
-                if self._top + y < self._end:
+                if top + y < self._end:
                     segments = self._segments(y)
                     for each in self._filters:
                         segments = each.apply(segments, self._background)
-                    line = _Line([*self._left, *segments, *self._right], crop.width)
-                    line.front = self._left_width + columns
-                    line.behind = behind + len(self._right)
-                    self._lines[self._top + y] = line
+                    self._lines[top + y] = _Line(
+                        [*self._left, *segments, *self._right],
+                        width=crop.width,
+                        front=left + columns,
+                        behind=behind + len(self._right),
+                    )
         self._changed.clear()
         return self._lines
 

@@ -172,9 +172,12 @@ class Picture:
         for y, (old, new) in enumerate(zip_longest(before.rows, self.rows, fillvalue=())):
             if old != new:
                 behind = _equal_at_end(old, new)
-                if _length(old) != width or _length(new) != width:
+                front = _length(new[: len(new) - behind])
+                is_whole = front + _length(new[len(new) - behind :]) == width
+                if not is_whole or _length(old[: len(old) - behind]) != front:
                     behind = 0
-                yield y, width - _length(new[len(new) - behind :]), behind
+                    front = width
+                yield y, front, behind
 
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
