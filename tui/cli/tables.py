@@ -23,8 +23,9 @@ LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
 MIXED = (
-    "most of its times are not later than those before; name the column of times with --time, or, "
-    "if it holds several methods, judge one of them, for example filtered with grep."
+    "most of its rows have another number of columns than its head, or no later time than those "
+    "before; name the column of times with --time, or keep one table and one method, for example "
+    "with grep."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 Group = tuple[int, ...]
@@ -260,16 +261,11 @@ class Sheet:
         rows = len(times)
         if not choice.time:
             times = np.arange(rows, dtype=float)
-        if self.skipped > rows:
-            raise unreadable(
-                f"{self.skipped} rows have another number of columns than the {rows} that fit the "
-                "head; cut the file there."
-            )
         seen = len(here) if self._is_printed else self.puts
         skipped = self.skipped + seen - rows
         times[~(np.abs(times) < LATEST)] = np.nan
         runs = list(islice(_runs(times), MAX_SERIES))
-        if len(runs) in (rows, MAX_SERIES) and rows > 1:
+        if self.skipped > rows or (rows > 1 and len(runs) in (rows, MAX_SERIES)):
             raise unreadable(MIXED)
         for run in runs:
             yield Series(self, choice, times[run], energies[run], kinetic[run], skipped=skipped)
@@ -387,19 +383,20 @@ class Series:
             found["time"] = wanted.step[1]
         time_unit, energy_unit = (shown(*each) for each in (found | wanted.units).items())
         if kinetic:
-            self._unit("energy", energy + kinetic, energy_unit)
+            self._unit("energy", kinetic, energy_unit)
         return time_unit, energy_unit
 
-    def _unit(self, kind: str, group: Group, *others: str) -> str:
+    def _unit(self, kind: str, group: Group, *energies: str) -> str:
         """Return the unit of all these columns, "" if it is not certain.
 
-        Raises UserError if they have different ones, or another.
+        Raises UserError if they have different ones, or another than that of `energies`.
         """
-        units = {*others, *(shown(kind, self.sheet.units[place]) for place in group)}
+        units = {*energies, *(shown(kind, self.sheet.units[place]) for place in group)}
         known = sorted(units - {""})
         if len(known) > 1:
             raise UserError(
-                f"the units of {self.named(group)} differ ({', '.join(known)}); "
+                f"the units of {self.named(group)}{' and the energy' * len(energies)} differ "
+                f"({', '.join(known)}); "
                 "use columns of one unit, or convert them first."
             )
         return units.pop() if len(units) == 1 else ""

@@ -237,10 +237,11 @@ def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | N
 
     None: a record is too short or failed, or its drift is not significant.
     """
-    drifts = []
-    for judged in (each.judged for each in answers if each.judged.verdict in LEAVES):
-        slope, uncertainty = (judged.slope or 0.0, judged.uncertainty or 0.0)
-        drifts.append(Fluctuation(abs(slope) * judged.scale, uncertainty * judged.scale))
+    left = [each.fields for each in answers if each.judged.verdict in LEAVES]
+    drifts = [
+        Fluctuation(abs(each["absolute_trend"] or 0.0), each["absolute_uncertainty"])
+        for each in left
+    ]
     orders: list[Order | None] = [None, None]
     with suppress(ValueError):
         whole = [each.series for each in answers if each.judged.verdict != FAILED]
