@@ -262,10 +262,6 @@ def test_a_terminal_shows_a_chart_above_the_answer(monkeypatch):
     assert shown.index("energy error relative to 100") < shown.index("energies.csv: 300 samples")
 
 
-def test_an_absent_file_is_one_sentence():
-    assert pendu("judge", "absent.csv").refused(3, "absent.csv", "No such file")
-
-
 @given(
     st.binary(max_size=300) | st.text(st.sampled_from('0123456789.,;\t \n"#@tEnai-+'), max_size=300)
 )
