@@ -10,7 +10,7 @@ from pendu_tui.tui.playback.live import Live
 
 ASTRAY = "This is your own run now. Enter begins the page again."
 
-Stage = Literal["watching", "told", "asked", "answered"]
+Stage = Literal["watching", "told", "asked", "answered", "over"]
 
 
 class Lesson:
@@ -52,14 +52,14 @@ class Lesson:
     def text(self) -> tuple[str, ...]:
         """The sentences of this stage."""
         shot = self.shot
-        if self.stage == "watching":
-            return (self.page.watch,)
         if self.stage == "told":
             return (shot.sentence,)
         if self.stage == "asked":
             return shot.sentence, self.asked
-        result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
-        return f"{result}{shot.right}: {shot.answers[shot.right - 1]}", shot.truth
+        if self.stage == "answered":
+            result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
+            return f"{result}{shot.right}: {shot.answers[shot.right - 1]}", shot.truth
+        return (self.page.watch,)
 
     @property
     def _stepping(self) -> Stepping:
@@ -135,8 +135,8 @@ class Lesson:
             self.begin(live, self.index + 1)
         else:
             self.index = 0
-            return False
-        return True
+            self.stage = "over"
+        return self.stage != "over"
 
     def back(self, live: Live) -> None:
         """Go back from the truth to the question, or to the previous page."""

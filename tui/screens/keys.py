@@ -69,8 +69,8 @@ KEYS: list[BindingType] = [
     Binding("d", "describe", "describe it in words", show=False),
     Binding("s", "screenshot", "save a screenshot", show=False),
     Binding("S,shift+s", "save_scene", "save it as a scene file", show=False),
-    Binding("enter", "lesson_forward"),  # the lesson's panel shows these two
-    Binding("backspace", "lesson_back"),
+    Binding("enter", "turn('forward')"),  # the lesson's panel shows these two
+    Binding("backspace", "turn('back')"),
 ]
 """In the order of the help, and of the last line, which shows what fits of the first ones."""
 if CAN_STOP:

@@ -133,7 +133,7 @@ class LabScreen(SizedScreen[None]):
         match action:
             case "screenshot" | "save_scene":
                 return not self.app.is_web
-            case "lesson_forward" | "lesson_back":
+            case "turn":
                 return self.is_guided
             case "live":
                 return self.is_replay
@@ -368,22 +368,16 @@ class LabScreen(SizedScreen[None]):
         self.is_guided = True
         self.is_guided = await self._turn_to(self.guide.index)
 
-    async def action_lesson_forward(self) -> None:
-        """Go to the moment, the answer, or the next page."""
-        await self._follow_lesson(self.lesson.forward)
-
-    async def action_lesson_back(self) -> None:
-        await self._follow_lesson(self.lesson.back)
-
-    async def _follow_lesson(self, move: Callable[[Live], bool | None]) -> None:
-        before = (self.lesson.index, self.source.sample.run)
-        goes_on: list[bool | None] = []
-        if not await self.change(lambda live: goes_on.append(move(live))):
+    async def action_turn(self, way: str) -> None:
+        """Go forward to the moment, the answer or the next page, or back."""
+        lesson = self.lesson
+        before = (lesson.index, self.source.sample.run)
+        if not await self.change(getattr(lesson, way)):
             return
-        if goes_on == [False]:
+        if lesson.stage == "over":
             self._leave_lesson("That was the last page. T begins again.")
-        elif (self.lesson.index, self.source.sample.run) != before:
-            self._show_shot(self.lesson.page)
+        elif (lesson.index, self.source.sample.run) != before:
+            self._show_shot(lesson.page)
 
     def _leave_lesson(
         self, notice: str = "T resumes the lesson; u brings back the run before it."
