@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import pytest
 
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
-from pendu_tui.engine.studies.accuracy import Cheapest
+from pendu_tui.engine.studies.accuracy import REASONS, Cheapest
 from pendu_tui.engine.studies.section import OrbitKind
-from pendu_tui.tui.words.studies import few, front_words, length, orbit_words
+from pendu_tui.tui.words.studies import few, front_words, length, orbit_words, point_words
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
@@ -54,7 +55,18 @@ def test_the_front_names_ranges():
     assert front_words(entries, "evaluations") == (
         "Cheapest in force evaluations: Velocity Verlet from 1e-2 to 1e-3, RK4 at 1e-4."
     )
+    assert front_words(entries[:1], "seconds").startswith("Cheapest in seconds: Velocity")
     assert "No power of ten" in front_words([], "seconds")
+
+
+def test_a_point_in_a_sentence():
+    errors, flaws = {"theta": 2e-3}, {"theta": "rounding"}
+    point = SimpleNamespace(method=RK4, h=0.05, z=0.15, steps_per_swing=41.9, errors=errors)
+    point.flaws, point.force_evaluations = flaws, 80
+    start = "RK4 at h 0.05 s (z 0.15, 41.9 steps a small swing): theta error 2.0e-03 ("
+    assert point_words(point, "theta", "current h") == (
+        f"{start}{REASONS['rounding']}) for 80 force evaluations; current h"
+    )
 
 
 @pytest.mark.parametrize(
