@@ -7,7 +7,7 @@ from typing import Any
 from rich.style import Style
 from textual.app import App
 
-from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.picture import FAINT, Picture
 
 
 def cells(picture: Picture) -> dict[tuple[int, int], tuple[str, object]]:
@@ -35,6 +35,22 @@ def size(picture: Picture) -> tuple[int, int]:
     widths = {sum(len(text) for text, _ in row) for row in picture.rows}
     assert len(widths) <= 1
     return max(widths, default=0), len(picture.rows)
+
+
+def look(picture: Picture) -> str:
+    """Write a picture as text, and below it the ink of each cell: 0 is the first method's.
+
+    a is the trail of that method; X, F, T, W, Q, G and N are EXACT, FRAME, TEXT and so on.
+    """
+    letters = {ink: letter for letter, ink in zip("NGQWTFX", range(-7, 0), strict=True)}
+    letters |= {ink: str(ink) for ink in range(10)}
+    letters |= {FAINT + ink: "abcdefghij"[ink] for ink in range(10)}
+    rows = picture.text.splitlines()
+    grid = cells(picture)
+    for y, row in enumerate(picture.text.splitlines()):
+        own = [grid.get((y, x)) for x in range(len(row))]
+        rows.append("".join(letters[cell[1]] if cell else " " for cell in own))
+    return "\n".join(rows) + "\n"
 
 
 def screen(app: App[Any]) -> list[list[tuple[str, Style]]]:

@@ -143,6 +143,7 @@ def test_a_letter_stands_where_no_other_method_is():
     canvas = Canvas(3, 1)
     canvas.points([(0, 0)], 1)
     canvas.points([(2, 0)], 0)
+    canvas.points([(2, 1)], faint(1))
     canvas.label_near([(0, 0), (1, 0), (2, 0)], "e", 0)
     assert canvas.picture().text == "⠁e"
     canvas.points([(4, 0)], 1)
@@ -200,10 +201,15 @@ def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
 
 
 @pytest.mark.parametrize(
-    ("hollow", "text"), [(False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"), (True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊")]
+    ("radius", "hollow", "text"),
+    [
+        (4, False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"),
+        (4, True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊"),
+        (2, True, "\n  ⢰⣲\n"),
+    ],
 )
-def test_a_disc_is_round_because_dots_are_square(hollow, text):
-    assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=hollow), 6, 3).text == text
+def test_a_disc_is_round_because_dots_are_square(radius, hollow, text):
+    assert drawn(lambda canvas: canvas.disc(6, 6, radius, 0, hollow=hollow), 6, 3).text == text
 
 
 def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
@@ -232,3 +238,4 @@ def test_pictures_are_compared_row_by_row():
     assert list(new.changes(old, 8)) == [(0, 8, 0)]  # up to the end, where a row may be wide
     assert list(new.changes(new, 6)) == []
     assert Canvas(0, 2).picture().text == "\n"
+    assert Picture.of_text("a b", 2, 6, TEXT).text == "\n\na\nb\n\n"

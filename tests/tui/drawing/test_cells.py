@@ -8,7 +8,7 @@ from textual.app import App, ComposeResult
 from textual.strip import Strip
 
 from pendu_tui.tui.drawing.cells import CellWidget
-from pendu_tui.tui.drawing.picture import NOBODY, TEXT, Picture
+from pendu_tui.tui.drawing.picture import NOBODY, PALETTES, TEXT, Picture
 
 
 class Drawn(CellWidget):
@@ -49,6 +49,10 @@ async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew(
         x, y = list(cells.render_line(0))[:2]
         assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
         assert x.style.bgcolor == y.style.bgcolor
+        app.theme = "textual-light"
+        await pilot.pause()
+        cells.draw()
+        assert next(iter(cells.render_line(0))).style.color.name == PALETTES["light"].text.lower()
 
 
 async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it():
@@ -58,9 +62,13 @@ async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it():
         cells.styles.border = ("round", "red")
         await pilot.pause()
         for text in ("abc", "abx", "世x"):
-            cells.show(Picture([[(text, TEXT), ("def"[: 6 - cell_len(text)], NOBODY)]]))
+            end = "def"[: 6 - cell_len(text)]
+            cells.show(Picture([[(text, TEXT), (end, NOBODY)], [("no room", TEXT)]]))
             await pilot.pause()
             line = cells.painted[1]
-            assert line.text == f"│{text}def│"
+            assert [each.text for each in cells.painted[1:]] == [f"│{text}def│", "╰──────╯"]
             for end in range(1, 9):
                 assert line.crop(0, end) == Strip([*line]).crop(0, end)
+        cells.show(Picture([[("世bcdef", TEXT)]]))
+        await pilot.pause()
+        assert cells.painted[1].text == "│世bcde│"

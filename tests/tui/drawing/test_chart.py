@@ -9,8 +9,8 @@ from hypothesis.extra.numpy import arrays
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
-from pendu_tui.tui.drawing.picture import FAINT, FRAME, TEXT
-from pendu_tui.tui.drawing.plotted import Series, loglog_chart
+from pendu_tui.tui.drawing.picture import FRAME
+from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
 from pendu_tui.tui.drawing.time_chart import (
     CROSSING,
     MIN_COLUMNS,
@@ -20,7 +20,7 @@ from pendu_tui.tui.drawing.time_chart import (
 )
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
-from tests.tui.drawn import cells, inks, size
+from tests.tui.drawn import cells, look, size
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)
@@ -44,6 +44,54 @@ def plot(
     return time_chart(
         data, USUAL_CAST, shown, width, height, names=names, ghost=ghost, changes=changes
     )
+
+
+def test_charts_as_they_are_stored(snapshot):
+    t = np.arange(0.03, 20.0, 0.07)
+    rates = np.array([3.1, 0.31, 0.031, 3.1e-16])
+    grows = np.exp(t[:, None] * rates) - 0.99
+    waves = np.sin(3 * t)[:, None] * rates
+    names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
+    ghost = (window(t, 1.7 * grows), USUAL_CAST)
+    changes = [(0.0, "start"), (7.7, "h 0.1"), (19.0, "h 0.05"), (20.0, "end")]
+    limit = {"line": Line("energy_error", 0.011, "limit")}
+    mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
+    long = window(60 * t, grows, repeats=1.1)
+    pictures = [
+        plot(window(t, grows, repeats=1.1), ghost=ghost, changes=changes, seconds=20, **limit),
+        plot(window(t, grows), 60, 9, names=names),
+        plot(window(t, grows), 59, 8, names=names, places=[1, 2, 3]),
+        plot(mixed, 60, 16, log=False, changes=changes, seconds=10, **limit),
+        plot(window(t, -grows, -grows, turned=True), 72, 12, log=False, names=names),
+        plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
+    ]
+    series = [
+        Series(0, "e", [1e2, 3e3, 2e4], [2e-1, 3e-2, 4e-4]),
+        Series(2, "v", [2e2, np.inf, 1e1], [3e-5, 1, 2e-3]),
+        Series(FRAME, "slope 2", [1e1, 1e7], [1e-1, 1e-7], dotted=True),
+        Series(FRAME, "up", [1e1, 1e7], [1e-3, 1e2], dotted=True),
+    ]
+    texts = [look(each.picture) for each in pictures]
+    picture = loglog_chart(series, 60, 18, x_label="cost", y_label="error")
+    column, row = LogLog.fitting(series, 60, 18).cell(3e3, 3e-2)
+    assert cells(picture)[row, column] == ("e", 0)
+    snapshot("charts.txt", "\n".join([*texts, look(picture)]))
+
+
+def test_a_column_is_read_out_farthest_from_zero_and_stays_where_it_is_in_a_zoom():
+    data = window(TIMES, -3 * TIMES, TIMES)
+    chart = plot(data, 60, 10, log=False)
+    middle = chart.left + len(chart.times) // 2
+    assert chart.at(middle).values[0] == pytest.approx(-30, abs=1.5)
+    for factor, column, ends in (
+        (0.5, None, (5, 15)),
+        (0.5, 0, (0, 10)),
+        (0.5, 59, (10, 20)),
+        (0.4, middle, (6.12, 14.12)),
+        (2, None, None),
+    ):
+        found = chart.zoomed(data, factor, column)
+        assert found == (ends and pytest.approx(ends, abs=0.01))
 
 
 @settings(max_examples=150)
@@ -140,39 +188,6 @@ def test_letters_have_rows_of_their_own_in_the_order_of_their_lines(wanted, room
         assert rows == own  # moved only where they must
 
 
-def test_names_stand_beside_their_lines_where_there_is_room():
-    names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
-    errors = 10.0 ** -np.array([0.0, 2.0, 2.1, 6.0]) * np.ones((len(TIMES), 4))
-    data = window(TIMES, errors)
-    lines = plot(data, 70, 16, names=names).picture.text.splitlines()
-    rows = [next(row for row, line in enumerate(lines) if name in line) for name in names]
-    letters = [next(row for row, line in enumerate(lines) if line[66:] == x) for x in "esvr"]
-    assert rows == sorted(rows)  # never beyond a neighbour's
-    assert all(abs(row - letter) <= 2 for row, letter in zip(rows, letters, strict=True))
-    for room, named in (((60, 16), True), ((59, 16), False), ((70, 8), False)):
-        assert ("RK4" in plot(data, *room, names=names).picture.text) == named
-
-
-def test_on_few_rows_letters_stand_side_by_side_where_their_lines_end():
-    errors = 10.0 ** -np.array([0.0, 2.3, 2.4, 6.0]) * np.ones((len(TIMES), 4))
-    chart = plot(window(TIMES, errors), 40, 6)
-    for place, letter in enumerate("esvr"):
-        (row,) = (at for (at, _), cell in cells(chart.picture).items() if cell == (letter, place))
-        line = {
-            at
-            for (at, column), (_, ink) in cells(chart.picture).items()
-            if ink == place and column < 36
-        }
-        assert line == {row}
-
-
-@pytest.mark.parametrize(("times", "seen"), [(1, {0}), (10, {0, FAINT})])
-def test_a_ghost_is_behind_the_same_methods(times, seen):
-    ghost = (window([1, 2, 3], [times, 2 * times, 3 * times]), USUAL_CAST)
-    picture = plot(window([1, 2, 3], [1, 2, 3]), places=[0], seconds=20, ghost=ghost).picture
-    assert inks(picture) == {*seen, FRAME, TEXT}
-
-
 @pytest.mark.parametrize(("rate", "top"), [(3, "1e6┤"), (30, "10┤")])
 def test_a_line_that_leaves_the_chart_ends_with_its_value_and_at_once_takes_no_room(rate, top):
     errors = np.stack([np.exp(rate * TIMES), 0.1 * TIMES, TIMES, TIMES], axis=1)
@@ -181,14 +196,3 @@ def test_a_line_that_leaves_the_chart_ends_with_its_value_and_at_once_takes_no_r
     row = next(row for row, line in enumerate(lines) if value in line)
     assert next(line for line in lines if "┤" in line).lstrip().startswith(top)
     assert max(line.rfind("⠁") for line in lines[: row + 1]) < lines[row].index("↑") + 3
-
-
-def test_a_change_of_the_step_and_a_reference_are_dotted_lines_with_words():
-    line = Line("energy_error", 1000.0, "limit")
-    changes = [(10.0, "h 0.1")]
-    changed = plot(window(TIMES, TIMES), places=[0], changes=changes, seconds=20, line=line)
-    lines = changed.picture.text.splitlines()
-    column = changed.left + len(changed.times) // 2
-    assert lines[12][column + 1 :].startswith("h 0.1")
-    assert all(line[column] not in " ⠀" for line in lines[1:13])
-    assert "limit" in lines[0] + lines[1]

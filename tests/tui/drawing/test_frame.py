@@ -10,6 +10,9 @@ from pendu_tui.tui.drawing.frame import (
     linear_axis,
     log_axis,
     log_time_axis,
+    log_x_axis,
+    number_ticks,
+    theta_ticks,
     time_axis,
 )
 from pendu_tui.tui.drawing.time_chart import per_column, time_span
@@ -59,21 +62,37 @@ def test_a_linear_axis_covers_its_range_with_exact_and_enough_labels_in_evenly_s
         assert high - low >= 0.6 * (axis.high - axis.low) - 2 * row
 
 
+HOUR = 3600
+
+
 @pytest.mark.parametrize(
-    ("axis", "labels"),
+    ("labels", "text"),
     [
-        (log_axis(-7.3, 0.6, 14), "1e-6 1e-3 1"),
-        (log_axis(-5.3, 1.2, 8), "1e-5 1"),
-        (log_axis(1.0, 4.0, 3), "1 1e3"),
-        (linear_axis(-0.06, 4.3, 14), "0 1 2 3 4"),
-        (linear_axis(-0.13, 0.19, 13), "-0.2 -0.1 0 0.1 0.2"),
-        (linear_axis(4.503, 4.509, 10), "4.5 4.502 4.504 4.506 4.508"),
-        (linear_axis(-3e-7, 2e-7, 10), "-4e-7 -2e-7 0 2e-7"),
-        (log_time_axis(1.0, 86400.0, 60), "1 s 5 s 1 min 5 min 1 h 5 h 1 d"),
+        (log_axis(-7.3, 0.6, 14).labels, "1e-6 1e-3 1"),
+        (log_axis(-5.3, 1.2, 8).labels, "1e-5 1"),
+        (log_axis(-5.3, 1.2, 9).labels, "1e-6 1e-4 1e-2 1"),
+        (log_axis(1.0, 4.0, 3).labels, "1 1e3"),
+        (log_x_axis(-3.2, 1.1, 40).labels, "1e-4 1e-2 1 100"),
+        (linear_axis(-0.06, 4.3, 14).labels, "0 1 2 3 4"),
+        (linear_axis(-0.13, 0.19, 13).labels, "-0.2 -0.1 0 0.1 0.2"),
+        (linear_axis(2.0, 4.5, 8).labels, "1 2 3 4"),
+        (linear_axis(4.503, 4.509, 10).labels, "4.5 4.502 4.504 4.506 4.508"),
+        (linear_axis(-3e-7, 2e-7, 10).labels, "-4e-7 -2e-7 0 2e-7"),
+        (linear_axis(-3e-15, 2e-15, 9).labels, "-2e-15 0 2e-15"),
+        (linear_axis(5.0, 5.0, 9).labels, "4.9995 5 5.0005"),
+        (time_axis(0, 4.9, 40, " run").labels, "0 2 4 s run"),
+        (time_axis(0, 4.9 * HOUR, 60).labels, "0 50 100 150 200 250 min"),
+        (time_axis(0, 5 * HOUR, 60).labels, "0 1 2 3 4 5 h"),
+        (log_time_axis(1.0, 86400.0, 60).labels, "1 s 5 s 1 min 5 min 1 h 5 h 1 d"),
+        (log_time_axis(1.0, 86400.0, 61, " run").labels, "1 s 5 s 1 min 5 min 1 h 5 h 1 d run"),
+        (theta_ticks(-3.2, 3.2, 5), "-pi -pi/2 0 pi/2 pi"),
+        (theta_ticks(-0.6, 0.6, 4), "-0.5 0 0.5"),
+        (theta_ticks(-1.0, 1.0, 4), "-pi/4 0 pi/4"),
+        (number_ticks(0.0, 1234.56, 4), "0 500 1000"),
     ],
 )
-def test_the_most_common_axes_of_the_lab(axis, labels):
-    assert " ".join(axis.labels.values()) == labels
+def test_the_most_common_labels_of_the_lab(labels, text):
+    assert " ".join(labels.values()) == text
 
 
 @given(st.floats(0, 1e9), st.floats(0.5, 1e6), st.integers(8, 200))

@@ -18,6 +18,8 @@ from pendu_tui.tui.drawing.picture import (
     WARN,
     ink_of,
     inks,
+    mark,
+    mixed,
     palette,
 )
 
@@ -99,6 +101,7 @@ def test_the_classics_have_the_same_ink_in_every_cast_and_the_others_the_next_fr
     assert inks((respa, rk4, imex, verlet)) == (4, 3, 5, 2)
     assert ink_of(imex, (respa, rk4, imex)) == 5
     assert ink_of(rk4, ()) == 3
+    assert mark(0, rk4) == "1 r"
     assert ink_of(respa, USUAL_CAST) == QUIET
     for scene in SCENES.values():  # adding a method changes nobody's
         *before, last = inks((*scene.cast, replace(respa, key="new")))
@@ -115,6 +118,7 @@ def test_words_lines_and_trails_have_the_contrast_that_they_need(theme):
     *_, bound = THEMES[theme]  # of WCAG for words; 3 for graphics
     assert min(map(seen, (*range(10), EXACT, TEXT, NOBODY, WARN, QUIET, GOOD))) >= bound
     assert seen(FRAME) >= 3
+    assert [colours.colour(ink) for ink in (WARN, GOOD)] == [colours.warn, colours.good]
     for ink in range(10):
         assert 1.85 <= seen(ink + FAINT) < 0.7 * seen(ink)
 
@@ -122,3 +126,4 @@ def test_words_lines_and_trails_have_the_contrast_that_they_need(theme):
 def test_other_themes_get_the_palette_that_suits_their_name():
     for theme, name in {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}.items():
         assert palette(theme) is PALETTES[name]
+    assert [mixed("bright_red", "black", share) for share in (0.1, 0.3)] == ["bright_red", "red"]
