@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.drawing.frame import in_pi, number_ticks, theta_ticks
+from pendu_tui.tui.drawing.frame import number_ticks, theta_ticks
 from pendu_tui.tui.drawing.picture import FRAME, QUIET
 from pendu_tui.tui.views.portrait import Portrait
 from pendu_tui.tui.views.viewport import Viewport
@@ -66,12 +66,6 @@ def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
         assert near or not (1 <= i < viewport.columns * 2 - 1 and 1 <= j < viewport.rows * 4 - 1)
         passed |= near
     assert passed == orbit  # and nowhere else
-
-
-def test_angles_are_in_pi_or_closer_together_in_rad():
-    assert [*theta_ticks(0.9 * math.pi, 1.05 * math.pi, 4).values()] == ["3", "3.2"]
-    assert [*theta_ticks(-math.pi, math.pi, 4).values()] == ["-pi", "-pi/2", "0", "pi/2", "pi"]
-    assert in_pi(-0.75) == "-3pi/4"
 
 
 @given(st.floats(-20, 20), st.floats(1e-3, 100), st.integers(1, 12))

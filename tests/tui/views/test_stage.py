@@ -8,21 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
-from pendu_tui.tui.drawing.picture import EXACT, faint
 from pendu_tui.tui.views.error_table import ErrorTable
-from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, arc, lanes, stage_picture
+from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, lanes, stage_picture
 from tests.tui.drawing.test_canvas import dots
-from tests.tui.drawn import cells, places, size
+from tests.tui.drawn import cells, size
 from tests.tui.harness import lab
 
 LETTERS = "esvrmp"
 ANGLES = st.floats(-1e9, 1e9)
 SMALL = (20, 6)  # columns and rows of the stage on the smallest screen
-
-
-def picture(columns, rows, *thetas, **look):
-    bobs = [Bob(theta, ink, LETTERS[ink]) for ink, theta in enumerate(thetas)]
-    return stage_picture(columns, rows, bobs, Look(**look))
 
 
 def letters(drawn):
@@ -67,17 +61,6 @@ def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pa
             assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
 
 
-def test_a_trail_covers_its_lane_from_sample_to_sample_and_is_bright_near_the_bob():
-    trail = [0.05 * nth for nth in range(16)]
-    drawn = stage_picture(43, 22, [Bob(trail[-1], 0, "e", trail=trail)], Look())
-    bright, dim = places(drawn, 0), places(drawn, faint(0))
-    assert min(column for column, _ in bright) > 21 + 5  # the first third is faint
-    assert {row for column, row in dim if column in (22, 23)} >= {20}
-    found = lanes(43, 22, 1, math.pi, rigid=True)
-    dots = arc(found.ring(found.radii[0]), 0.0, 0.75)
-    assert len(dots) == pytest.approx(0.9 * found.radii[0], rel=0.1)
-
-
 @pytest.mark.parametrize(("trail", "joins"), [([-1.5, 0.0, 1.5], True), ([-0.4, -0.2, 0.0], False)])
 def test_nothing_is_drawn_between_samples_a_radian_apart_or_when_steps_are_long(trail, joins):
     found = lanes(43, 22, 1, math.pi, rigid=True)
@@ -88,32 +71,6 @@ def test_nothing_is_drawn_between_samples_a_radian_apart_or_when_steps_are_long(
         x, y = found.point(found.radii[0], theta)
         near = {(i, j) for i, j in drawn if math.hypot(i + 0.5 - x, j + 0.5 - y) < 2}
         assert bool(near) == (theta in trail)
-
-
-def test_the_exact_pendulum_is_a_dotted_ray_under_all_others():
-    assert EXACT in {ink for _, ink in cells(picture(43, 22, 1.0, exact=0.5)).values()}
-    plain = picture(43, 22, 0.5)
-    covered = picture(43, 22, 0.5, exact=0.5)
-    assert not places(plain, EXACT)
-    for ink in (0, faint(0)):
-        assert places(covered, ink) == places(plain, ink)
-
-
-def test_a_ghost_is_a_hollow_bob_in_the_same_lane_and_a_diverged_one_is_crossed_out():
-    ghost = stage_picture(43, 22, [Bob(1.0, 0, "e", ghost=-1.0)], Look())
-    assert min(column for column, _ in places(ghost, faint(0))) < 21
-    assert max(column for column, _ in places(ghost, 0)) > 21
-    crossed = stage_picture(43, 22, [Bob(1.0, 0, "e", diverged=True)], Look())
-    assert len(dots(crossed)) < len(dots(picture(43, 22, 1.0)))
-
-
-def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
-    def lowest(length):
-        drawn = stage_picture(40, 20, [Bob(0.0, 2, "v", length=length)], Look(rigid=False))
-        return max(row for row, _ in cells(drawn))
-
-    assert lowest(0.5) < lowest(0.9) < lowest(1.08)
-    assert lowest(1e300) <= 20
 
 
 @given(st.floats(-100, 100), st.floats(1e-6, 0.3), st.integers(2, 8))

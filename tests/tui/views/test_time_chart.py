@@ -1,7 +1,5 @@
 """The chart: its title, how it answers to the mouse, and that it depends on the run alone."""
 
-from itertools import product
-
 import pytest
 from textual.events import MouseScrollDown, MouseScrollUp
 
@@ -9,26 +7,12 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.shown import WINDOWS, Shown, Stretch, quantities
-from pendu_tui.tui.views.lab import TimeChart, title
+from pendu_tui.tui.playback.shown import Shown, Stretch
+from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import lab
 from tests.tui.playback.test_history import run
 
 WHOLE = SCENES["drift"]
-
-
-@pytest.mark.parametrize("name", ["drift", "spin", "damped", "stiff-slow"])
-def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narrowest_chart(name):
-    scene = SCENES[name]
-    exact, model = scene.exact(), scene.equations
-    ratios = ("dE/E0", "ln(E/E_true)", "shadow", "1 at", "probability")
-    units = {"theta_error": ["[rad]"], "energy": ["[1/s²]"]}
-    cycles = {"libration": "per half swing", "rotation": "per turn"}
-    for quantity, log, seconds in product(quantities(scene), (True, False), WINDOWS):
-        text = title(Shown(quantity=quantity, log=log, seconds=seconds), exact, model)
-        assert len(text) + 6 <= 52  # pendulums have 28 of 80 columns; corners, lines, spaces
-        assert (cycles.get(exact.regime, "?") in text) == bool(log and exact.period)
-        assert any(unit in text for unit in units.get(quantity, ratios))
 
 
 def chart(seconds=100.0, shown=None, **options):

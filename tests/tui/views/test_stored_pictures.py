@@ -1,0 +1,111 @@
+"""Panes as they look: dots, letters and inks, the table at several widths, and titles."""
+
+import math
+from itertools import product
+
+import numpy as np
+
+from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
+from pendu_tui.engine.models.model import State
+from pendu_tui.engine.scenes import SCENES, Line
+from pendu_tui.engine.studies.ring import Neighbours
+from pendu_tui.engine.studies.section import iterate
+from pendu_tui.tui.drawing.picture import NOBODY, PALETTES, Picture
+from pendu_tui.tui.playback.shown import Shown, Stretch, quantities
+from pendu_tui.tui.views.error_table import table
+from pendu_tui.tui.views.lab import places, title
+from pendu_tui.tui.views.portrait import (
+    Portrait,
+    Section,
+    caption,
+    framed,
+    method_points,
+    orbit_of,
+    phase_picture,
+    place_text,
+)
+from pendu_tui.tui.views.stability import legend
+from pendu_tui.tui.views.stage import Bob, Look, stage_picture
+from pendu_tui.tui.views.viewport import Viewport
+from tests.tui.drawn import look
+from tests.tui.harness import after
+
+DRIFT = SCENES["drift"]
+
+
+def test_stages(snapshot):
+    trail = [0.11 * nth - 1.2 for nth in range(16)]
+    bobs = [
+        Bob(0.45, 0, "e", trail=trail, ghost=-0.8),
+        Bob(-0.4, 1, "s", ahead=-1.0, trail=trail[::-1]),
+        Bob(1.3, 2, "v", diverged=True),
+        Bob(2.9, 3, "r", trail=[2.0, 2.4, 2.5, 2.9]),
+    ]
+    springs = [Bob(0.5 * nth, nth, "esvr"[nth], length=0.4 + nth) for nth in range(4)]
+    looks = Look(exact=0.2, amplitude=1.0), Look(1.35, exact=-1.0), Look(exact=0.2, rigid=False)
+    sizes = (20, 6), (43, 22), (60, 30)
+    pictures = [stage_picture(*size, bobs, each) for size, each in product(sizes, looks[:2])]
+    pictures += [stage_picture(*size, springs, looks[2]) for size in sizes[:2]]
+    pictures.append(stage_picture(30, 13, bobs[:1], Look(exact=0.5, exact_length=0.5)))
+    snapshot("stages.txt", "\n".join(map(look, pictures)))
+
+
+def test_tables_and_titles(snapshot):
+    texts = []
+    for name in ("drift", "stiff-slow", "damped"):
+        live = after(SCENES[name], 6)
+        live.change(live.stepping.next(up=True))
+        live.step(100)
+        live.change(live.stepping.toggled())
+        live.step(1)
+        for width, held in ((60, None), (80, None), (119, None), (120, 1.0), (150, None)):
+            rows = table(live, live.sample, Shown(held=held, hidden=frozenset({"rk4"})), width)
+            texts.append(look(Picture(rows)))
+        for quantity, log, room in product(quantities(live.scene), (True, False), (25, 40, 60)):
+            shown = Shown(quantity=quantity, log=log, seconds=20.0)
+            texts.append(title(shown, live.exact, live.scene.equations, room))
+        shown = Shown(stretch=Stretch(1, 2.5, 7.25, True), log_time=True)
+        texts.append(title(shown, live.exact, live.scene.equations))
+    texts += [f"{size} {places(*size)}" for size in ((60, 19), (60, 20), (99, 44), (200, 45))]
+    snapshot("tables.txt", "\n".join(texts) + "\n")
+
+
+def test_phase_space(snapshot):
+    live = after(DRIFT, 12)
+    ring = Neighbours(0.1).follow(DRIFT, 1, live.sample.step, live.changes, 1000)
+    views = (
+        (Viewport.portrait(46, 15, DRIFT), Shown(exact=True), None),
+        (Viewport.portrait(78, 17, DRIFT, 1.1, 2.0), Shown(hidden=frozenset({"rk4"})), ring),
+        (Viewport.portrait(46, 15, DRIFT, math.pi, 12.0), Shown(), None),
+    )
+    model = DRIFT.equations
+    texts = []
+    state = State(0.5, -2.0)
+    for viewport, shown, around in views:
+        portrait = Portrait.of(viewport, model)
+        points = method_points(live, live.sample, shown, around)
+        line = Line("omega", 9.0, "pi/h")
+        picture = phase_picture(portrait, points, state, state if around else None, line)
+        texts.append(look(Picture(framed(viewport, picture))))
+    short = after(DRIFT, 1)
+    points = method_points(short, short.sample, Shown(), None)
+    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    coarse = after(DRIFT.altered(h=0.2), 9)
+    points = method_points(coarse, coarse.sample, Shown(), None)
+    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    for method in (VELOCITY_VERLET, RK4):
+        section = Section(views[0][0], model, method, method.hue)
+        for theta in (0.7, 1.4, 2.1, 2.11):
+            section.add(iterate(method, model, 0.2, (np.array([theta]), np.zeros(1)), 300))
+        orbit, _ = orbit_of(method, model, 0.2, State(1.8, 0.0))
+        texts.append(look(section.picture(orbit, State(1.8, 0.0), state)))
+    for aim, width in product((None, state, State(math.pi, 1 / 3)), (80, 110, 140)):
+        texts.append("".join(text for text, _ in caption(live, aim, width)))
+    texts.append(place_text(SCENES["damped"].equations, State(-1e-3, 2.0), 80))
+    snapshot("phase.txt", "\n".join(texts) + "\n")
+
+
+def test_the_legend_of_stability(snapshot):
+    words = [piece for row in legend(300, PALETTES["light"]) for piece in row]
+    texts = [f"{text} {ink if ink == NOBODY else ink.bgcolor.name}" for text, ink in words]
+    snapshot("legend.txt", "\n".join(texts) + "\n")
