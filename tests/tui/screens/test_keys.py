@@ -6,11 +6,10 @@ from collections import Counter
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.shown import WINDOWS, quantities
 from pendu_tui.tui.screens import keys
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
 from pendu_tui.tui.screens.keys import KEYS
@@ -19,30 +18,8 @@ from pendu_tui.tui.screens.lines import StatusLine
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.lab import EventList, TimeChart
 from pendu_tui.tui.views.phase import SectionPane
-from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held
 from tests.tui.harness import lab, on_stage, uncomputed
-
-
-async def test_keys_pause_step_change_h_reverse_time_and_restart():
-    async with lab() as theatre:
-        await theatre.run(1)
-        step = theatre.source.sample.step
-        await theatre.press("space")
-        await theatre.run(1)
-        assert theatre.source.sample.step == step
-        for keys, steps in (("..,", 1), (",,,", -2)):
-            await theatre.press(*keys)
-            assert theatre.source.sample.step == step + steps
-        await theatre.press("space")
-        await theatre.run(1)
-        assert theatre.source.sample.step == step - 2 + 20
-        for key, h in (("+", 0.1), ("-", 0.05), ("-", 0.02), ("b", -0.02)):
-            await theatre.press(key)
-            assert theatre.source.stepping.h == h
-        assert "backwards" in theatre.text(StatusLine)
-        await theatre.press("r")
-        assert (theatre.source.stepping.h, theatre.source.sample.step) == (0.02, 0)
 
 
 async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_misses_its_start_by():
@@ -110,28 +87,6 @@ async def test_a_run_that_was_replaced_is_brought_back_where_it_was_and_verifies
         assert there.run == 5  # drift, the next, that again, that again, drift again
         theatre.source.close()
     assert verify(path).identical
-
-
-async def test_what_is_shown_digits_y_e_and_w():
-    async with lab() as theatre:
-        await theatre.run(1)
-        chart = theatre.stage.query_one(TimeChart)
-
-        async def titles(key, number):
-            found = set()
-            for _ in range(number):
-                await theatre.press(key)
-                found.add(chart.border_title)
-            return found
-
-        before = theatre.stage.shown, chart.border_title
-        for key, number in (("e", len(quantities(DEFAULT_SCENE))), ("w", len(WINDOWS)), ("y", 3)):
-            assert len(await titles(key, number)) == number
-            assert (theatre.stage.shown, chart.border_title) == before
-        await theatre.press("1", "5")
-        assert theatre.stage.shown.exact
-        assert "e" not in theatre.text(Stage)
-        assert "Explicit" not in theatre.text(ErrorTable)
 
 
 async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_do():

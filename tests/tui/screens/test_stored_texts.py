@@ -1,0 +1,49 @@
+"""What the lines, notices and dialogs of the lab say after each key."""
+
+import re
+
+from tests.tui.drawn import screen
+from tests.tui.harness import Theatre, lab, uncomputed
+
+KEYS = (
+    *("plus", "minus", "minus", "n", "n", "b", "b", "u", "space", "comma", "full_stop", "m", "m"),
+    *("left_square_bracket", "right_square_bracket", "less_than_sign", "greater_than_sign"),
+    *("left", "right", "home", "end", "pageup", "pagedown", "1", "5", "1", "e", "y", "y", "w", "z"),
+    *("escape", "o", "r", "f3", "x", "escape", "f4", "v", "v", "p", "S", "T", "plus", "enter"),
+    *("enter", "backspace", "1", "enter", "escape", "u", "i", "9", "escape", "M", "space", "down"),
+    *("space", "escape", "question_mark", "escape", "d", "escape", "E", "escape", "ctrl+p"),
+    *("escape", "P", "escape", "f"),
+)
+
+
+def words(theatre: Theatre) -> list[str]:
+    """The lines, or the first rows of a dialog; a list of all methods or scenes may grow."""
+    app = theatre.app
+    lines = theatre.stage.query("StatusLine, SeekBar, LessonPanel, InsightLine, KeyLine")
+    texts = [each.text for each in lines if each.is_on_screen]
+    if box := next(iter(app.screen.query("#form, #cast, #finder, #text")), None):
+        x, y, width, height = box.region
+        rows = ["".join(cell for cell, _ in row[x : x + width]) for row in screen(app)]
+        texts = [*rows[y : y + min(height - 1, 9)], rows[y + height - 1]]
+    shown = theatre.stage.shown._asdict() | {"hidden": sorted(theatre.stage.shown.hidden)}
+    texts.append(f"{theatre.stage.view}: {shown}")
+    texts += [f"! {each.message}" for each in app._notifications]
+    app.clear_notifications()
+    return [re.sub(r" of \d+:", " of N:", line) for text in texts for line in text.splitlines()]
+
+
+async def test_a_walk_over_the_keys(snapshot, monkeypatch, tmp_path):
+    """After each key the lines that it has changed."""
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
+    texts: list[str] = []
+    before: list[str] = []
+    async with lab(size=(110, 34)) as theatre:
+        await theatre.run(2)
+        for key in KEYS:
+            await theatre.press(key)
+            await theatre.run(0.1)
+            now = words(theatre)
+            texts += ["", f"[{key}]", *(line for line in now if line not in before)]
+            before = now
+    snapshot("walk.txt", "\n".join(texts).replace(str(tmp_path), "FOLDER") + "\n")
