@@ -6,7 +6,6 @@ python tests/bench/film.py
 import asyncio
 import re
 import sys
-from collections.abc import AsyncIterator
 from pathlib import Path
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
@@ -14,7 +13,7 @@ from pendu_tui.tui.commands.lab import still
 from pendu_tui.tui.screens.app import normalised
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held
-from tests.tui.harness import Theatre, lab
+from tests.tui.harness import lab
 
 FOLDER = Path(__file__).parent.parent.parent / ".github"
 TARGET = FOLDER / "lab.svg"
@@ -47,30 +46,26 @@ def main() -> int:
 
 
 async def shot() -> list[str]:
+    """Return pictures of a run, of the bobs in the hand, and of the run after the throw."""
+    pictures = []
     async with lab(size=SIZE) as theatre:
-        return [picture async for picture in frames_of(theatre)]
+        stage = theatre.stage.query_one(Stage)
 
+        async def take(seconds: float) -> None:
+            await theatre.run(seconds)
+            pictures.append(normalised(theatre.app.export_screenshot()))
 
-async def frames_of(theatre: Theatre) -> AsyncIterator[str]:
-    """Yield pictures of a run, of the bobs in the hand, and of the run after the throw."""
-    stage = theatre.stage.query_one(Stage)
-
-    def picture() -> str:
-        return normalised(theatre.app.export_screenshot())
-
-    for _ in range(BEFORE):
-        await theatre.run(SECONDS_PER_FRAME)
-        yield picture()
-    for theta in HELD:
-        stage.post_message(Held(theta))
+        for _ in range(BEFORE):
+            await take(SECONDS_PER_FRAME)
+        for theta in HELD:
+            stage.post_message(Held(theta))
+            await take(0.0)
+        stage.post_message(Held(None))
+        stage.start_at(HELD[-1], OMEGA)
         await theatre.pilot.pause()
-        yield picture()
-    stage.post_message(Held(None))
-    stage.start_at(HELD[-1], OMEGA)
-    await theatre.pilot.pause()
-    for _ in range(AFTER):
-        await theatre.run(SECONDS_PER_FRAME)
-        yield picture()
+        for _ in range(AFTER):
+            await take(SECONDS_PER_FRAME)
+    return pictures
 
 
 def film_of(frames: list[str]) -> str:

@@ -28,7 +28,7 @@ class Series(NamedTuple):
 
     kind: str
     energies: Any
-    truth: set[str]
+    truth: set[str] = BOUNDED
     sigmas: float = CLEAR  # the effect, in standard deviations of what could be mistaken for it
     independent: float = CLEAR  # samples
 
@@ -74,24 +74,29 @@ class Maker:
         self.x = (np.arange(count) + 0.5) / count
         self.sign = int(random.choice([-1, 1]))
         self.way = {"grows" if self.sign > 0 else "loses"}
-        self.back = {"grows", "loses"} - self.way
+        self.fast = min(60, count / 3)  # cycles, of a wave that bins resolve
 
     def between(self, low: float, high: float) -> float:
         """Return a random number, with a uniform logarithm."""
         return math.exp(self.random.uniform(math.log(low), math.log(high)))
 
+    def size(self, low: float, high: float) -> float:
+        """Return a random number with the sign of the effect."""
+        return self.sign * self.between(low, high)
+
     def seen(self, low: float, high: float) -> float:
-        """Return a size, with its sign, that few samples do not hide."""
-        return self.sign * self.between(low, high) * max(1.0, math.sqrt(200 / self.count))
+        """Return a size that few samples do not hide."""
+        return self.size(low, high) * max(1.0, math.sqrt(200 / self.count))
 
-    def drift(self, low: float, high: float) -> Any:
-        return self.sign * self.between(low, high) * self.x
+    def white(self, size: float = 1.0) -> Any:
+        return size * self.random.standard_normal(self.count)
 
-    def white(self) -> Any:
-        return self.random.standard_normal(self.count)
+    def chance(self, share: float) -> Any:
+        return self.random.uniform(size=self.count) < share
 
-    def wave(self, cycles: float) -> Any:
-        return np.sin(math.tau * (cycles * self.x + self.random.uniform()))
+    def wave(self, least: float, most: float) -> Any:
+        """Return a wave of so many cycles at least and at most."""
+        return np.sin(math.tau * (self.between(least, most) * self.x + self.random.uniform()))
 
     def relaxed(self, rate: float) -> Any:
         return -np.expm1(-rate * self.x)
@@ -109,165 +114,148 @@ Kinds = Iterator[tuple[Any, ...]]
 """The fields of each Series."""
 
 
-def levels(make: Maker) -> Kinds:
-    yield "white", make.white(), BOUNDED, CLEAR, make.count
-    for times in (200, 100, 50, 20, 10, 5):
-        noise = correlated(make.count, times, make.random)
-        yield f"correlated T/{times}", noise, BOUNDED, CLEAR, times / 2
-    yield "constant", 0 * make.x, BOUNDED
-    rare = make.random.uniform(size=make.count) < 0.01
-    yield "spikes", make.white() + rare * make.random.exponential(30, make.count), BOUNDED
-    yield "Student-2", make.random.standard_t(2, make.count), BOUNDED
+def noises(make: Maker) -> Kinds:
+    count = make.count
+    random = make.random
+    yield "white", make.white()
+    yield "constant", 0 * make.x
+    yield "spikes", make.white() + make.chance(0.01) * random.exponential(30, count)
+    yield "Student-2", random.standard_t(2, count)
+    yield "Student-1.5", random.standard_t(1.5, count)
+    yield "Laplace", random.laplace(size=count)
+    yield "lognormal", random.lognormal(size=count)
+    for digit in (0.3, 1, 3):
+        yield f"digits of {digit} sd", np.round(make.white() / digit) * digit
+    yield "hardly a digit", np.round(make.white(0.2) + random.uniform())
+    gap = np.abs(make.x - random.uniform(0.3, 0.7)) > 0.1
+    yield "a gap", np.where(gap, make.white(), math.nan)
+    switches = np.cumsum(make.chance(50 / count)) % 2
+    yield "random switch", switches + make.white(0.1), BOUNDED, CLEAR, 50
     yield "walk", np.cumsum(make.white()), set(), 0
-    walk = np.cumsum(make.white()) / math.sqrt(make.count)
-    yield "walk and white", walk + make.between(0.02, 0.3) * make.white(), set(), 0
-    yield "few", make.white()[: make.random.integers(10, 64)], set(), 0
+    walk = np.cumsum(make.white()) / math.sqrt(count)
+    yield "walk and white", walk + make.white(make.between(0.02, 0.3)), set(), 0
+    yield "rare kicks", np.cumsum(make.chance(0.3) * make.white()), set(), 0
+    yield "few", make.white()[: random.integers(10, 64)], set(), 0
 
 
 def drifts(make: Maker) -> Kinds:
+    """Yield noise with and without a drift of so many standard deviations of its slope."""
     for times in (200, 100, 50, 20, 10, 5):
-        sigmas = make.between(5, 30)
-        drift = make.sign * sigmas * math.sqrt(24 / times) * make.x
         noise = correlated(make.count, times, make.random)
-        yield f"drift, correlated T/{times}", noise + drift, make.way, sigmas, times / 2
-    for low, high in ((5, 10), (10, 300)):
-        sigmas = make.between(low, high)
-        drifting = make.white() + make.sign * sigmas * math.sqrt(12 / make.count) * make.x
-        yield f"drift {low} to {high} sigma", drifting, make.way, sigmas, make.count
+        yield f"correlated T/{times}", noise, BOUNDED, CLEAR, times / 2
+        sigmas = make.size(5, 30)
+        drift = sigmas * math.sqrt(24 / times) * make.x
+        yield f"drift, correlated T/{times}", noise + drift, make.way, abs(sigmas), times / 2
     noise = correlated(make.count, 20, make.random)
     yield "drift 10 sd, correlated T/20", noise + 10 * make.sign * make.x, make.way, 9, 10
-
-
-def waves(make: Maker) -> Kinds:
-    most = min(60, make.count / 3)
-    noise = 0.01 * make.white()
-    yield "sine", make.wave(make.between(4.5, most)) + noise, BOUNDED
-    yield "slow sine", make.wave(make.between(1, 4)) + noise, BOUNDED, 0
-    two = make.wave(make.between(5, most)) + 0.4 * make.wave(make.between(5, make.count / 3))
-    yield "two sines", two, BOUNDED
-    drift = make.sign * make.x
-    slow = make.wave(make.between(2.5, 7.7))
-    yield "slow sine, drift of 3 amplitudes", slow + noise + 3 * drift, make.way
-    fast = make.wave(make.between(8, most))
-    yield "sine, drift of 1 amplitude", fast + 10 * noise + drift, make.way
-    yield "widening", make.x * np.sin(math.tau * make.between(40, 400) * make.x), set(), 0
-
-
-def changes(make: Maker) -> Kinds:
-    size = make.sign * make.between(5, 100)
-    step = make.x > make.random.uniform(0.15, 0.85)
-    yield "step of 5 to 100 sd", make.white() + size * step, make.way
-    size = make.sign * make.between(1, 5)
-    step = make.x > make.random.uniform(0.3, 0.7)
-    yield "step of 1 to 5 sd", make.white() + size * step, make.way, 0
-    size = make.seen(3, 100)
-    for rate, part in ((2, 1.5), (3, 1.5), (8, 1), (15, 1)):
-        yield f"relaxation T/{rate}", make.white() + part * size * make.relaxed(rate), make.way
-    truth = make.way if abs(size) > 3 * math.e**2 else BOUNDED | make.way  # a blip at first
-    yield "relaxation T/100", make.white() + size * make.relaxed(100), truth
-    curve = size * np.log1p(make.x * make.between(3, 300)) / 3
-    yield "logarithmic growth", make.white() + curve, make.way
-    curve = make.sign * np.expm1(make.between(4, 20) * make.x)
-    yield "exponential growth", 0.01 * (make.white() + curve), make.way
-    start = make.white()
-    few = make.random.integers(1, max(2, make.count // 60))
-    start[:few] += make.sign * make.between(8, 300)
-    yield "short start", start, BOUNDED | make.back
-
-
-def digits(make: Maker) -> Kinds:
-    for digit in (0.3, 1, 3):
-        yield f"digits of {digit} sd", np.round(make.white() / digit) * digit, BOUNDED
-    yield "hardly a digit", np.round(0.2 * make.white() + make.random.uniform()), BOUNDED
-    drift = make.drift(4, 30) + make.random.uniform()
-    noise = make.between(0.01, 0.5) * make.white()
-    yield "drift of 4 to 30 digits", np.round(drift + noise), make.way
-
-
-def colours(make: Maker) -> Kinds:
-    """Yield what the judge does not model: other noises and waves."""
     for times in (200, 20):
         noise, at_zero = oscillating(make.count, times, make.random)
         yield f"AR(2) T/{times}", noise, BOUNDED, CLEAR, times / 2
-        drift = make.sign * 5 * math.sqrt(12 * at_zero / make.count) * make.x
+        drift = 5 * make.sign * math.sqrt(12 * at_zero / make.count) * make.x
         yield f"AR(2) T/{times}, drift of 5 sigma", noise + drift, make.way, 5, times / 2
-    most = min(60, make.count / 3)
-    sines = sum(make.between(0.2, 1) * make.wave(make.between(5, most)) for _ in range(4))
-    yield "four sines", sines, BOUNDED
-    cycles = make.between(5, most) * make.x + make.random.uniform()
-    yield "sawtooth", cycles % 1, BOUNDED
-    yield "square wave", np.floor(2 * cycles) % 2 + 0.0, BOUNDED
-    switches = np.cumsum(make.random.uniform(size=make.count) < 50 / make.count) % 2
-    yield "random switch", switches + 0.1 * make.white(), BOUNDED, CLEAR, 50
-    yield "Laplace", make.random.laplace(size=make.count), BOUNDED
-    yield "lognormal", make.random.lognormal(size=make.count), BOUNDED
-    yield "Student-1.5", make.random.standard_t(1.5, make.count), BOUNDED
+    for low, high in ((5, 10), (10, 300)):
+        sigmas = make.size(low, high)
+        drifting = make.white() + sigmas * math.sqrt(12 / make.count) * make.x
+        yield f"drift {low} to {high} sigma", drifting, make.way, abs(sigmas)
+    yield "a line alone", make.sign * make.x, make.way
+    drift = make.size(4, 30) * make.x + make.random.uniform()
+    noise = make.white(make.between(0.01, 0.5))
+    yield "drift of 4 to 30 digits", np.round(drift + noise), make.way
 
 
-def two_rates_and_roundings(make: Maker) -> Kinds:
+def waves(make: Maker) -> Kinds:
+    fast = make.fast
+    yield "sine", make.wave(4.5, fast) + make.white(0.01)
+    yield "slow sine", make.wave(1, 4) + make.white(0.01), BOUNDED, 0
+    yield "two sines", make.wave(5, fast) + 0.4 * make.wave(5, make.count / 3)
+    yield "four sines", sum(make.between(0.2, 1) * make.wave(5, fast) for _ in range(4))
+    cycles = make.between(5, fast) * make.x + make.random.uniform()
+    yield "sawtooth", cycles % 1
+    yield "square wave", np.floor(2 * cycles) % 2 + 0.0
+    drift = make.sign * make.x
+    slow = make.wave(2.5, 7.7) + make.white(0.01)
+    yield "slow sine, drift of 3 amplitudes", slow + 3 * drift, make.way
+    noise = make.white(0.1)
+    yield "sine, drift of 1 amplitude", make.wave(8, fast) + noise + drift, make.way
+    yield "widening", make.x * np.sin(math.tau * make.between(40, 400) * make.x), set(), 0
+
+
+def narrow_bands(make: Maker) -> Kinds:
+    """Yield oscillations that equal blocks alias, and slow ones."""
+    most = min(400.0, make.count / 2.5)
+    least = min(20, most / 2)
+    yield "fast sine", make.wave(least, most)
+    half = min(64, make.count // 4 * 2) // 2  # of the blocks
+    near = half * int(make.random.integers(1, 7)) + make.random.normal(0, 0.3)
+    near = min(near, half * (most // half))
+    yield "sine near a multiple of 32 cycles", make.wave(near, near)
+    yield "the same with noise", make.wave(near, near) + make.white(0.1)
+    yield "Kepler", make.kepler(make.between(least, most))
+    yield "Kepler with 32k orbits", make.kepler(round(near))
+    secular = 0.05 * make.wave(0.2, 1.5)
+    yield "a slow wave of 5 % of the band", make.wave(least, most) + secular
+    drift = make.size(0.02, 0.2)
+    truth = BOUNDED | make.way if abs(drift) > 0.1 else BOUNDED
+    yield "immaterial trend", make.wave(least, most) + drift * make.x, truth
+    drift = make.size(1, 30) * make.x
+    yield "fast sine, drift of 1 to 30 amplitudes", make.wave(least, most) + drift, make.way
+
+
+def changes(make: Maker) -> Kinds:
+    x = make.x
+    way = make.way
+    uniform = make.random.uniform
+    step = make.size(5, 100) * (x > uniform(0.15, 0.85))
+    yield "step of 5 to 100 sd", make.white() + step, way
+    step = make.size(1, 5) * (x > uniform(0.3, 0.7))
+    yield "step of 1 to 5 sd", make.white() + step, way, 0
+    stairs = sum(x > uniform() for _ in range(make.random.integers(4, 20)))
+    yield "stairs", make.white(0.2) + make.sign * stairs, way, 0
+    curve = make.seen(3, 100) * np.log1p(x * make.between(3, 300)) / 3
+    yield "logarithmic growth", make.white() + curve, way
+    curve = make.sign * np.expm1(make.between(4, 20) * x)
+    yield "exponential growth", 0.01 * (make.white() + curve), way
+    begin = uniform(0.3, 0.9)
+    late = make.seen(3, 100) * np.clip((x - begin) / (1 - begin), 0, 1)
+    yield "late drift", make.white() + late, way, 0
+    end = x > 1 - make.between(0.02, 0.12)
+    yield "dead end", make.white() + make.size(5, 50) * end, way, 0
+    few = make.random.integers(1, max(2, make.count // 60))
+    start = make.size(8, 300) * (x < few / make.count)
+    yield "short start", make.white() + start, BOUNDED | {"grows", "loses"} - way
+    last = make.size(10, 1000) * (x == x[-1])
+    yield "wrong last value", make.white() + last, BOUNDED, 0
+
+
+def relaxations(make: Maker) -> Kinds:
+    size = make.seen(3, 100)
+    for rate, part in ((2, 1.5), (3, 1.5), (8, 1), (15, 1)):
+        rise = part * size * make.relaxed(rate)
+        yield f"relaxation T/{rate}", make.white() + rise, make.way
+    rises = ("relaxation T/100", 100, CLEAR), ("rise at the start", make.between(30, 200), 0)
+    for name, rate, sigmas in rises:
+        rise = make.seen(3, 100) * make.relaxed(rate)
+        truth = make.way if abs(rise[-1] - rise[make.count // 50]) > 3 else BOUNDED | make.way
+        yield name, make.white() + rise, truth, sigmas
     size = make.seen(10, 100)
     fast = make.relaxed(make.between(30, 100))
     caught = size * (fast + make.relaxed(make.between(8, 15)))
     yield "two relaxations, over", make.white() + caught, make.way
     moving = size * (fast + 1.5 * make.relaxed(make.between(1, 2.5)))
     yield "two relaxations, one goes on", make.white() + moving, make.way
+    cooling = make.between(20, 300) * np.exp(-make.between(8, 60) * make.x)
+    yield "cooling to a floor", make.white(0.2) + cooling, {"loses"}, 0
+
+
+def roundings(make: Maker) -> Kinds:
     near = 2.0 ** make.random.integers(10, 16) * 1.1
     rounding = float(np.spacing(np.float32(near)))
-    drift = make.sign * make.between(5, 30) * rounding * make.x
+    drift = make.size(5, 30) * rounding * make.x
     yield "float32, drift of 5 to 30 roundings", single(near + drift), make.way
-    noise = make.between(0.3, 10) * rounding * make.white()
-    yield "float32 noise", single(near + noise), BOUNDED
-    yield "a line alone", make.sign * make.x, make.way
-    gap = np.abs(make.x - make.random.uniform(0.3, 0.7)) > 0.1
-    yield "a gap", np.where(gap, make.white(), math.nan), BOUNDED
+    yield "float32 noise", single(near + make.white(make.between(0.3, 10) * rounding))
 
 
-def narrow_bands(make: Maker) -> Kinds:
-    """Yield oscillations that equal blocks alias, and slow ones."""
-    most = min(400.0, make.count / 2.5)
-    fast = make.between(min(20, most / 2), most)
-    yield "fast sine", make.wave(fast), BOUNDED
-    half = min(64, make.count // 4 * 2) // 2  # of the blocks
-    near = half * int(make.random.integers(1, 7)) + make.random.normal(0, 0.3)
-    near = min(near, half * (most // half))
-    yield "sine near a multiple of 32 cycles", make.wave(near), BOUNDED
-    yield "the same with noise", make.wave(near) + 0.1 * make.white(), BOUNDED
-    yield "Kepler", make.kepler(fast), BOUNDED
-    yield "Kepler with 32k orbits", make.kepler(round(near)), BOUNDED
-    secular = 0.05 * make.wave(make.between(0.2, 1.5))
-    yield "a slow wave of 5 % of the band", make.wave(fast) + secular, BOUNDED
-    drift = make.drift(0.02, 0.2)
-    truth = BOUNDED | make.way if abs(drift[-1]) > 0.1 else BOUNDED
-    yield "immaterial trend", make.wave(fast) + drift, truth
-    drift = make.drift(1, 30)
-    yield "fast sine, drift of 1 to 30 amplitudes", make.wave(fast) + drift, make.way
-
-
-def late_and_early(make: Maker) -> Kinds:
-    size = make.seen(3, 100)
-    rise = size * make.relaxed(make.between(30, 200))
-    truth = make.way if abs(rise[-1] - rise[make.count // 50]) > 3 else BOUNDED | make.way
-    yield "rise at the start", make.white() + rise, truth, 0
-    begin = make.random.uniform(0.3, 0.9)
-    late = size * np.clip((make.x - begin) / (1 - begin), 0, 1)
-    yield "late drift", make.white() + late, make.way, 0
-    stairs = sum(make.x > make.random.uniform() for _ in range(make.random.integers(4, 20)))
-    yield "stairs", 0.2 * make.white() + make.sign * stairs, make.way, 0
-    kicks = make.random.uniform(0, 1, make.count) < 0.3
-    yield "rare kicks", np.cumsum(kicks * make.white()), set(), 0
-    cooling = make.between(20, 300) * np.exp(-make.between(8, 60) * make.x)
-    yield "cooling to a floor", 1 + 0.2 * make.white() + cooling, {"loses"}, 0
-    end = make.x > 1 - make.between(0.02, 0.12)
-    yield "dead end", make.white() + make.sign * make.between(5, 50) * end, make.way, 0
-    last = make.white()
-    last[-1] += make.sign * make.between(10, 1000)
-    yield "wrong last value", last, BOUNDED, 0
-
-
-GROUPS = (
-    *(levels, drifts, waves, changes, digits, colours),
-    *(two_rates_and_roundings, narrow_bands, late_and_early),
-)
+GROUPS = (noises, drifts, waves, narrow_bands, changes, relaxations, roundings)
 
 
 def all_series(share: float, seed: int = SEED) -> Iterator[tuple[Series, Any, Any]]:

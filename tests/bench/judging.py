@@ -3,15 +3,15 @@
 import math
 import subprocess
 import time
-from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from pendu_tui.engine.methods import GENERAL, Method
+from pendu_tui.engine.methods import GENERAL, Cast, Method
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.record import judge_record
@@ -38,8 +38,7 @@ def truth_table(share: float) -> dict[str, Any]:
     wrong = []
     waits = []
     undecided = 0
-    cells = list(truths())[:: round(1 / share)]
-    for method, start, z, truth in cells:
+    for method, start, z, truth in list(truths())[:: round(1 / share)]:
         scene = scene_at(start, z)
         course = verdicts(method, scene, compiled, watch(scene))
         if not course:
@@ -49,30 +48,31 @@ def truth_table(share: float) -> dict[str, Any]:
         elif z <= 0.9:
             waits.append(course[0][2])
     return {
-        "cells": len(cells),
         "wrong": len(wrong),
         "wrong_cells": wrong,
         "undecided": undecided,
         "median_wait": float(np.median(waits)),
-        "longest_waits": float(np.percentile(waits, 99)),
     }
 
 
-def runs(share: float, seed: int = SEED) -> dict[str, Any]:
+def random_scene(random: np.random.Generator, max_z: float, cast: Cast) -> Scene:
+    theta = float(random.uniform(0.05, 3.1))
+    z = float(np.exp(random.uniform(math.log(0.01), math.log(max_z))))
+    return Scene(theta=theta, h=z / Scene().w0, cast=cast)
+
+
+def runs(share: float) -> dict[str, Any]:
     """Return what becomes of random runs of methods that are not symplectic, at five lengths."""
     from tests.bench.truths import letter  # Numba
 
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(SEED)
     cast = [method for method in GENERAL if not method.symplectic]
     wrong = []
-    verdicts: Counter[str] = Counter()
     leaving = 0
     for number in range(round(400 * share)):
         method = cast[number % len(cast)]
-        theta = float(random.uniform(0.05, 3.1))
         spins = float(random.uniform() < 0.2) * float(random.uniform(7, 30))
-        z = float(np.exp(random.uniform(math.log(0.01), math.log(2.5))))
-        scene = Scene(theta=theta, omega=spins, h=z / Scene().w0, cast=(method,))
+        scene = replace(random_scene(random, 2.5, (method,)), omega=spins)
         truth = letter(method, scene)
         allowed = {"undecided", "failed"}.union(*ALLOWED[truth])
         if truth in "gdkw":
@@ -82,26 +82,23 @@ def runs(share: float, seed: int = SEED) -> dict[str, Any]:
         for steps in LENGTHS:
             lockstep.advance(steps - lockstep.step)
             verdict = lockstep.judgements[0].verdict
-            verdicts[verdict] += 1
             if verdict not in allowed:
-                wrong.append((method.key, theta, spins, z, truth, steps, verdict))
-    return {"wrong_runs": len(wrong), "which": wrong, "leaving": leaving, "verdicts": verdicts}
+                wrong.append((method.key, scene.numbers, truth, steps, verdict))
+    return {"wrong_runs": len(wrong), "which": wrong, "leaving": leaving}
 
 
 def contradictions(share: float) -> Iterator[tuple[Any, ...]]:
     """Yield where the judgements of a run and of its energies alone exclude each other."""
     random = np.random.default_rng(SEED)
+    methods = np.array(GENERAL, dtype=object)
     scenes = list(SCENES.values())
     for _ in range(round(200 * share)):
-        theta = float(random.uniform(0.05, 3.1))
-        z = float(np.exp(random.uniform(math.log(0.01), math.log(2.0))))
-        cast = tuple(random.choice(np.array(GENERAL, dtype=object), 3, replace=False))
-        scenes.append(Scene(theta=theta, h=z / Scene().w0, cast=cast))
+        scenes.append(random_scene(random, 2.0, tuple(random.choice(methods, 3, replace=False))))
     for scene in scenes:
         for method, of_run, alone in judgements(scene, SECONDS):
             if exclude(of_run, alone):
                 words = (of_run.verdict, alone.verdict, of_run.slope, alone.bound)
-                yield scene.name, scene.theta, scene.z, method.key, *words
+                yield scene.name, scene.numbers, method.key, *words
 
 
 def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement, Judgement]]:

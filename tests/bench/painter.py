@@ -34,25 +34,19 @@ class Pane(NamedTuple):
 
 async def film(size: tuple[int, int]) -> list[Pane]:
     """Film the lab."""
-    from pendu_tui.engine.scenes import DEFAULT_SCENE
-    from pendu_tui.tui.commands.lab import settled
-    from pendu_tui.tui.playback.live import Live
-    from pendu_tui.tui.screens.app import PenduApp
-    from pendu_tui.tui.screens.lab import LabScreen
+    from pendu_tui.engine.scenes import DEFAULT_SCENE  # an empty app starts without them
+    from tests.tui.harness import lab
 
-    now = 0.0
     panes: dict[Widget, Pane] = {}
-    stage = LabScreen(Live(DEFAULT_SCENE.altered(h=H), clock=lambda: 0.0), clock=lambda: now)
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.pause()
+    async with lab(DEFAULT_SCENE.altered(h=H), size) as theatre:
+        stage = theatre.stage
         stage.frame_timer.stop()
         for frame in range(1, (BEGIN + SECONDS) * FPS):
-            now = frame / FPS
+            theatre.now = frame / FPS
             stage.frame()
-            await pilot.pause(0)
-            await settled(app)
-            if now < BEGIN:
+            await theatre.pilot.pause(0)
+            await theatre.settled()
+            if theatre.now < BEGIN:
                 continue
             for widget in stage.walk_children(Widget):
                 if not widget.children and widget.is_on_screen and widget.region:
@@ -87,26 +81,20 @@ class Painting(Widget):
 
 
 class Painter(App[None]):
-    """Shows the film forwards and backwards; r rewinds it, + and - change a word as in the lab."""
+    """Shows the film again and again; r rewinds it."""
 
     ALLOW_SELECT = False
-    CSS = "Screen { overflow: hidden; } #word { dock: bottom; height: 1; width: 10; }"
-    BINDINGS: ClassVar[Any] = [
-        *(("+", "word('h 0.02 s')"), ("-", "word('h 0.01 s')")),
-        *(("r", "rewind"), ("q", "quit")),
-    ]
+    CSS = "Screen { overflow: hidden; }"
+    BINDINGS: ClassVar[Any] = [("r", "rewind"), ("q", "quit")]
 
     def __init__(self, panes: list[Pane]) -> None:
         super().__init__()
         self._paintings = [Painting(pane) for pane in panes]
-        forwards = list(range(len(panes[0].frames)))
-        backwards = forwards[::-1]
-        self._order = forwards + backwards[1:-1]
+        self._frames = len(panes[0].frames)
         self._shown = 0
 
     def compose(self) -> ComposeResult:
         yield from self._paintings
-        yield Static("", id="word")
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)  # as the lab does
@@ -117,15 +105,12 @@ class Painter(App[None]):
         self.set_interval(1 / FPS, self._next)
 
     def _next(self) -> None:
-        self._shown = (self._shown + 1) % len(self._order)
+        self._shown = (self._shown + 1) % self._frames
         for painting in self._paintings:
-            painting.show(self._order[self._shown])
+            painting.show(self._shown)
 
     def action_rewind(self) -> None:
         self._shown = -1
-
-    def action_word(self, word: str) -> None:
-        self.query_one("#word", Static).update(word)
 
 
 class Empty(App[None]):

@@ -22,7 +22,10 @@ from pendu_tui.engine.methods import GENERAL, TAYLOR_20
 from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.scenes import Scene
 
-LIMITS = {"targets_behind": 0}
+LIMITS = {"largest_ratio": 1.0}  # of our first to that of the others, at a target
+OURS = [
+    method for method in (*GENERAL, TAYLOR_20) if method.order > 1 and not method.varies
+]  # order 1 takes too long
 SCENE = Scene(theta=2.0)
 W0_SQUARED = SCENE.w0_squared
 START = (SCENE.theta, SCENE.omega)
@@ -40,23 +43,25 @@ ENOUGH = 0.5  # s spent on a solver, after which it is left out
 IN_A_ROW = 3  # runs in each turn, as the first one finds the caches of another solver
 
 Run = Callable[[], Any]
+"""To the end."""
 
 
 class Solver(NamedTuple):
-    """A solver with functions of a setting."""
+    """A solver, and how to prepare a run with a setting and its largest error of theta [rad]."""
 
     name: str
-    to_the_end: Callable[[Any], Run]
-    error: Callable[[Any], float]  # rad, the largest in theta at some 400 times
+    prepare: Callable[[Any], tuple[Run, Callable[[], float]]]
     settings: Sequence[float] = TOLERANCES  # from coarse to fine
 
 
-def solver(name: str, solve: Callable[[float, Any], Any], end: Any, path: Any) -> Solver:
+def solver(name: str, solve: Callable[[float, Any], Any], end: Any) -> Solver:
     """Return a solver that takes a tolerance and times, and gives theta at them."""
     return Solver(
         name,
-        lambda tolerance: partial(solve, tolerance, end),
-        lambda tolerance: largest_error(solve(tolerance, path)),
+        lambda tolerance: (
+            partial(solve, tolerance, end),
+            lambda: largest_error(solve(tolerance, TIMES)),
+        ),
     )
 
 
@@ -66,29 +71,29 @@ def largest_error(theta: Any) -> float:
 
 def closed_form_solvers() -> Iterator[Solver]:
     """The exact motion itself, in Python: the floor."""
-    yield Solver("closed form", lambda _: partial(MOTION.at, END), lambda _: 0.0, range(FINER + 1))
+    yield Solver("closed form", lambda _: (partial(MOTION.at, END), float), range(FINER + 1))
 
 
 def method_solvers() -> Iterator[Solver]:
-    """The lab's methods, compiled; order 1 takes too long."""
-    for method in (*GENERAL, TAYLOR_20):
-        if method.order == 1 or method.varies:
-            continue
+    """The lab's methods, compiled."""
+    for method in OURS:
         propagate = compiled(method, SCENE.equations).propagate
 
-        def to_the_end(steps: int, propagate: Any = propagate) -> Run:
-            return partial(propagate, START, END / steps, steps)
-
-        def error(steps: int, propagate: Any = propagate) -> float:
+        def prepare(steps: int, propagate: Any = propagate) -> tuple[Run, Callable[[], float]]:
+            h = END / steps
             stride = steps // 400 or 1
-            phase = START
-            largest = 0.0
-            for done in range(stride, steps + 1, stride):
-                phase = propagate(phase, END / steps, stride)
-                largest = max(largest, abs(phase[0] - MOTION.at(done * END / steps).theta))
-            return largest
 
-        yield Solver(method.label, to_the_end, error, STEPS)
+            def error() -> float:
+                phase = START
+                largest = 0.0
+                for done in range(stride, steps + 1, stride):
+                    phase = propagate(phase, h, stride)
+                    largest = max(largest, abs(phase[0] - MOTION.at(done * h).theta))
+                return largest
+
+            return partial(propagate, START, h, steps), error
+
+        yield Solver(method.label, prepare, STEPS)
 
 
 def scipy_solvers() -> Iterator[Solver]:
@@ -98,13 +103,12 @@ def scipy_solvers() -> Iterator[Solver]:
     def slope(t: float, y: Any) -> list[float]:
         return [y[1], -W0_SQUARED * math.sin(y[0])]
 
+    def solve(method: str, tolerance: float, times: Any) -> Any:
+        tolerances = {"rtol": max(tolerance, 3e-14), "atol": tolerance}
+        return solve_ivp(slope, (0, END), START, method, times, **tolerances).y[0]
+
     for method in ("DOP853", "LSODA"):
-
-        def solve(tolerance: float, times: Any, method: str = method) -> Any:
-            tolerances = {"rtol": max(tolerance, 3e-14), "atol": tolerance}
-            return solve_ivp(slope, (0, END), START, method, times, **tolerances).y[0]
-
-        yield solver(f"scipy {method}", solve, end=None, path=TIMES)
+        yield solver(f"scipy {method}", partial(solve, method), end=None)
 
 
 def diffrax_solvers() -> Iterator[Solver]:
@@ -116,26 +120,26 @@ def diffrax_solvers() -> Iterator[Solver]:
     def slope(t: Any, y: Any, arguments: Any) -> Any:
         return jax.numpy.stack([y[1], -W0_SQUARED * jax.numpy.sin(y[0])])
 
+    def solve(name: str, tolerance: Any, times: Any) -> Any:
+        return diffrax.diffeqsolve(
+            diffrax.ODETerm(slope),
+            getattr(diffrax, name)(),
+            t0=0.0,
+            t1=END,
+            dt0=0.01,
+            y0=jax.numpy.array(START),
+            saveat=diffrax.SaveAt(ts=times),
+            stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
+            max_steps=1_000_000,
+            throw=False,
+        ).ys[:, 0]
+
+    def finished(jitted: Any, tolerance: float, times: Any) -> Any:
+        return jitted(tolerance, times).block_until_ready()
+
     for name in ("Tsit5", "Dopri8"):
-
-        def solve(tolerance: Any, times: Any, name: str = name) -> Any:
-            return diffrax.diffeqsolve(
-                diffrax.ODETerm(slope),
-                getattr(diffrax, name)(),
-                t0=0.0,
-                t1=END,
-                dt0=0.01,
-                y0=jax.numpy.array(START),
-                saveat=diffrax.SaveAt(ts=times),
-                stepsize_controller=diffrax.PIDController(rtol=tolerance, atol=tolerance),
-                max_steps=1_000_000,
-                throw=False,
-            ).ys[:, 0]
-
-        def finished(compiled: Any, tolerance: float, times: Any) -> Any:
-            return compiled(tolerance, times).block_until_ready()
-
-        yield solver(f"diffrax {name}", partial(finished, jax.jit(solve)), GRID[-1:], TIMES)
+        jitted = jax.jit(partial(solve, name))
+        yield solver(f"diffrax {name}", partial(finished, jitted), end=TIMES[-1:])
 
 
 def heyoka_solvers() -> Iterator[Solver]:
@@ -144,25 +148,22 @@ def heyoka_solvers() -> Iterator[Solver]:
     theta, omega = heyoka.make_vars("theta", "omega")
     equations = [(theta, omega), (omega, -W0_SQUARED * heyoka.sin(theta))]
 
-    def prepared(tolerance: float, fast: bool) -> Any:
+    def prepare(fast: bool, tolerance: float) -> tuple[Run, Callable[[], float]]:
         tolerance = max(tolerance, 2.3e-16)
-        return heyoka.taylor_adaptive(equations, list(START), tol=tolerance, fast_math=fast)
+        solver = heyoka.taylor_adaptive(equations, list(START), tol=tolerance, fast_math=fast)
 
-    def to_the_end(tolerance: float, fast: bool) -> Run:
-        solver = prepared(tolerance, fast)
-
-        def run() -> None:
+        def restart() -> Any:
             solver.time = 0.0
             solver.state[:] = START
-            solver.propagate_until(END)
+            return solver
 
-        return run
+        def error() -> float:
+            return largest_error(restart().propagate_grid(GRID)[-1][:, 0])
 
-    def error(tolerance: float, fast: bool) -> float:
-        return largest_error(prepared(tolerance, fast).propagate_grid(GRID)[-1][:, 0])
+        return lambda: restart().propagate_until(END), error
 
     for name, fast in (("heyoka", False), ("heyoka, fast_math", True)):
-        yield Solver(name, partial(to_the_end, fast=fast), partial(error, fast=fast))
+        yield Solver(name, partial(prepare, fast))
 
 
 SOLVERS = {
@@ -184,8 +185,9 @@ def loosest(solver: Solver) -> Iterator[float | None]:
             if at == len(errors):
                 if at == len(solver.settings) or seconds > MAX_SECONDS:
                     break
+                _, error = solver.prepare(solver.settings[at])
                 began = time.perf_counter()
-                errors.append(solver.error(solver.settings[at]))
+                errors.append(error())
                 seconds = time.perf_counter() - began
             at += 1
             if errors[at - 1] > target:
@@ -219,21 +221,26 @@ def measure(share: float) -> dict[str, Any]:
     for package, families in SOLVERS.items():
         try:
             for solver in chain.from_iterable(family() for family in families):
-                solver.error(solver.settings[0])  # compiles
+                solver.prepare(solver.settings[0])[1]()  # compiles
                 for target, setting in zip(TARGETS, loosest(solver), strict=True):
                     if setting is not None:
-                        runs[solver.name, target] = solver.to_the_end(setting)
+                        runs[solver.name, target], _ = solver.prepare(setting)
         except (ImportError, OSError) as error:  # missing, or without the libraries it needs
             skipped[package] = str(error)
     times = shortest(runs, rounds=max(1, round(200 * share)))
     table: dict[str, dict[str, float]] = {}
     for (name, target), milliseconds in times.items():
         table.setdefault(name, {})[f"{target:g}"] = round(milliseconds, 4)
-    ours = {method.label for method in (*GENERAL, TAYLOR_20)}
-    integrated = {run: ms for run, ms in times.items() if run[0] != "closed form"}
-    first = {
-        target: min((ms, name) for (name, at), ms in integrated.items() if at == target)[1]
-        for target in TARGETS
+    ours = {method.label for method in OURS}
+    ratios = {}
+    for target in map("{:g}".format, TARGETS):
+        first = {True: math.inf, False: math.inf}
+        for name in table.keys() - {"closed form"}:
+            first[name in ours] = min(first[name in ours], table[name].get(target, math.inf))
+        ratios[target] = round(first[True] / first[False], 2)
+    return {
+        "ms": table,
+        "skipped": skipped,
+        "ratios": ratios,
+        "largest_ratio": max(ratios.values()),
     }
-    behind = [f"{target:g}: {name}" for target, name in first.items() if name not in ours]
-    return {"ms": table, "skipped": skipped, "behind": behind, "targets_behind": len(behind)}

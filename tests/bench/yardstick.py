@@ -12,7 +12,7 @@ import time
 import timeit
 from itertools import pairwise
 from pathlib import Path
-from statistics import mean, median
+from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -56,15 +56,17 @@ def drain(*programs: PtyLab, seconds: float) -> None:
             by_terminal[terminal].read(0.0)
 
 
-def watched(*programs: PtyLab) -> list[dict[str, float]]:
-    """Return the figures of each program over the same seconds."""
-    starts = [(program.cpu_seconds(), program.now, len(program.output)) for program in programs]
-    drain(*programs, seconds=painter.SECONDS)
-    return [figures(program, *start) for program, start in zip(programs, starts, strict=True)]
+Start = tuple[float, float, int]
 
 
-def figures(program: PtyLab, cpu: float, began: float, sent: int) -> dict[str, float]:
+def now(program: PtyLab) -> Start:
+    """Return the processor time [s], the time [s] and the bytes sent so far."""
+    return program.cpu_seconds(), program.now, len(program.output)
+
+
+def figures(program: PtyLab, start: Start) -> dict[str, float]:
     """Return what a program has used and sent since a start."""
+    cpu, began, sent = start
     elapsed = program.now - began
     frames = [began]
     end = 0
@@ -110,19 +112,15 @@ def beside_painter() -> dict[str, float]:
             lab.wait_for("REC 2 s")
             drain(lab, textual, seconds=painter.BEGIN - 2.0)
             textual.type("r")  # the film begins at this moment of the lab
-            of_lab, of_textual = watched(lab, textual)
+            starts = now(lab), now(textual)
+            drain(lab, textual, seconds=painter.SECONDS)
+            of_lab, of_textual = map(figures, (lab, textual), starts)
             of_lab["processor_ratio"] = of_lab["percent"] / of_textual["percent"]
             lab.run(0.5)  # reads what has piled up meanwhile
             of_lab["key_p95_ms"] = key_times(lab)[int(0.95 * KEYS)]
             end(lab)
             end(textual)
     return of_lab
-
-
-def mean_of(rounds: list[dict[str, float]]) -> dict[str, float]:
-    """Return the mean of some rounds, and the median of times, of which a few may be outliers."""
-    averages = {name: median if name.endswith("_ms") else mean for name in rounds[0]}
-    return {name: round(of(each[name] for each in rounds), 2) for name, of in averages.items()}
 
 
 def first_pendulum_ratio(starts: int) -> float:
@@ -170,8 +168,9 @@ def slow_line_key_max_ms() -> float:
 
 
 def measure(share: float) -> dict[str, Any]:
+    rounds = [beside_painter() for _ in range(max(1, round(5 * share)))]
     return {
-        **mean_of([beside_painter() for _ in range(max(1, round(5 * share)))]),
+        **{name: round(median(each[name] for each in rounds), 2) for name in rounds[0]},
         "first_pendulum_ratio": first_pendulum_ratio(max(1, round(9 * share))),
         "opening_ratio": opening_ratio(),
         "slow_line_key_max_ms": slow_line_key_max_ms(),

@@ -16,16 +16,9 @@ from tests.recordings.killed import OWN
 
 pytestmark = pytest.mark.slow
 
-KILLS = 4  # tests/bench/kill.py: 300
-
 
 def whole_lines(log):
     return log.read_text().rpartition("\n")[0].splitlines()
-
-
-def last_sample(recording):
-    sample = recording.sample(recording.at(recording.length)).value
-    return sample.run, sample.step
 
 
 def kill_one(folder, after):
@@ -46,11 +39,11 @@ def kill_one(folder, after):
     with Recording.open(part) as recording:
         assert not recording.complete
         assert not recording.damaged
-        saved = last_sample(recording)
+        last = recording.sample(recording.at(recording.length)).value
     lost_at = []  # s, when the lost samples were taken
     for line in whole_lines(log):
         when, run, step = line.split()
-        if (int(run), int(step)) > saved:
+        if (int(run), int(step)) > (last.run, last.step):
             lost_at.append(float(when))
     loss = lost_at[-1] - lost_at[0] if lost_at else 0.0
     remember(OWN)
@@ -59,11 +52,15 @@ def kill_one(folder, after):
     return loss, verify(part)
 
 
+def kill_many(folder, kills):
+    """Kill labs at random moments; return each one's loss [s] and what verify finds."""
+    folders = [folder / f"{number}" for number in range(kills)]
+    moments = [random.uniform(0.0, 2.5) for _ in folders]
+    with ThreadPoolExecutor(8) as pool:  # labs sleep most of the time
+        return list(pool.map(kill_one, folders, moments))
+
+
 def test_a_killed_lab_leaves_a_recording_that_verifies_and_lacks_less_than_a_second(tmp_path):
-    chance = random.Random()
-    moments = [chance.uniform(0.0, 2.5) for _ in range(KILLS)]
-    with ThreadPoolExecutor(KILLS) as pool:  # labs sleep most of the time
-        outcomes = list(pool.map(kill_one, (tmp_path / str(i) for i in range(KILLS)), moments))
-    for loss, verification in outcomes:
+    for loss, verification in kill_many(tmp_path, 4):
         assert loss < 1.0
         assert verification.identical
