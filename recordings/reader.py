@@ -89,6 +89,7 @@ def read_contents(stream: BinaryIO, check: bool = False) -> Contents:
     summary = _read_summary(stream, size)
     if summary is None:
         contents = _search(stream, size, {})
+        contents.reason = contents.reason or "its end is missing or damaged"
     else:
         contents, data_end, crc = summary
         if check and _checksum(stream, data_end) != crc:
@@ -242,7 +243,6 @@ def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
     start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:
         contents.damage("its first bytes are not those of an MCAP file")
-    contents.reason = contents.reason or "its end is missing or damaged"
     return contents
 
 

@@ -7,6 +7,7 @@ import zlib
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -14,7 +15,7 @@ from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.recordings import reader, recording
 from pendu_tui.recordings.events import Entry, Event, simulate
-from pendu_tui.recordings.files import RecordingError
+from pendu_tui.recordings.files import MAGIC, RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
@@ -75,11 +76,41 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
         assert is_whole(path) == passes
 
 
-def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none():
-    most = reader.MAX_RECORD - 44
-    assert reader._head_at(hostile.false_head(most), 0)
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [((1 << 22) - 44, (1 << 22) - 43), (31_078, 31_077)],  # 4 MB at once, 4 MB of a 128th
+)
+def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none(right, wrong):
+    assert reader._head_at(hostile.false_head(right), 0)
     with pytest.raises(ValueError, match=r"^$"):
-        reader._head_at(hostile.false_head(most + 1), 0)
+        reader._head_at(hostile.false_head(wrong), 0)
+
+
+@pytest.mark.parametrize(("more", "reads"), [(0, 2), (1, 1)])
+def test_a_summary_of_more_than_64_mib_is_not_read(more, reads):
+    footer = FOOTER.pack(2, 20, 1000, 0, 0, MAGIC)
+    stream = Mock(read=Mock(side_effect=[footer, b""]))
+    assert reader._read_summary(stream, 1000 + (1 << 26) + more) is None
+    assert stream.read.call_count == reads
+
+
+@pytest.mark.parametrize(
+    ("at", "cut", "reason"),
+    [
+        (-1, None, "its checksum is wrong"),
+        (0, None, "its first bytes are not those of an MCAP file"),
+        (0, -20, "its first bytes are not those of an MCAP file"),
+    ],
+)
+def test_a_change_outside_of_chunks_is_damage_where_all_is_checked(path, at, cut, reason):
+    data = bytearray(path.read_bytes()[:cut])
+    data[at and places_in(path)[1].offset + at] ^= 1
+    path.write_bytes(data)
+    with Recording.open(path) as unchecked, Recording.open(path, check=True) as checked:
+        assert unchecked.complete == (cut is None)
+        assert (checked.damaged, checked.reason) == (True, reason)
+        assert checked.samples == unchecked.samples
+    assert not verify(path).identical
 
 
 def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_limits(out):
