@@ -56,10 +56,11 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, mon
 
 
 def test_a_new_recording_has_a_free_name_with_the_time(library, monkeypatch):
-    monkeypatch.setattr(time, "strftime", lambda _: "2026-11-20T12-00-00")
+    written, noon = time.strftime, (2026, 11, 20, 12, 30, 5, 4, 324, 0)
+    monkeypatch.setattr(time, "strftime", lambda form: written(form, noon))
     library.mkdir()
     for name, taken in (("", ".mcap.part"), ("-2", ".mcap"), ("-3", ".mcap")):
-        free = library / f"2026-11-20T12-00-00{name}.mcap"
+        free = library / f"2026-11-20T12-30-05{name}.mcap"
         assert new_path() == free
         free.with_suffix(taken).touch()
 
@@ -118,7 +119,7 @@ def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
     assert str(caught.value).isprintable()
 
 
-def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
+def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypatch):
     taken = record(tmp_path / "a.mcap", two_runs())
     for path, force, why in (
         (taken, False, "--force"),
@@ -132,6 +133,9 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path):
     files.check_target(taken, force=True)
     files.check_target(tmp_path / "free.mcap", force=None)
     files.check_target(files.Path(os.devnull))
+    monkeypatch.setattr(os, "access", lambda _, mode: mode != os.W_OK | os.X_OK)
+    with pytest.raises(DiskError, match="is not writable"):
+        files.check_target(tmp_path / "free.mcap")
 
 
 @pytest.mark.parametrize("name", ["con.mcap", "LPT1.csv", "nul .svg"])
@@ -142,7 +146,14 @@ def test_a_name_that_windows_keeps_for_a_device_is_refused_there(tmp_path, monke
     files.check_target(tmp_path / "console.mcap")
 
 
-def test_an_error_of_the_disk_names_the_file_first(tmp_path):
+def test_an_error_of_the_disk_or_in_a_file_names_the_file_first(tmp_path):
     with pytest.raises(DiskError) as failed, files.writing(tmp_path):
         raise OSError(errno.ENOSPC, "No space left on device")
     assert str(failed.value) == f"{tmp_path}: No space left on device"
+    assert failed.value.errno == errno.ENOSPC
+    for text in ("it is odd", "it is odd."):
+        with (
+            pytest.raises(RecordingError, match=f"^{tmp_path}: it is odd.$"),
+            files.named(tmp_path),
+        ):
+            raise RecordingError(text)

@@ -15,7 +15,7 @@ from pendu_tui.engine.run.lockstep import Reading, Sample
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Event, fingerprint, noticed
-from pendu_tui.recordings.files import MAX_TEXT, RecordingError, printable
+from pendu_tui.recordings.files import RecordingError, printable
 from pendu_tui.recordings.format import (
     EVENT_SCHEMA,
     EXTRA,
@@ -27,6 +27,7 @@ from pendu_tui.recordings.format import (
     sample_schema,
     without_extremes,
 )
+from tests.models import EXAMPLES
 from tests.recordings.examples import SCENE, start
 
 PLAIN = Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5)
@@ -61,6 +62,7 @@ def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(data, mod
     "event",
     [
         *(start(scene=scene) for scene in SCENES.values()),
+        start(scene=SCENE.with_cast(METHODS[:6])),
         Event("set_h", 2, 2**53 - 1, 0.1, h=-5e-324, equal_cost=True),
         Event("speed", 1, 3, 0.1, speed=0.1 + 0.2),
         Event("mark", 1, 3, 0.1, text="what is this?"),
@@ -85,6 +87,7 @@ def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
     for name, declared in schema["properties"].items():
         assert declared["type"] in ("integer", "number", "string", "boolean", "array"), name
         assert not {"anyOf", "oneOf", "$ref"} & set(declared), name
+    assert schema["properties"].get("theta", {}).get("description") == "rad"
 
 
 def test_a_nonfinite_number_is_never_written():
@@ -120,6 +123,13 @@ def test_an_unknown_field_is_ignored_and_a_missing_optional_one_is_none():
     assert later.readings == (PLAIN,)
 
 
+@pytest.mark.parametrize("scene", EXAMPLES.values(), ids=EXAMPLES)
+def test_the_start_of_a_run_made_elsewhere_with_a_method_that_is_not_here_is_kept(scene):
+    elsewhere = {"methods": ["mine@0a"], "sources": ["text"], "sin": "another", "numerics": 1}
+    message = json.loads(encode_event(start(scene=scene))) | elsewhere
+    assert json.loads(encode_event(decode_event(json.dumps(message).encode()))) == message
+
+
 def test_an_unexpected_message_is_refused():
     for data in (b"", b"{", b"[]", b"null", b"\xff", b"{} {}", b"[" * 60_000, b'{"run": 1}'):
         for decode in (decode_event, lambda message: decode_readings([message])):
@@ -131,7 +141,7 @@ IMPOSSIBLE = {
     start(): {
         "kind": ["explode", ...], "h": [0.0, -0.1], "length": [-1.0], "gravity": [1e300],
         "theta": [None, ...], "scene": [3], "numerics": [...], "model": [1, "kepler"],
-        "methods": [[], "rk4", [["rk4"]], ["rk5"], ["rk4", "rk4"]],
+        "methods": [[], "rk4", [["rk4"]], ["\x1b[2J"], ["rk4", "rk4"], [m.key for m in METHODS[:7]]],
     },
     start(scene=SCENES["damped"]): {"friction": [None, -1.0], "stiffness": [9.0]},
     noticed(1, GROWS): {
@@ -164,9 +174,9 @@ def test_texts_of_a_file_cannot_control_a_terminal(text):
     assert named.name == named.watch == printable(text)
 
 
-def test_a_text_that_is_too_long_is_cut_off_with_an_ellipsis_at_the_limit():
-    assert printable("x" * MAX_TEXT) == "x" * MAX_TEXT
-    assert printable("x" * (MAX_TEXT + 1)) == "x" * (MAX_TEXT - 1) + "…"
+def test_a_text_of_more_than_200_characters_is_cut_off_with_an_ellipsis():
+    assert printable("x" * 200) == "x" * 200
+    assert printable("x" * 201) == "x" * 199 + "…"
 
 
 @pytest.mark.parametrize("function", ["sin", "sqrt"])

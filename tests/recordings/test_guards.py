@@ -120,8 +120,16 @@ def records(step, seeds):
 
 
 def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
-    found = [energy_gate.check_order(runs, at_least=1.8).power for runs in records(RIGHT, SEEDS)]
-    assert np.mean(found) == pytest.approx(2, abs=0.05)
+    powers = []
+    for runs in records(RIGHT, SEEDS):
+        order = energy_gate.check_order(runs, at_least=1.8)
+        powers.append(order.power)
+    assert np.mean(powers) == pytest.approx(2, abs=0.05)
+    told = [("order", order.power), ("order_uncertainty", order.uncertainty)]
+    assert energy_gate._properties[-2:] == told
+    energy_gate.check_order(runs, at_least=0.999 * order.highest)
+    with pytest.raises(pytest.fail.Exception, match="not as h"):
+        energy_gate.check_order(runs, at_least=1.001 * order.highest)
 
 
 @pytest.mark.parametrize("broken", [{"second": 0.0}, {"first": 0.55}, {"dropped": 100}], ids=str)
@@ -172,6 +180,7 @@ def test_energies_of_broken_runs_fail_for_what_is_broken(energy_gate, broken, re
 
 def test_a_limit_is_compared_on_both_sides(energy_gate):
     judged = energy_gate.check(*record())
+    assert energy_gate._properties == [("verdict", "bounded"), ("slope", judged.slope)]
     for name, value in (
         ("max_error", judged.max_error),
         ("max_fluctuation", judged.fluctuation),

@@ -1,6 +1,7 @@
 """The recorder: valid files, written in time; the lab goes on if the disk fails."""
 
 import json
+import math
 import os
 import random
 import subprocess
@@ -18,6 +19,7 @@ from mcap.records import Chunk, DataEnd, Footer
 from mcap.stream_reader import StreamReader
 
 from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Event, simulate, steps_for
 from pendu_tui.recordings.files import DiskError
 from pendu_tui.recordings.format import EVENTS
@@ -242,6 +244,16 @@ def test_samples_have_their_cadence_and_include_the_first_and_the_last(h, time, 
     scene = replace(SCENE, h=h)
     assert [sample.step for sample in simulate(scene, time, sample_every=every)] == steps
     assert steps_for(scene, time) == steps[-1]
+
+
+def test_each_milestone_is_recorded_once_at_the_next_sample():
+    entries, scene = [], SCENES["drift"]
+    list(simulate(scene, 40.0, lambda *entry: entries.append(entry), sample_every=7))
+    lockstep = Lockstep(scene, judged=True)
+    lockstep.advance(800)
+    recorded = [(value.milestone, t) for value, t in entries if getattr(value, "milestone", None)]
+    at = [min(math.ceil(each.step / 7) * 7, 800) * scene.h for each in lockstep.milestones]
+    assert recorded == list(zip(lockstep.milestones, at, strict=True)) != []
 
 
 def test_a_long_headless_run_has_few_chunks(tmp_path):

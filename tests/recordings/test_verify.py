@@ -14,6 +14,7 @@ from pendu_tui.recordings import events
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import values_of
+from pendu_tui.recordings.pytest import verify_recordings
 from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, two_runs
 
@@ -106,12 +107,26 @@ def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(
         assert (found.recorded, found.computed) == (wrong, right)
 
 
-def test_a_wrong_time_is_found(verified):
+def test_a_wrong_time_is_found_and_a_folder_with_it_fails_as_a_test(verified, tmp_path):
     entries = two_runs()
     clock, sample = entries[3]
     entries[3] = Entry(clock, sample._replace(t=0.61))
     found = verified(entries).first_difference
     assert (found.method, found.field, found.recorded) == ("", "t", 0.61)
+    (tmp_path / "in").mkdir()
+    record(tmp_path / "in" / "whole.mcap", two_runs())
+    (tmp_path / "in" / "cut.mcap").write_bytes((tmp_path / "in" / "whole.mcap").read_bytes()[:-9])
+    test = verify_recordings(tmp_path)
+    (names,) = (mark.args[1] for mark in test.pytestmark)
+    assert names == ["0.mcap", "in/cut.mcap", "in/whole.mcap"]
+    test("in/whole.mcap")
+    reasons = {"0.mcap": "t is 0.6000.*, recorded 0.61", "in/cut.mcap": "its end is missing"}
+    for name, reason in reasons.items():
+        with pytest.raises(pytest.fail.Exception, match=reason):
+            test(name)
+    ((empty,),) = (mark.args[1] for mark in verify_recordings(tmp_path / "none").pytestmark)
+    with pytest.raises(pytest.fail.Exception, match="no recording below"):
+        test(empty)
 
 
 def test_minus_zero_differs_from_zero(verified):
