@@ -58,23 +58,6 @@ def test_bits_do_not_depend_on_how_the_steps_are_cut_and_sampled(scene, cuts):
     assert without_extremes(watched.sample()) == without_extremes(sample)
 
 
-@each_scene
-def test_readings_are_finite_and_complete_backwards_and_at_equal_cost_too(scene):
-    lockstep, variables = Lockstep(scene), [each.name for each in scene.equations.variables]
-    equal = Stepping(scene.h, True, scene.cast)
-    for stepping, n in (
-        (Stepping(scene.h, cast=scene.cast), 1000),
-        (equal, 20),
-        (equal.reversed(), 200),
-    ):
-        lockstep.set_stepping(stepping)
-        lockstep.advance(n)
-        for reading in lockstep.sample().readings:
-            assert {type(reading.theta), type(reading.omega), type(reading.energy)} == {float}
-            assert math.isfinite(reading.theta + reading.omega + reading.energy_error)
-            assert list(reading.extra) == variables
-
-
 def test_a_long_rotation_stays_in_the_band_of_its_first_turns():
     """Rounding of theta would grow with it, and carry the energy ten bands away by 5e5 steps."""
     cast = (method_of("blanes_moan_6"),)
@@ -197,4 +180,5 @@ def test_any_scene_within_the_limits_gives_finite_numbers(scene):
     lockstep = Lockstep(scene)
     lockstep.advance(3)
     for reading in lockstep.sample().readings:
-        assert math.isfinite(reading.theta + reading.omega + reading.energy + reading.energy_error)
+        assert finite(reading)
+        assert {type(reading.theta), type(reading.omega), type(reading.energy)} == {float}

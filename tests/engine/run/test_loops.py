@@ -8,11 +8,18 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET
+from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET, method_of
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.run import loops as loops_module
-from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, TieredLoops, available, compiled
-from tests.models import EQUATIONS
+from pendu_tui.engine.run.loops import (
+    CompiledLoops,
+    PlainLoops,
+    TieredLoops,
+    available,
+    compiled,
+    count_evaluations,
+)
+from tests.models import EQUATIONS, EXAMPLES
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -82,6 +89,25 @@ def test_it_stops_before_the_step_whose_energy_reaches_the_limit(method):
     assert high < highest
     assert done == 0 or energy(phase) == value
     assert energy(loops.propagate(phase, 0.05, 1)) == highest
+
+
+def test_a_run_goes_on_from_where_it_is_with_the_step_that_it_is_given():
+    loops = PlainLoops(RK4, PENDULUM)
+    first = loops.advance((2.0, 0.0), 0.05, 3, math.inf)
+    assert loops.advance(first.phase, 0.05, 4, math.inf).phase == loops.propagate(
+        (2.0, 0.0), 0.05, 7
+    )
+    for phase, h in ((first.phase, 0.05), (first.phase, -0.1), ((1.0, 0.0), -0.1)):
+        assert loops.advance(phase, h, 2, math.inf).phase == loops.propagate(phase, h, 2)
+    again = loops.advance((1.0, 0.0), 0.05, 2, math.inf).phase
+    assert loops.advance(again, 0.1, 2, math.inf).phase == loops.propagate(again, 0.1, 2)
+
+
+@pytest.mark.parametrize(("key", "evaluations"), [("imex_euler", 30), ("respa", 330)])
+def test_the_evaluations_of_each_counted_part_are_added_up(key, evaluations):
+    spring = EXAMPLES["spring"].equations
+    start = spring.start(1.0, 0.5)
+    assert count_evaluations(method_of(key), spring, start, 0.01, 30) == evaluations
 
 
 @needs_numba

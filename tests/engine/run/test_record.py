@@ -234,10 +234,48 @@ def test_noise_models_are_weighted_by_their_likelihoods():
     assert Slope(np.arange(16), values, 0.0).walk == pytest.approx(expected, rel=0.02)
 
 
+def test_the_bound_holds_the_slope_at_99_percent():
+    slope = Slope(np.arange(64), NOISE[:64], 0.0)
+    share = slope.below(slope.bound) - slope.below(-slope.bound)
+    assert share == pytest.approx(0.99, abs=1e-4)
+
+
+@pytest.mark.parametrize(("chance", "is_evident"), [(3.5e-3, False), (2.5e-3, True)])
+def test_a_trend_of_three_sigmas_is_evident(chance, is_evident):
+    found = judge_record(T, 1000 + with_chance(noise_of(60, 2), chance))
+    assert (found.is_evident, found.trend is not None) == (is_evident, is_evident)
+
+
+@pytest.mark.parametrize(("other", "is_wave"), [(0.2, True), (0.26, False)])
+def test_a_wave_explains_95_percent_of_what_a_line_leaves(other, is_wave):
+    t = np.arange(64) / 64
+    values = 3 * t + np.sin(5 * math.pi * t) + other * np.sin(40 * math.pi * t)
+    assert (core.without_wave(t, values) is not values) == is_wave
+
+
+def test_bins_are_blocks_of_equally_many_samples():
+    bins = bins_of(np.arange(128.0), 3 * (-1.0) ** np.arange(128), 1e-12)
+    assert bins.times == pytest.approx(2 * np.arange(64) + 0.5)
+    for column, value in zip(bins[1:5], (0, -3, 3, 3), strict=True):
+        assert column == pytest.approx([value] * 64)
+    assert bins.white == pytest.approx(3)  # of two samples, 3 sqrt(2)/sqrt(2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_in_white_noise_all_samples_are_independent(seed):
+    assert 1900 < judge_record(T, 1000 + noise_of(1e6, seed)).independent <= 2000
+
+
+def test_an_open_trend_says_how_much_longer_would_decide():
+    reason = levels.OPEN.format(longer=levels.LONGER.format(factor=2.3))
+    assert told(np.sin(math.tau * 1.5 * T / 100 + 1.3)) == reason
+
+
 def test_a_digit_is_a_jump_that_comes_three_times():
+    assert resolution(NOISE) < 1e-14
     energies = np.zeros(100)
     energies[40:50] = 1
-    assert resolution(energies) < 1e-12
+    assert resolution(energies) < 1e-14
     energies[60:] = 1
     assert resolution(energies) == 1
 
@@ -246,6 +284,9 @@ def test_64_samples_are_needed():
     few = judge_record(T[:63], 1000 + SINE[:63])
     assert (few.verdict, few.reason) == ("undecided", "64 samples are needed")
     assert judge_record(T[:64], 1000 + SINE[:64]).reason != few.reason
+    assert fluctuation(T[:64], NOISE[:64]).size > 0
+    with pytest.raises(ValueError, match="too few"):
+        fluctuation(T[:63], NOISE[:63])
 
 
 @pytest.mark.parametrize(
@@ -263,6 +304,8 @@ def test_64_samples_are_needed():
         (0.0, math.inf, 1.0, "cannot tell: it is not known"),
         # the length at which white noise would tell
         (0.0, 8.0, 1.0, "cannot tell: it is 0 ± 8 at 99 %; a record about 4 times as long"),
+        (0.0, 9e5, 1.0, "cannot tell: it is 0 ± 9e+05 at 99 %; a record about 9322 times"),
+        (0.0, 2e6, 1.0, "cannot tell: it is 0 ± 2e+06 at 99 %; a longer record may not"),
         (1.0, 2.0, 1.0, "cannot tell: it is 1 ± 1 at 99 %; a longer record may not"),
     ],
 )
@@ -318,13 +361,9 @@ def test_what_has_no_order_is_refused(steps, sizes, reason):
         order_of(steps, [Fluctuation(size, 0.1) for size in sizes])
 
 
-def test_too_few_samples_have_no_fluctuation():
-    assert fluctuation(T[:64], NOISE[:64]).size > 0
-    with pytest.raises(ValueError, match="too few"):
-        fluctuation(T[:63], NOISE[:63])
-
-
-@pytest.mark.parametrize(("uncertainty", "highest"), [(0.49, 2.98), (0.5, None)])
-def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest):
+@pytest.mark.parametrize(
+    ("uncertainty", "highest", "longer"), [(0.49, 2.98, 2), (0.5, None, 2), (1.0, None, 5)]
+)
+def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest, longer):
     assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
-    assert "about 2 times as long" in Order(2.0, uncertainty).advice
+    assert f"about {longer} times as long" in Order(2.0, uncertainty).advice

@@ -2,12 +2,13 @@
 
 import itertools
 import math
+from contextlib import suppress
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.rewindable import COPY_EVERY, RewindableRun
+from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 
@@ -96,13 +97,27 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
     course.sample()
     course.go_to(2000)
     course.branch(2)
+    assert not course.in_past
     course.change(Stepping(0.02))
     course.forward(3000)
     sample = course.sample()
     assert sample.run == 2
-    assert phases(sample) == phases(straight(5000, {100: 0.1, 2000: 0.02}))
-    course.go_to(1500)
-    assert course.sample().run == 2
+    for step in (5000, 4500, 1500):
+        course.go_to(step)
+        sample = course.sample()
+        assert sample.run == 2
+        assert phases(sample) == phases(straight(step, {100: 0.1, 2000: 0.02}))
+        assert course.step_at(course.x) == step
+
+
+def test_an_error_on_the_way_leaves_the_run_where_it_was():
+    course = RewindableRun(DEFAULT_SCENE)
+    course.forward(7)
+    with suppress(KeyboardInterrupt), course.unchanged_by_errors():
+        course.forward(5)
+        raise KeyboardInterrupt
+    course.forward(1)
+    assert phases(course.sample()) == phases(straight(8, {}))
 
 
 def test_extremes_after_going_back_count_from_the_furthest_step():
@@ -120,11 +135,11 @@ def test_extremes_after_going_back_count_from_the_furthest_step():
 def test_copies_are_few_and_closer_the_more_recent_they_are():
     course = RewindableRun(SCENES["gentle"], 1)
     for _ in range(80):
-        course.forward(COPY_EVERY)
+        course.forward(1000)
     steps = [place.lockstep.step for place in course._copies]
     assert len(steps) < 45  # 80 without thinning; 8 an octave of age with it
     for at, following in itertools.pairwise(steps):
-        assert following - at <= max(COPY_EVERY, (steps[-1] - at) / 4)
+        assert following - at <= max(1000, (steps[-1] - at) / 4)
 
 
 def test_each_step_is_found_by_its_time_which_goes_up_even_while_time_runs_backwards():
