@@ -45,7 +45,7 @@ class Watchdog(Thread):
             if looks == MAX_LOOKS:
                 interrupt_main(ALARM)
             elif looks == MAX_LOOKS + 3:  # it sleeps, or catches everything
-                self.end(2, f"{_place_in_main()} {TooLongError()}.")
+                self.end(3, f"{_place_in_main()} {TooLongError()}.")
             self._look()
             with suppress(OSError):  # the other process has ended
                 self.pulse(None)
@@ -149,4 +149,4 @@ def _end_if_silent(pulse: Any, process: int) -> None:
         system.restore_terminal(terminal)
         why = "a call in C in your method does not return; a recording is kept as a .part"
         _tell(f"ended, for {why}.")
-        system.kill(process, 2)
+        system.kill(process, 3)

@@ -208,4 +208,4 @@ def test_a_step_that_does_not_end_ends_a_list_in_other_processes(tmp_path):
     (tmp_path / "endless.py").write_text(ENDLESS)
     own = ("--method", tmp_path / "endless.py", "--methods", "endless")
     outcome = pendu("run", *own, "--h", "0.001,0.002", "--time", 200, "--csv", "--workers", 2)
-    assert outcome.refused(2, "line 6", "takes more than 3 s")
+    assert outcome.refused(3, "line 6", "takes more than 3 s")
