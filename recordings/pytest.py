@@ -93,7 +93,7 @@ class EnergyDrift(_Checks):
             raise pytest.fail.Exception(str(error)) from None
         self._properties += [("order", order.power), ("order_uncertainty", order.uncertainty)]
         if order.highest is None:
-            pytest.fail(f"cannot tell: the energy fluctuates as {order}; {order.advice}")
+            pytest.fail(order.doubt)
         if order.highest < at_least:
             pytest.fail(
                 f"the energy fluctuates as {order}, not as h^{at_least:g}: "

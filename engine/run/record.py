@@ -84,10 +84,11 @@ class Order(NamedTuple):
         return self.power + 2 * self.uncertainty
 
     @property
-    def advice(self) -> str:
-        """How long runs tell one order from the next, a clause."""
+    def doubt(self) -> str:
+        """A sentence for an order without a highest power, and how long runs would help."""
         longer = math.ceil((2 * self.uncertainty) ** 2 + 1)
-        return f"runs about {longer} times as long would tell one order from the next"
+        why = f"runs about {longer} times as long would tell one order from the next"
+        return f"cannot tell: the energy fluctuates as {self}; {why}"
 
     def __str__(self) -> str:
         return f"h^{self.power:.2f} ± {self.uncertainty:.2f}"

@@ -263,9 +263,11 @@ def _gated(order: Order | None) -> dict[str, Any]:
     """Return the order of the fluctuation as --fail-if compares it, as high as it may be."""
     if order is None:
         return {}
-    unknown = {"fluctuation_order": f"cannot tell: it goes as {order}; {order.advice}"}
-    shown = {"fluctuation_order": str(order).removeprefix("h^")}
-    return {"fluctuation_order": order.highest, "unknown": unknown, "shown": shown}
+    return {
+        "fluctuation_order": order.highest,
+        "unknown": {"fluctuation_order": order.doubt},
+        "shown": {"fluctuation_order": str(order).removeprefix("h^")},
+    }
 
 
 def lines_of(answer: Answer) -> list[str]:

@@ -15,10 +15,9 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
-from pendu_tui.engine.run.verdicts import UNDECIDED, Judgement, Progress
+from pendu_tui.engine.run.verdicts import UNDECIDED, Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
-from pendu_tui.recordings.files import check_target
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
@@ -71,7 +70,6 @@ def run(options: argparse.Namespace) -> int:
 def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     if options.record:
         check_fits(scene.cast)
-        check_target(options.record, options.force)
     steps = steps_for(scene, options.time)
     lockstep = lockstep_of(scene, steps)
     began = time.perf_counter()
@@ -267,7 +265,7 @@ def verdict_of(row: Row) -> str:
         return f"failed at {row['diverged_at']:g} s"
     if row["progress"] is None:
         return str(row["verdict"])
-    return str(Judgement(row["verdict"], progress=Progress(**row["progress"])))
+    return f"{row['verdict']}: {Progress(**row['progress'])}"
 
 
 def _rows_of_list(time: float, expected_steps: int, scene: Scene) -> list[Row]:

@@ -366,4 +366,4 @@ def test_what_has_no_order_is_refused(steps, sizes, reason):
 )
 def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest, longer):
     assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
-    assert f"about {longer} times as long" in Order(2.0, uncertainty).advice
+    assert f"about {longer} times as long" in Order(2.0, uncertainty).doubt
