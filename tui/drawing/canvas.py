@@ -15,6 +15,7 @@ import copy
 import re
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import product
 from math import floor, isfinite
 from typing import TYPE_CHECKING, Self
 
@@ -128,11 +129,10 @@ class Canvas:
         if shares:
             shares[0] = min(max(shares[0], 0.0), 1.0)
             shares[-1] = min(max(shares[-1], 0.0), 1.0)
-        along = zip(dots, shares, strict=True)
         if steep:
-            self.points([(x0 + share * dx, at) for at, share in along], ink)
+            self.points(zip([x0 + share * dx for share in shares], dots, strict=True), ink)
         else:
-            self.points([(at, y0 + share * dy) for at, share in along], ink)
+            self.points(zip(dots, [y0 + share * dy for share in shares], strict=True), ink)
 
     def path(self, x: "Numbers", y: "Numbers", ink: int) -> None:
         """Join points with lines, but for points that are not finite."""
@@ -165,8 +165,12 @@ class Canvas:
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of the one at (x, y); `hollow`: only the rim."""
         if -radius < x < self.width + radius and -radius < y < self.height + radius:
-            dots = _disc(radius, hollow)
-            self.points([(x + right, y + down) for right, down in dots], ink)
+            layer = self._layer(ink)
+            column, right = divmod(floor(x), 2)
+            row, down = divmod(floor(y), 4)
+            for across, below, bits in _disc(radius, hollow, right, down):
+                if 0 <= column + across < self.columns and 0 <= row + below < self.rows:
+                    layer[(row + below) * self.columns + column + across] |= bits
 
     def braille(self, column: int, row: int, lines: Iterable[str], ink: int) -> None:
         """Set the dots of braille characters, drawn elsewhere, from a cell on."""
@@ -231,8 +235,11 @@ class Canvas:
             inks[cell] = 0 if letter == " " else ink - NOBODY
         text = "".join([*pieces, text[end:]])
         colours = bytes(inks)
-        rows = [slice(self.columns * row, self.columns * (row + 1)) for row in range(self.rows)]
-        return Picture(tuple([_row(text[row], colours[row]) for row in rows]))
+        width = self.columns
+        begins = [width * row for row in range(self.rows)]
+        return Picture(
+            tuple([_row(text[at : at + width], colours[at : at + width]) for at in begins])
+        )
 
     def _shown(self) -> tuple[bytearray, bytearray]:
         """Return the dots that are shown and their ink above NOBODY, by cell."""
@@ -335,14 +342,22 @@ class Canvas:
         return bytearray((number & (1 << 8 * self.columns) - 1).to_bytes(self.columns, "little"))
 
 
-@lru_cache(maxsize=32)
-def _disc(radius: float, hollow: bool) -> list[tuple[int, int]]:
-    """Return the dots of a disc, to the right of its centre and down."""
+@lru_cache(maxsize=128)
+def _disc(radius: float, hollow: bool, right: int, down: int) -> list[tuple[int, int, int]]:
+    """Return the cells of a disc and its dots in each, from the cell that has its centre.
+
+    The centre is so many dots to the right in its cell and down.
+    """
+    cells: dict[tuple[int, int], int] = {}
     least = 0.0
     if hollow and radius > 1:
         least = (radius - 1) ** 2
-    size = range(-floor(radius), floor(radius) + 1)
-    return [(i, j) for j in size for i in size if least <= i * i + j * j < radius * radius]
+    for i, j in product(range(-floor(radius), floor(radius) + 1), repeat=2):
+        if least <= i * i + j * j < radius * radius:
+            across, x = divmod(right + i, 2)
+            below, y = divmod(down + j, 4)
+            cells[across, below] = cells.get((across, below), 0) | _BITS[2 * y + x]
+    return [(*cell, bits) for cell, bits in cells.items()]
 
 
 _FULL = bytes([0, *[255] * 255])
