@@ -54,7 +54,6 @@ class History:
             self._repeats /= 2
         self._capacity = capacity
         self.step = -1  # of the current sample
-        self._current: Row | None = None
         self._last_row = -1  # the step of the last row
         self._waiting: list[Row] = []
         self._rows: Rows | None = None
@@ -74,22 +73,23 @@ class History:
         Going back keeps the later rows.  A sample of another run, which branched off here, drops
         all rows from its step on.
         """
-        if self._current and sample.run != self.sample.run:
+        if self.step >= 0 and sample.run != self.sample.run:
             self._last_row = sample.step - 1
             self._filled.truncate(self._last_row)
             if self._returned and self._returned.step > self._last_row:
                 self._returned = None
         is_new = sample.step > self._last_row
-        row = self._row(sample, is_row and is_new)
-        h = change_before(self.changes, sample.step).stepping.h
+        change = change_before(self.changes, sample.step)
+        h = change.stepping.h
         if is_new and sample.step and abs(sample.t) < 1e-6 * abs(h):  # t is rounded
             self._returned = sample
+        if change not in self._modified_starts and change.step <= self.step < sample.step:
+            self._modified_starts[change] = self._modified_energies(self.sample, change.stepping)
         self.sample = sample
         self.step = sample.step
-        self._current = row
         if is_row and is_new:
             self._last_row = sample.step
-            self._waiting.append(row)
+            self._waiting.append(self._row(sample, with_extremes=True))
             if len(self._waiting) >= 64:  # the first paint does not wait for NumPy
                 _ = self._filled
 
@@ -119,9 +119,6 @@ class History:
         """
         change = change_before(self.changes, sample.step)
         starts = self._modified_starts.get(change)
-        if starts is None and change.step <= self.step < sample.step:
-            starts = self._modified_energies(self.sample, change.stepping)
-            self._modified_starts[change] = starts
         if starts is None:
             return [math.nan] * len(sample.readings)
         energies = self._modified_energies(sample, change.stepping)
@@ -138,6 +135,10 @@ class History:
         return energies
 
     @property
+    def _current(self) -> Row:
+        return self._row(self.sample, with_extremes=False)
+
+    @property
     def _filled(self) -> "Rows":
         """The rows, in NumPy's arrays."""
         if self._rows is None:
@@ -152,7 +153,6 @@ class History:
     @property
     def rows(self) -> "Records":
         """The rows of the whole run up to the current sample."""
-        assert self._current is not None
         return self._filled.until(self._current)
 
     def window(self, seconds: float | None = None) -> "Window":
@@ -196,15 +196,17 @@ class History:
 
         Its shape is (samples, methods + 1, 2); the exact motion is last.
         """
-        assert self._current is not None
         return self._filled.recent_until(self._current, length)["states"][-length:]
 
     def thetas(self, length: int) -> list[Sequence[float]]:
         """Return the last angles [rad] of each method, oldest first; needs no NumPy at first."""
+        now = [reading.theta for reading in self.sample.readings]
         if self._rows is not None:
-            return self.trails(length)[:, :, 0].T.tolist()  # type: ignore[no-any-return]
-        rows = [[theta for theta, _ in row.states] for row in self._waiting[-length:]]
-        return [*zip(*rows, strict=True)]
+            before = self._filled.thetas_before(self.step, length - 1)
+        else:
+            waiting = [row.states[:-1] for row in self._waiting if row.step < self.step]
+            before = [[theta for theta, _ in states] for states in waiting[1 - length :]]
+        return [*zip(*before, now, strict=True)]
 
     def ghost(self) -> "Ghost":
         """Return this run to lay under another one."""

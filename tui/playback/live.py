@@ -102,7 +102,9 @@ class Live(Source):
             self.playhead.position = self._run.x
         share = (self.playhead.position - before) / (played * self.playhead.speed)
         self.pace += (share - self.pace) * (1 - math.exp(-played))  # averaged over a second
-        return self._take_sample(is_row=False)
+        if self._run.step != self.history.step:
+            self._take_sample(is_row=False)
+        return self.sample
 
     def _forward(self, steps: int) -> None:
         """Go so many steps forward, but no further than the next row."""

@@ -4,6 +4,7 @@ Memory does not grow with the run, and no extreme is lost.
 """
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -105,6 +106,12 @@ class Rows:
         wide = _up_to(current[0], self._wide)
         return np.concatenate([wide, self.recent_until(current)])
 
+    def thetas_before(self, step: int, most: int) -> list[list[float]]:
+        """Return the methods' angles [rad] in the last rows before a step, at most so many."""
+        rows = _up_to(step - 1, self._recent[: self._count])[-most:]
+        angles: list[list[float]] = rows["states"][:, :-1, 0].tolist()
+        return angles
+
     def recent_until(self, current: tuple[Any, ...], most: int | None = None) -> Records:
         """Return the last rows, perhaps `most`, and the current sample if it is none of them."""
         step = current[0]
@@ -119,7 +126,7 @@ class Rows:
 
 
 def _up_to(step: int, rows: Records) -> Records:
-    return rows[: np.searchsorted(rows["step"], step, "right")]
+    return rows[: bisect_right(rows["step"], step)]  # NumPy's search would copy the steps
 
 
 def _halved(rows: Records) -> Records:
