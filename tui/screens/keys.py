@@ -6,6 +6,30 @@ from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.recordings.system import CAN_STOP
 from pendu_tui.tui.views import VIEWS
 
+
+def _key(
+    keys: str,
+    action: str,
+    purpose: str,
+    hint: str = "",
+    shown: str = "",
+    group: Binding.Group | None = None,
+) -> Binding:
+    """Return the binding of a key, which may stand on the last line if it has a hint.
+
+    `shown`: how the key is written, if not by the first of its names.
+    """
+    return Binding(
+        keys,
+        action,
+        hint or purpose,
+        show=bool(hint),
+        key_display=shown or keys.partition(",")[0],
+        tooltip=purpose,
+        group=group,
+    )
+
+
 _H = Binding.Group("larger, smaller step h")
 _SECONDS = Binding.Group("back, forward 1 s")
 _TENTHS = Binding.Group("back, forward 10 %")
@@ -20,58 +44,58 @@ ALWAYS = 7
 """So many first keys stand on the last line in every view; then come those of the pane."""
 
 KEYS: list[BindingType] = [
-    Binding("plus,equals_sign", "next_h(1)", "Step", True, "+", False, "larger step h", group=_H),
-    Binding("minus", "next_h(-1)", "Step", True, "-", False, "smaller step h", group=_H),
-    Binding("p", "next_scene", "Scene", tooltip="next scene"),
-    Binding("space", "pause", "Pause", tooltip="pause, go on"),
-    Binding("v", "view", "View", tooltip="next view"),
-    Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
-    Binding("q", "app.quit", "Quit", tooltip="finish the recording, quit"),
+    _key("plus,equals_sign", "next_h(1)", "larger step h", "Step", "+", _H),
+    _key("minus", "next_h(-1)", "smaller step h", "Step", "-", _H),
+    _key("p", "next_scene", "next scene", "Scene"),
+    _key("space", "pause", "pause, go on", "Pause"),
+    _key("v", "view", "next view", "View"),
+    _key("question_mark", "help", "this help", "Help", "?"),
+    _key("q", "app.quit", "finish the recording, quit", "Quit"),
     Binding("ctrl+p", "find", "Find", True, "ctrl+p", True, "find scenes, themes, …"),
-    Binding("f", "live", "Live", tooltip="continue a replay live"),
-    Binding("T,shift+t", "lesson", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
-    Binding("b", "reverse", "Back", tooltip="run back in time"),
-    Binding("u", "undo", "Undo", tooltip="undo the last change"),
-    Binding("i", "start_values", "Edit", tooltip="edit start values"),
-    Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
-    Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
-    Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
-    Binding("left", "seek(-1)", "Seek", True, "left", tooltip="back 1 s", group=_SECONDS),
-    Binding("right", "seek(1)", "Seek", True, "right", tooltip="forward 1 s", group=_SECONDS),
-    Binding("home", "part(-1)", "go to the start", False, group=_ENDS),
-    Binding("end", "part(1)", "go to the end", False, group=_ENDS),
-    Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
-    Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
-    Binding("comma", "step(-1)", "one step back", False, ",", group=_STEPS),
-    Binding("full_stop", "step(1)", "one step forward", False, ".", group=_STEPS),
-    Binding("left_square_bracket", "event(-1)", "previous event", False, "[", group=_EVENTS),
-    Binding("right_square_bracket", "event(1)", "next event", False, "]", group=_EVENTS),
-    Binding("less_than_sign", "speed(-1)", "half speed", False, "<", group=_SPEED),
-    Binding("greater_than_sign", "speed(1)", "double speed", False, ">", group=_SPEED),
+    _key("f", "live", "continue a replay live", "Live"),
+    _key("T,shift+t", "lesson", "tour: begin, leave, resume", "Tour"),
+    _key("b", "reverse", "run back in time", "Back"),
+    _key("u", "undo", "undo the last change", "Undo"),
+    _key("i", "start_values", "edit start values", "Edit"),
+    _key("M,shift+m", "methods", "choose methods", "Methods"),
+    _key("r", "restart", "restart; dims the old run", "Restart"),
+    _key("n", "equal_cost", "equal cost for all", "Equal cost"),
+    _key("left", "seek(-1)", "back 1 s", "Seek", group=_SECONDS),
+    _key("right", "seek(1)", "forward 1 s", "Seek", group=_SECONDS),
+    _key("home", "part(-1)", "go to the start", group=_ENDS),
+    _key("end", "part(1)", "go to the end", group=_ENDS),
+    _key("pageup", "part(-0.1)", "back 10 %", shown="pgup", group=_TENTHS),
+    _key("pagedown", "part(0.1)", "forward 10 %", shown="pgdn", group=_TENTHS),
+    _key("comma", "step(-1)", "one step back", shown=",", group=_STEPS),
+    _key("full_stop", "step(1)", "one step forward", shown=".", group=_STEPS),
+    _key("left_square_bracket", "event(-1)", "previous event", shown="[", group=_EVENTS),
+    _key("right_square_bracket", "event(1)", "next event", shown="]", group=_EVENTS),
+    _key("less_than_sign", "speed(-1)", "half speed", shown="<", group=_SPEED),
+    _key("greater_than_sign", "speed(1)", "double speed", shown=">", group=_SPEED),
     *(
-        Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
+        _key(f"{n}", f"show({n - 1})", f"show or hide method {n}", group=_METHODS)
         for n in range(1, MAX_METHODS + 1)
     ),
-    Binding(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion", show=False),
+    _key(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion"),
     *(
-        Binding(f"f{n}", f"view({name!r})", f"view: {view.title}", False, f"F{n}", group=_VIEWS)
+        _key(f"f{n}", f"view({name!r})", f"view: {view.title}", shown=f"F{n}", group=_VIEWS)
         for n, (name, view) in enumerate(VIEWS.items(), 2)
     ),
-    Binding("e", "quantity", "chart: next quantity", show=False),
-    Binding("y", "axes", "chart: log, log time, …", show=False),
-    Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
-    Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
-    Binding("escape", "back", "back from a view or a zoom", False, "esc"),
-    Binding("o", "switch('overview')", "overview: all angles", show=False),
-    Binding("P,shift+p", "find('scene ')", "choose a scene", show=False),
-    Binding("E,shift+e", "events", "list all events", show=False),
-    Binding("m", "mark", "mark this moment", show=False),
-    Binding("d", "describe", "describe it in words", show=False),
-    Binding("s", "screenshot", "save a screenshot", show=False),
-    Binding("S,shift+s", "save_scene", "save it as a scene file", show=False),
+    _key("e", "quantity", "chart: next quantity"),
+    _key("y", "axes", "chart: log, log time, …"),
+    _key("w", "window", "chart: last 20 s, 60 s, …"),
+    _key("z", "zoom(0.5)", "chart: zoom in"),
+    _key("escape", "back", "back from a view or a zoom", shown="esc"),
+    _key("o", "switch('overview')", "overview: all angles"),
+    _key("P,shift+p", "find('scene ')", "choose a scene"),
+    _key("E,shift+e", "events", "list all events"),
+    _key("m", "mark", "mark this moment"),
+    _key("d", "describe", "describe it in words"),
+    _key("s", "screenshot", "save a screenshot"),
+    _key("S,shift+s", "save_scene", "save it as a scene file"),
     Binding("enter", "turn('forward')"),  # the lesson's panel shows these two
     Binding("backspace", "turn('back')"),
 ]
 """In the order of the help, and of the last line, which shows what fits of the first ones."""
 if CAN_STOP:
-    KEYS.append(Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False))
+    KEYS.append(_key("ctrl+z", "app.suspend_process", "suspend to the shell"))
