@@ -43,19 +43,14 @@ class Lesson:
         return f"{self.name} {self.index + 1} of {len(self.pages)}: {self.page.name}"
 
     @property
-    def asked(self) -> str:
-        """The question with its answers."""
-        answers = (f"{number}: {text}" for number, text in enumerate(self.shot.answers, 1))
-        return "  ".join([self.shot.question, *answers])
-
-    @property
     def text(self) -> tuple[str, ...]:
         """The sentences of this stage."""
         shot = self.shot
         if self.stage == "told":
             return (shot.sentence,)
         if self.stage == "asked":
-            return shot.sentence, self.asked
+            answers = (f"{number}: {text}" for number, text in enumerate(shot.answers, 1))
+            return shot.sentence, "  ".join([shot.question, *answers])
         if self.stage == "answered":
             result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
             return f"{result}{shot.right}: {shot.answers[shot.right - 1]}", shot.truth

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from functools import cache
@@ -22,15 +23,14 @@ from pendu_tui.tui.cli.watchdog import limited
 from pendu_tui.tui.playback.history import History
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus, RunState, Source
 
-if TYPE_CHECKING:  # the first paint needs none
-    from concurrent.futures import Future, ThreadPoolExecutor
-
+if TYPE_CHECKING:  # the first paint does not need it
     from pendu_tui.recordings.recorder import LiveRecorder
 
 FRAME_BUDGET = 0.020  # s of each frame (33 ms) for simulation; the rest is for drawing
 CHUNK = 256  # steps between clock readings, about a millisecond
 ALTERED = " (altered)"  # after the name of a scene whose start or step was changed
 ROW_RATE = 30  # rows of the history and samples of the recording per second
+_COMPILER = ThreadPoolExecutor(max_workers=1)  # begins its thread when there is work
 
 
 class Live(Source):
@@ -341,17 +341,10 @@ def _ready(method: Method, model: Model) -> Loops | None:
 
 
 @cache
-def _compiling(method: Method, model: Model) -> "Future[Loops]":
+def _compiling(method: Method, model: Model) -> Future[Loops]:
     def compile_now() -> Loops:
         loops = compiled(method, model)
         loops.advance((0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
         return loops
 
-    return _thread().submit(compile_now)
-
-
-@cache
-def _thread() -> "ThreadPoolExecutor":
-    from concurrent.futures import ThreadPoolExecutor
-
-    return ThreadPoolExecutor(max_workers=1)
+    return _COMPILER.submit(compile_now)
