@@ -16,7 +16,7 @@ from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.drawn import cells
 from tests.tui.harness import lab
 
-LIMITS = {"wrong": 0}
+LIMITS = {"wrong": 0, "vanished": 0, "kept_less_than_half": 0}
 SCENES_SHOWN = (
     *("drift", "crossover", "linear", "near-separatrix", "learned"),
     *("stiff-limit", "precision", "halving", "mean-field", "damped"),
@@ -90,6 +90,6 @@ def measure(share: float) -> dict[str, Any]:
     }
     return {
         **table,
-        "wrong": sum(row["wrong"] for row in table.values()),
+        **{name: sum(row[name] for row in table.values()) for name in ("wrong", "vanished")},
         "kept_less_than_half": sum(row["kept"] < 0.5 for row in table.values()),
     }
