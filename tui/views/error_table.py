@@ -26,7 +26,7 @@ from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN, Picture, Row,
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.numbers import decimal, scientific
+from pendu_tui.tui.words.numbers import SIGNED, UNSIGNED, decimal, fitting
 
 WIDE = 120  # columns, from which heads are written in full, in every scene
 
@@ -68,10 +68,10 @@ def _verdict(line: TableLine, width: int) -> str:
 VERDICT = Column(9, Head("verdict", 10, "verdict", 13), _verdict)
 COLUMNS = (
     VERDICT,
-    Column(8, ENERGY_ERROR.head, lambda line, w: scientific(line.reading.energy_error, w)),
-    Column(7, LARGEST.head, lambda line, w: scientific(line.largest, w, 1, "-")),
-    Column(5, TREND.head, lambda line, w: scientific(line.judgement.trend, w)),
-    Column(3, THETA_ERROR.head, lambda line, w: scientific(line.theta_error, w, 1, "-")),
+    Column(8, ENERGY_ERROR.head, lambda line, w: fitting(line.reading.energy_error, w, *SIGNED)),
+    Column(7, LARGEST.head, lambda line, w: fitting(line.largest, w, *UNSIGNED)),
+    Column(5, TREND.head, lambda line, w: fitting(line.judgement.trend, w, *SIGNED)),
+    Column(3, THETA_ERROR.head, lambda line, w: fitting(line.theta_error, w, *UNSIGNED)),
     Column(4, THETA.head, lambda line, w: decimal(line.reading.theta, w, min(w - 8, 5))),
     Column(2, OMEGA.head, lambda line, w: decimal(line.reading.omega, w, max(w - 8, 3))),
     Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width]),
@@ -82,11 +82,7 @@ COLUMNS = (
 def extra_columns(model: Model) -> list[Column]:
     def column(extra: ExtraColumn) -> Column:
         def cell(line: TableLine, width: int) -> str:
-            value = extra.value(line.reading.extra)
-            text = f"{value:.3g}"
-            if len(text) > width:
-                text = scientific(value, width, 1, "-")
-            return text
+            return fitting(extra.value(line.reading.extra), width, ".3g", *UNSIGNED)
 
         head = Head(extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7))
         return Column(6, head, cell)

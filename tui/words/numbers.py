@@ -4,10 +4,13 @@ Tables get a hyphen for nan and inf.
 """
 
 import math
-from collections.abc import Sequence
 
 from pendu_tui.engine.models.model import ExactMotion, Model
 from pendu_tui.engine.scenes import Scene
+
+SIGNED = "+.1e", "+.0e"
+UNSIGNED = ".1e", ".0e"
+"""Formats of scientific notation: "+3.3e+00" and "3.3e+00", or with fewer digits."""
 
 
 def counted(number: int, noun: str) -> str:
@@ -17,18 +20,12 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}"
 
 
-def decimal(value: float | None, width: int, decimals: int = 3) -> str:
+def decimal(value: float, width: int, decimals: int) -> str:
     """Write a sign and as many decimals as fit, or scientific notation: " +1.000", "+1.2e+09"."""
-    fixed = [f"+.{places}f" for places in range(decimals, -1, -1)]
-    return _fitting(value, width, [*fixed, "+.1e", "+.0e"])
+    return fitting(value, width, *(f"+.{places}f" for places in range(decimals, -1, -1)), *SIGNED)
 
 
-def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
-    """Write "+3.3e+00", with fewer digits if needed; `sign` "-": a sign only if negative."""
-    return _fitting(value, width, [f"{sign}.{places}e" for places in range(digits, -1, -1)])
-
-
-def _fitting(value: float | None, width: int, formats: Sequence[str]) -> str:
+def fitting(value: float | None, width: int, *formats: str) -> str:
     """Write a number in the first format that fits, or # as spreadsheets do."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)

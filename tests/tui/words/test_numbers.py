@@ -8,13 +8,14 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.words.numbers import (
+    SIGNED,
     about,
     decimal,
     energy_share,
     factor,
+    fitting,
     motion_text,
     regime,
-    scientific,
     seconds,
     two_digits,
 )
@@ -41,7 +42,7 @@ TWO_DIGITS = {0.000294: "0.00029", 9.94: "9.9", 9.96: "10", 99_999: "99999", 1.2
 
 @given(ANY, st.integers(1, 14), st.integers(0, 6))
 def test_a_number_is_exactly_as_wide_as_asked_and_never_nan_or_inf(value, width, digits):
-    for text in (decimal(value, width, digits), scientific(value, width, digits)):
+    for text in (decimal(value, width, digits), fitting(value, width, *SIGNED)):
         assert len(text) == width
         assert "n" not in text
         assert (text.strip() == "-") == (value is None or not math.isfinite(value))
@@ -49,7 +50,7 @@ def test_a_number_is_exactly_as_wide_as_asked_and_never_nan_or_inf(value, width,
 
 @given(st.floats(allow_nan=False, allow_infinity=False, allow_subnormal=False), st.integers(8, 14))
 def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, width):
-    text = decimal(value, width)
+    text = decimal(value, width, 3)
     mantissa, _, exponent = text.strip().partition("e")
     half = 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
     # float(text) rounds once more
@@ -59,11 +60,11 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        (decimal(-31.4159265, 8), " -31.416"),
-        (decimal(-1234567.8, 8), "-1234568"),
-        (decimal(1.5e9, 8), "+1.5e+09"),
-        (decimal(-1e150, 8), " -1e+150"),
-        (scientific(1.5e-300, 5), "#####"),  # not cut to a wrong one
+        (decimal(-31.4159265, 8, 3), " -31.416"),
+        (decimal(-1234567.8, 8, 3), "-1234568"),
+        (decimal(1.5e9, 8, 3), "+1.5e+09"),
+        (decimal(-1e150, 8, 3), " -1e+150"),
+        (fitting(1.5e-300, 5, *SIGNED), "#####"),  # not cut to a wrong one
         (seconds(0), "0.00 s"),
         (seconds(12.345), "12.35 s"),
         (seconds(-185), "-3 min 05 s"),
