@@ -160,15 +160,9 @@ class TimeChart(Pane):
         self.pointer = None
         self.draw()
 
-    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+    def wheel(self, event: events.MouseEvent, factor: float) -> None:
         self._point(event)
-        self.zoom(0.7)
-        event.stop()
-
-    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._point(event)
-        self.zoom(1 / 0.7)
-        event.stop()
+        self.zoom(factor)
 
     def _point(self, event: events.MouseEvent) -> None:
         offset = event.get_content_offset(self)

@@ -167,16 +167,9 @@ class PhasePane(Chooser[State]):
         if event.y == 0:  # the title
             await self.run_action("screen.view('phase')")
 
-    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        self._wheel(event, 0.8)
-
-    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._wheel(event, 1.25)
-
-    def _wheel(self, event: events.MouseEvent, factor: float) -> None:
+    def wheel(self, event: events.MouseEvent, factor: float) -> None:
         if (cell := self._cell(event)) is not None:
             self.zoomed = self.viewport.zoomed(factor, 2 * cell[0] + 1, 4 * cell[1] + 2)
-            event.stop()
             self.draw()
 
     def _cell(self, event: events.MouseEvent) -> tuple[int, int] | None:

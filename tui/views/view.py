@@ -191,9 +191,22 @@ class Pane(CellWidget):
         else:
             self.post_message(SceneChosen(scene))
 
-    def words(self, *texts: str) -> list[Row]:
+    def words(self, *texts: str, rows: int = 100) -> list[Row]:
+        """Return texts on rows, the last of which ends with an ellipsis if there are more."""
         width = max(self.room.width, 1)
-        return [[(line, TEXT)] for text in texts for line in wrap(text, width)]
+        lines = [line for text in texts for line in wrap(text, width)]
+        if lines[rows:]:
+            lines[rows - 1 :] = [f"{lines[rows - 1][: width - 2]} …"]
+        return [[(line, TEXT)] for line in lines]
+
+    def on_mouse_scroll_up(self, event: events.MouseEvent) -> None:
+        self.wheel(event, 0.8)
+
+    def on_mouse_scroll_down(self, event: events.MouseEvent) -> None:
+        self.wheel(event, 1.25)
+
+    def wheel(self, event: events.MouseEvent, factor: float) -> None:
+        """Zoom about the pointer, if the pane can."""
 
     # Computing in another process
 

@@ -57,7 +57,7 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.pilot.pause()
         await theatre.settled()
         stretch = theatre.stage.shown.stretch
-        assert stretch.end - stretch.begin == pytest.approx(0.7 * 12, rel=0.01)
+        assert stretch.end - stretch.begin == pytest.approx(0.8 * 12, rel=0.01)
         assert chart.plot.at(29).t == pytest.approx(t, abs=0.02)
         await theatre.run(2)  # the past stays there
         assert theatre.stage.shown.stretch == stretch
@@ -69,7 +69,7 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         chart.on_mouse_scroll_down(MouseScrollDown(chart, 30, 4, **scroll, **where))
         await theatre.pilot.pause()
         farther = theatre.stage.shown.stretch
-        assert farther.end - farther.begin == pytest.approx((half.end - half.begin) / 0.7)
+        assert farther.end - farther.begin == pytest.approx((half.end - half.begin) / 0.8)
         await theatre.press("w")
         assert theatre.stage.shown == Shown().through(WHOLE)
         await theatre.press("w", "z", "w")
