@@ -1,6 +1,7 @@
 """Axes with round labels, the field between two of them, and the names of lines in it."""
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -108,7 +109,7 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
         (row, step) for row, step in sizes if round(high / row) - round(low / row) < rows
     )
     axis = _centred(round(high / row), row, step, rows)
-    return replace(axis, labels={each: compact(each) for each in axis.labels})
+    return replace(axis, labels=_written(axis.labels, step))
 
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
@@ -153,7 +154,8 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
 
 def number_ticks(low: float, high: float, most: float) -> dict[float, str]:
     """Return labels by position of about `most` numbers."""
-    return {value: compact(value) for value in _multiples(low, high, nice((high - low) / most))}
+    step = nice((high - low) / most)
+    return _written(_multiples(low, high, step), step)
 
 
 def theta_ticks(low: float, high: float, most: int) -> dict[float, str]:
@@ -172,9 +174,13 @@ def _multiples(low: float, high: float, step: float) -> list[float]:
     return [number * step for number in range(first, last + 1)]
 
 
-def compact(value: float) -> str:
-    """Write a number in few characters: "0.5", "-2e-7"."""
-    return f"{value:.6g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+def _written(multiples: Iterable[float], step: float) -> dict[float, str]:
+    """Write multiples of a step with the same decimals: "-0.10", "-0.08", "0"; or "-2e-7"."""
+    decimals = -math.floor(math.log10(step) + 1e-9)
+    if 0 < decimals <= 5:
+        return {value: f"{value:.{decimals}f}" if value else "0" for value in multiples}
+    texts = {value: f"{value:.6g}" for value in multiples}
+    return {value: re.sub(r"e\+?(-?)0?", r"e\1", text) for value, text in texts.items()}
 
 
 def in_pi(turns: float) -> str:
@@ -323,4 +329,4 @@ def _mean(group: Sequence[float]) -> int:
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
-    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)
+    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height)

@@ -180,12 +180,12 @@ class Picture:
                 yield y, front, behind
 
     @classmethod
-    def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
+    def of_text(cls, text: str, columns: int, rows: int) -> Self:
         """Wrap and centre a text; lines that do not fit are cut off."""
         lines = textwrap.wrap(text, max(columns, 1))[:rows]
         above = (rows - len(lines)) // 2
         page = [""] * above + lines + [""] * (rows - above - len(lines))
-        return cls(tuple(((line.center(columns), ink),) for line in page))
+        return cls(tuple(((line.center(columns), TEXT),) for line in page))
 
 
 def _length(row: Row) -> int:

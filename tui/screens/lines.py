@@ -338,4 +338,4 @@ class TooSmall(CellWidget):
         text = (
             f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
         )
-        self.show(Picture.of_text(text, columns, rows, TEXT))
+        self.show(Picture.of_text(text, columns, rows))

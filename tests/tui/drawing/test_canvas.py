@@ -238,4 +238,4 @@ def test_pictures_are_compared_row_by_row():
     assert list(new.changes(old, 8)) == [(0, 8, 0)]  # up to the end, where a row may be wide
     assert list(new.changes(new, 6)) == []
     assert Canvas(0, 2).picture().text == "\n"
-    assert Picture.of_text("a b", 2, 6, TEXT).text == "\n\na\nb\n\n"
+    assert Picture.of_text("a b", 2, 6).text == "\n\na\nb\n\n"
