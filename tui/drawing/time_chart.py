@@ -141,8 +141,10 @@ def time_chart(
     if shown.log:
         values = 10.0**high
     plot.draw_marks(changes)
-    for run, (lows, highs) in zip(runs, sides, strict=True):
-        plot.draw_curves(run, lows, highs)
+    sides = [plot.on_chart(*side) for side in sides]
+    for run, side in zip(runs, sides, strict=True):
+        plot.draw_curves(run.inks, *side)
+    low, high = sides[0]
     if shown.log:
         plot.draw_crossings(high, times, window.repeats)
     plot.name_lines(plot.ends(runs[0], low, high, names))
@@ -221,13 +223,15 @@ class _Plot(LineChart):
             row = min(max(int(down) // 4 - 1, 0), self.rows - 1)
             canvas.label(1, row, text, EXACT)
 
-    def draw_curves(self, run: _Run, low: Floats, high: Floats) -> None:
-        """Draw each curve up to where it leaves the chart; forget what lies beyond."""
+    def on_chart(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+        """Return the values with nan for those after a curve has left the chart."""
         gone = self._beyond(low, high)
         gone[1:] &= gone[:-1].copy()
         gone[:1] = False
-        low[gone] = high[gone] = np.nan
-        for place, ink in enumerate(run.inks):
+        return np.where(gone, np.nan, low), np.where(gone, np.nan, high)
+
+    def draw_curves(self, inks: Sequence[int], low: Floats, high: Floats) -> None:
+        for place, ink in enumerate(inks):
             x, y = _outline(self.up(low[:, place]), self.up(high[:, place]))
             down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
             self.canvas.path(2 * x + 1.5, down, ink)
