@@ -152,11 +152,9 @@ class PhasePane(Chooser[State]):
     def action_zoom(self, factor: float) -> None:
         """Zoom about the crosshair or the pointer, which moves to the middle."""
         viewport = self.viewport
-        x, y = viewport.middle
         if at := self.aim:
-            right = x - float(viewport.x(at.theta))
-            viewport = viewport.panned(right, y - float(viewport.y(at.omega)))
-        self.zoomed = viewport.zoomed(factor, x, y)
+            viewport = viewport._replace(theta=at.theta, omega=at.omega)
+        self.zoomed = viewport.zoomed(factor, *viewport.middle)
         self.draw()
 
     def place_under(self, event: events.MouseEvent) -> State | None:
@@ -221,11 +219,12 @@ class SectionPane(PhasePane):
         self, viewport: Viewport, model: Model, method: Method, ink: int, h: float
     ) -> "Section":
         """Begin to compute a section, of which there is nothing yet."""
-        from pendu_tui.engine.studies.section import pieces
-        from pendu_tui.tui.views.portrait import ORBIT_STEPS, Section, starts
+        from pendu_tui.engine.studies.section import pieces, spread
+        from pendu_tui.tui.views.portrait import ORBIT_STEPS, Section
 
         self._orbits = 0
-        self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
+        starts = spread(STARTS, viewport.across, viewport.up)
+        self.compute(pieces, method, model, h, starts, ORBIT_STEPS)
         return Section(viewport, model, method, ink)
 
     def _map(self, source: Source) -> Picture:

@@ -15,7 +15,7 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.scenes import Line
 from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
-from pendu_tui.engine.studies.section import OrbitKind, Points, kind_of, orbit, spread
+from pendu_tui.engine.studies.section import OrbitKind, Points, kind_of, orbit
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.frame import Axis, Frame, in_pi, nice, number_ticks, theta_ticks
 from pendu_tui.tui.drawing.picture import (
@@ -325,10 +325,6 @@ def _dots(mask: Mask) -> Dots:
 
 ORBIT_STEPS = 2000  # they take a few ms
 GAP = 2  # dots between orbits of a section
-
-
-def starts(viewport: Viewport, count: int) -> Points:
-    return spread(count, viewport.across, viewport.up)
 
 
 class Section:

@@ -185,12 +185,6 @@ class Viewport(NamedTuple):
             omega_per_dot=self.omega_per_dot * factor,
         )
 
-    def panned(self, right: float, down: float) -> "Viewport":
-        return self._replace(
-            theta=self._turned(self.theta - right * self.theta_per_dot),
-            omega=self.omega + down * self.omega_per_dot,
-        )
-
     def stepped(self, start: State, right: float, up: float) -> State:
         """Return the state so many dots from another one, or from the middle if it is outside."""
         x = float(self.x(start.theta))
