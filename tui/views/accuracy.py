@@ -225,11 +225,12 @@ class AccuracyPane(Chooser[Point]):
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
         self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
-        return Picture([*chart.rows, *self.words(*self._sentences())][: self.room.height])
+        words = self.words(*self._sentences(), rows=max(self.room.height - len(chart.rows), 1))
+        return Picture([*chart.rows, *words][: self.room.height])
 
     def _charted(self, room: Size, *_: object) -> tuple[Picture, Placed]:
         words = 2
-        if room.height >= 18:
+        if room.height >= 15:
             words = 6 if self.all else 4  # `all` adds the letters of all methods
         size = room.width, max(room.height - words, 1)
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
@@ -246,8 +247,7 @@ class AccuracyPane(Chooser[Point]):
         if self.missing:
             words = []
         if self.aim is not None:
-            note = "" if self.pointer or self.cursor else "current h"
-            words = [point_words(self.aim, self.chart, note)]
+            words = [point_words(self.aim, self.chart)]
         if not self.missing:
             points = [point for method in self.cast for point in self.points_of(method)]
             cheapest = front(points, self.chart, "evaluations")

@@ -137,7 +137,7 @@ class TimeChart(Pane):
         )
 
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
-        room = self.room.width - 6
+        room = self.room.width - 4
         if self.pointer is not None and (reading := plot.at(self.pointer)) is not None:
             return _read_out(reading, [self.cast[place].letter for place in plot.places], room)
         known = [method.letter for method in self.cast if method.modified_energy]
@@ -147,7 +147,8 @@ class TimeChart(Pane):
             return source.ghost.label
         if not source.knows_past:
             return "reading what came before …"
-        return "e: quantity, w: window, z: zoom, y: axes"
+        keys = "e: quantity, w: window, z: zoom, y: axes"
+        return keys if len(keys) <= room else keys.rpartition(",")[0]
 
     async def on_click(self) -> None:
         await self.run_action("screen.quantity")

@@ -182,11 +182,6 @@ PASSES = (300, 10_000)
 MAX_Z = 3.0
 
 
-def _grid(cast: Cast) -> Grid:
-    theta = (np.arange(48) + 0.5) * math.pi / 48
-    return Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
-
-
 def outcome(cell: Any) -> str:
     """Write "held, error 2e-2" or "over the top, step 41"."""
     if cell["fate"] == UNKNOWN:
@@ -236,7 +231,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self._begin(())
 
     def _begin(self, cast: Cast) -> None:
-        self.grid = _grid(cast)
+        theta = (np.arange(48) + 0.5) * math.pi / 48
+        self.grid = Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
         self.cells: Cells = self.grid.unknown()
         self._is_begun = False
         self._title = ""
@@ -271,8 +267,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return abs(self.source.stepping.own[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
-        if self.cursor or self.pointer:
-            return self.cursor or self.pointer
+        if chosen := self.cursor or self.pointer:
+            return chosen
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
         z, theta = here
@@ -294,7 +290,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if self.places and (aim := self.aim(self.index)):
             words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
         blank: Row = [("", TEXT)]
-        below = [*self.words(f"{self._state}{words}"), blank, blank][:2]
+        below = [*self.words(f"{self._state}{words}", rows=2), blank, blank][:2]
         return Picture([*side_by_side(panels, 2), *below, *self._legend])
 
     def _panel(self, index: int, frame: Frame) -> list[Row]:

@@ -27,16 +27,14 @@ def few(number: float) -> str:
     return f"{number:.3g}"
 
 
-def point_words(point: Point, kind: ErrorKind, note: str) -> str:
-    """Write a point's method, h, error and force evaluations, and a note."""
+def point_words(point: Point, kind: ErrorKind) -> str:
+    """Write a point's method, h, error and force evaluations."""
     error = f"{kind} error {point.errors[kind]:.1e}"
     if flaw := point.flaws[kind]:
         error += f" ({REASONS[flaw]})"
     swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
     text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
-    return "; ".join(
-        filter(None, [f"{text} for {point.force_evaluations} force evaluations", note])
-    )
+    return f"{text} for {point.force_evaluations} force evaluations."
 
 
 def front_words(found: Sequence[Cheapest], cost: Cost) -> str:

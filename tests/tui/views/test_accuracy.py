@@ -43,7 +43,7 @@ def test_the_guides_have_the_measured_orders_of_the_error_on_the_chart(kind, ord
 
 
 @asynccontextmanager
-async def accuracy_view(scene=SCENES["drift"], size=(80, 30)):
+async def accuracy_view(scene=SCENES["drift"], size=(80, 24)):
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)

@@ -5,8 +5,9 @@ from itertools import combinations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from textual.geometry import Region
+from textual.geometry import Region, Size
 
+from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.lab import SMALL, places
 from pendu_tui.tui.views.view import Pane
@@ -51,3 +52,11 @@ def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps):
     for frame in range(1, 10 * fps + 1):
         pane.follow(frame, Shown(), frame * passed)
     assert len(drawn) == min(10 * fps, 10 * fps * passed // Pane.EVERY)
+
+
+def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():
+    pane = Pane()
+    pane.room = Size(10, 2)
+    texts = "one two", "three four five"
+    assert pane.words(*texts, rows=2) == [[("one two", TEXT)], [("three fo …", TEXT)]]
+    assert len(pane.words(*texts, rows=3)) == 3
