@@ -234,6 +234,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.25,
         watch="h·omega = 2.5, beyond Verlet's limit of 2: in 1/4 s its bob is gone.",
+        shot=Shot(front=("velocity_verlet", "rk4", "implicit_midpoint", "imex_euler")),
     ),
     Scene(
         "stiff-resonance",
