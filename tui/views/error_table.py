@@ -8,7 +8,7 @@ from typing import NamedTuple
 from textual import events
 
 from pendu_tui.engine.methods import Method
-from pendu_tui.engine.models.model import ExtraColumn, Model
+from pendu_tui.engine.models.model import ExtraColumn
 from pendu_tui.engine.quantities import (
     ENERGY_ERROR,
     EVALUATIONS,
@@ -79,22 +79,20 @@ COLUMNS = (
 )
 
 
-def extra_columns(model: Model) -> list[Column]:
-    def column(extra: ExtraColumn) -> Column:
-        def cell(line: TableLine, width: int) -> str:
-            return fitting(extra.value(line.reading.extra), width, ".3g", *UNSIGNED)
+def extra_column(extra: ExtraColumn) -> Column:
+    def cell(line: TableLine, width: int) -> str:
+        return fitting(extra.value(line.reading.extra), width, ".3g", *UNSIGNED)
 
-        head = Head(extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7))
-        return Column(6, head, cell)
-
-    return [column(each) for each in model.extra_columns]
+    head = Head(extra.head, 7, extra.wide_head, max(len(extra.wide_head), 7))
+    return Column(6, head, cell)
 
 
 def _columns(
     source: Source, width: int, names: int, more: Sequence[Column]
 ) -> list[tuple[str, int, Column]]:
     """Return heads and widths of the columns that fit; h only where methods differ in it."""
-    columns = [*COLUMNS[:5], *more, *extra_columns(source.scene.equations), *COLUMNS[5:]]
+    extra = map(extra_column, source.scene.equations.extra_columns)
+    columns = [*COLUMNS[:5], *more, *extra, *COLUMNS[5:]]
     if len(set(source.stepping.own)) == 1:
         columns = [column for column in columns if column.head.narrow != "h"]
     first = 0

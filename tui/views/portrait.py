@@ -167,18 +167,14 @@ def draw_points(canvas: Canvas, viewport: Viewport, points: Sequence[PhasePoint]
     places = [(point, viewport.x(point.theta), viewport.y(point.omega)) for point in points]
     for point, right, down in places:
         canvas.disc(right, down, DISC, point.ink, hollow=point.ink == EXACT)
-    for point, right, down in places:
-        if math.isfinite(right) and math.isfinite(down):
-            _write_letter(canvas, right, down, point)
-
-
-def _write_letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
-    column = int(min(max(x, 0), canvas.width - 1)) // 2
-    row = int(min(max(y, 0), canvas.height - 1)) // 4
-    near = [(column + right, row + down) for right, down in BESIDE]
-    if not (0 <= x < canvas.width and 0 <= y < canvas.height):
-        near.insert(0, (column, row))
-    canvas.label_near(near, point.letter, point.ink)
+    for point, x, y in places:
+        if math.isfinite(x) and math.isfinite(y):
+            column = int(min(max(x, 0), canvas.width - 1)) // 2
+            row = int(min(max(y, 0), canvas.height - 1)) // 4
+            near = [(column + right, row + down) for right, down in BESIDE]
+            if not (0 <= x < canvas.width and 0 <= y < canvas.height):
+                near.insert(0, (column, row))
+            canvas.label_near(near, point.letter, point.ink)
 
 
 def method_points(

@@ -66,10 +66,10 @@ def scores(cells: Cells, steps: int) -> Scores:
     return np.select([cells["fate"] == UNKNOWN, is_held], [-1.0, 1 + digits], survived)
 
 
-def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:
+def in_pairs(panels: Sequence[Sequence[Row]]) -> list[Row]:
     rows: list[Row] = []
-    for first in range(0, len(panels), across):
-        for left, *others in zip(*panels[first : first + across], strict=True):
+    for first in range(0, len(panels), 2):
+        for left, *others in zip(*panels[first : first + 2], strict=True):
             rows.append([*left, *(cell for row in others for cell in (("  ", NOBODY), *row))])
     return rows
 
@@ -291,7 +291,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
             words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
         blank: Row = [("", TEXT)]
         below = [*self.words(f"{self._state}{words}", rows=2), blank, blank][:2]
-        return Picture([*side_by_side(panels, 2), *below, *self._legend])
+        return Picture([*in_pairs(panels), *below, *self._legend])
 
     def _panel(self, index: int, frame: Frame) -> list[Row]:
         here = self.here(index)

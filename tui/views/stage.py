@@ -276,7 +276,7 @@ class Stage(Pane):
         model = scene.equations
         held = self.shown.held is not None
         ghosts = {}
-        if source.ghost is not None and not held:
+        if source.ghost is not None:
             ghosts = source.ghost.rods(sample.t)
         trails = source.history.thetas(TRAIL)
         bobs = []
@@ -339,8 +339,10 @@ class Stage(Pane):
     async def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._down is None:
             return
-        drag = [*self._drag]
-        self._let_go()
+        drag = self._drag
+        self.release_mouse()
+        self._down = None
+        self._drag = []
         if drag:
             self.post_message(Held(None))
             self._throw(drag, event.time)
@@ -360,11 +362,6 @@ class Stage(Pane):
         fastest = HARDEST * self.source.scene.w0
         omega = round(min(max(omega, -fastest), fastest), 2)
         self.start_at(last_theta, omega)
-
-    def _let_go(self) -> None:
-        self.release_mouse()
-        self._down = None
-        self._drag.clear()
 
     def _place_at(self, event: events.MouseUp) -> int | None:
         """Return the place in the cast whose lane, or bob on a spring, was clicked."""

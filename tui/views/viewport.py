@@ -32,6 +32,7 @@ class Reach(NamedTuple):
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> Reach:
     fastest = scene.equations.fastest
+    angles, errors = _steps(scene.equations, scene.theta, scene.omega)
     staying = []
     for place in shown:
         limit = scene.cast[place].linear_limit
@@ -39,17 +40,11 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
             staying.append(place)
 
     def widest(places: Iterable[int]) -> float:
-        errors = [sample.readings[place].max_energy_error for place in places]
-        return _angle(scene.equations, scene.theta, scene.omega, max(errors, default=0.0))
+        largest = max((sample.readings[place].max_energy_error for place in places), default=0.0)
+        step = bisect_right(errors, largest)
+        return angles[step] if step < len(errors) else math.pi
 
     return Reach(widest(staying), widest(shown))
-
-
-def _angle(model: Model, theta: float, omega: float, largest: float) -> float:
-    """Return the angle [rad] that no energy error up to the `largest` leaves; pi for all."""
-    angles, errors = _steps(model, theta, omega)
-    step = bisect_right(errors, largest)
-    return angles[step] if step < len(errors) else math.pi
 
 
 @lru_cache(maxsize=8)

@@ -104,7 +104,7 @@ def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | No
     ]
     for milestone in sorted(recent, key=lambda each: (PRIORITY.index(each.kind), -each.step)):
         if milestone.kind != "verdict":
-            return milestone_insight(milestone, _is_conserved(source))
+            return milestone_insight(milestone, source.scene.equations.conserves_energy)
         found = drift(source, source.scene.cast.index(milestone.method))
         if milestone.verdict == BOUNDED:
             found = bounded(source, hidden)
@@ -130,7 +130,8 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
         if each.kind in ("over the top", FAILED) and each.method.key not in hidden
     }
     first = sorted(ended.values(), key=lambda each: (each.kind != FAILED, each.step))
-    found = [milestone_insight(each, _is_conserved(source)) for each in first]
+    conserved = source.scene.equations.conserves_energy
+    found = [milestone_insight(each, conserved) for each in first]
     if staying := bounded(source, hidden):
         found.append(staying)
     for index, method in enumerate(source.scene.cast):
@@ -142,10 +143,6 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     if watch and not is_outdated:
         found.append(watch)
     return found
-
-
-def _is_conserved(source: Source) -> bool:
-    return source.scene.equations.conserves_energy
 
 
 def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
@@ -214,7 +211,7 @@ def drift(source: Source, index: int) -> Insight | None:
     name = short_name(method)
     if found := irregular(method, judgement, error):
         return found
-    conserved = _is_conserved(source)
+    conserved = source.scene.equations.conserves_energy
     if verdict == LOSES and conserved and error < -0.5:  # more telling than the rate
         return Insight("lost", f"{name} has lost {_share(-error)} of its energy.")
     rate = judgement.slope or 0.0

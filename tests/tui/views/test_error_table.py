@@ -4,7 +4,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.tui.drawing.picture import GOOD, QUIET, TEXT, WARN
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_columns, table
+from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_column, table
 from pendu_tui.tui.words.cards import head_text
 from tests.tui.harness import after
 from tests.tui.harness import lab as on_screen
@@ -49,5 +49,5 @@ async def test_a_head_under_the_pointer_says_what_it_means():
 
 
 def test_every_head_has_a_meaning():
-    for column in (*COLUMNS, *extra_columns(SCENES["stiff-limit"].equations)):
+    for column in (*COLUMNS, *map(extra_column, SCENES["stiff-limit"].equations.extra_columns)):
         assert head_text(column.head.narrow) == head_text(column.head.wide) is not None
