@@ -356,7 +356,9 @@ class Series:
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
         if not len(used):
-            why = "no row has a usable time and energy in this range."
+            whole = times[is_later]
+            why = f"it has times from {whole[0]:g} to {whole[-1]:g} {self.units[0]}".rstrip()
+            why += f", none from {begin:g} to {last:g}."
             if self.diverged_at is not None:
                 why = f"at {self.diverged_at:g} its energy is nan or infinite already; "
                 why += "begin later with --from, or repeat it with smaller steps."

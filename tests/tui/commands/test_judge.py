@@ -105,6 +105,7 @@ def test_only_rows_in_the_range_of_time_are_judged():
     answer = guess("t (ps),E\n" + lines("{t},{e}"), "--from", "5e3fs", "--to=20", "--json").json
     assert (answer["first_time"], answer["last_time"]) == (5, 20)
     assert judge(TABLE, "--to", "nan").refused(2, "nan")
+    assert judge(TABLE, "--from", 50).refused(3, "from 0 to 29.9, none from 50")
 
 
 def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
