@@ -13,7 +13,7 @@ class Command(NamedTuple):
     """A command, which `run` of the module of its name in tui/commands does."""
 
     about: str  # in pendu-tui --help, and the first sentence above its options
-    options: tuple[str, ...]
+    options: str  # names, with blanks between them
     examples: str
     more: str = ""  # above its options
     place: str = ""  # MODULE:FUNCTION in tui/commands, if it is another
@@ -24,7 +24,7 @@ STILL = {"theme": "dark", "pixels": "braille"}
 COMMANDS = {
     "live": Command(
         "the lab: methods side by side, their errors, a recording",
-        ("SCENE", "--speed", "--equal-cost", "RECORDING", "TERMINAL"),
+        "SCENE --speed --equal-cost RECORDING TERMINAL",
         """\
   pendu-tui
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
@@ -34,7 +34,7 @@ COMMANDS = {
     ),
     "tour": Command(
         "a tour of the lab: nine short steps, with questions and their answers",
-        ("--no-record", "TERMINAL"),
+        "--no-record TERMINAL",
         """\
   pendu-tui tour
 
@@ -44,10 +44,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     ),
     "replay": Command(
         "play a recording on the lab's screen",
-        (
-            *("file", "--start-at", "--method", "--speed"),
-            *("--loop", "--paused", "--no-record", "TERMINAL"),
-        ),
+        "file --start-at --method --speed --loop --paused --no-record TERMINAL",
         """\
   pendu-tui replay latest
   pendu-tui replay drift
@@ -58,7 +55,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     ),
     "snapshot": Command(
         "save the lab as an SVG image, with the same bytes each time",
-        ("SCENE", "--time", "--size", "PICTURE", "-o", "--force"),
+        "SCENE --time --size PICTURE -o --force",
         """\
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
@@ -68,7 +65,7 @@ Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab res
     ),
     "serve": Command(
         "the lab in a browser, for a class without terminals; each tab gets its own",
-        ("--port", "--host", "--at-most", "--record", "SCENE", "PICTURE"),
+        "--port --host --at-most --record SCENE PICTURE",
         """\
   pendu-tui serve --port 8080 --scene crossover
   pendu-tui serve --at-most 30 --record recorded/
@@ -80,10 +77,7 @@ Ctrl+C ends it.
     ),
     "accuracy": Command(
         "speed against accuracy: which method, which h, at what cost",
-        (
-            *("SCENE", "--all", "--time", "--h-values", "--error", "--cost"),
-            *("--target", "WORKERS", "FORM", "--force"),
-        ),
+        "SCENE --all --time --h-values --error --cost --target WORKERS FORM --force",
         """\
   pendu-tui accuracy --target 1e-6 --time 100
   pendu-tui accuracy --cost seconds --methods taylor_20,rk4
@@ -94,10 +88,7 @@ Exit code 1: no method reaches the target.
     ),
     "stability": Command(
         "where each method becomes unstable, in theory and as measured",
-        (
-            *("SCENE", "--theta-values", "--z-values", "--steps"),
-            *("FORM", "--force", "WORKERS"),
-        ),
+        "SCENE --theta-values --z-values --steps FORM --force WORKERS",
         """\
   pendu-tui stability --theta 120deg --h 0.3
   pendu-tui stability --steps 1000 -o limits.svg
@@ -108,10 +99,7 @@ CSV has every swing of the map; a figure shows the limits over the amplitude.
     ),
     "run": Command(
         "run a scene without the screen and judge each method; for CI",
-        (
-            *("SCENE", "--time", "--record", "--sample-every", "--fail-if"),
-            *("FORM", "--force", "WORKERS"),
-        ),
+        "SCENE --time --record --sample-every --fail-if FORM --force WORKERS",
         """\
   pendu-tui run --time 100
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
@@ -128,11 +116,8 @@ verdicts:
     ),
     "judge": Command(
         "judge the energies of another program, from a file or stdin; for CI",
-        (
-            *("files", "--time", "--energy", "--table", "--step", "--units"),
-            *("--from", "--to", "--scale", "--atoms", "--temperature", "--steps"),
-            *("--fail-if", "--json"),
-        ),
+        "files --time --energy --table --step --units --from --to --scale --atoms "
+        "--temperature --steps --fail-if --json",
         """\
   pendu-tui judge energy.xvg
   pendu-tui judge md.log.gz --fail-if 'verdict != bounded' --atoms 648 --temperature 300
@@ -152,7 +137,7 @@ verdict failed is exit code 1.
     ),
     "verify": Command(
         "re-simulate recordings and compare every bit",
-        ("files", "--methods", "--method", "--max-steps", "--json"),
+        "files --methods --method --max-steps --json",
         """\
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
@@ -165,7 +150,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "export": Command(
         "write a recording as CSV, a row for each sample and method",
-        ("file", "-o", "--force"),
+        "file -o --force",
         """\
   pendu-tui export latest -o latest.csv
   pendu-tui export killed.mcap.part -o killed.csv
@@ -173,7 +158,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "recordings": Command(
         "list the recordings, show or recover one",
-        ("verb", "file", "--json", "RECOVER"),
+        "verb file --json RECOVER",
         """\
   pendu-tui recordings show latest
   pendu-tui recordings recover swing.mcap.part -o saved.mcap
@@ -181,7 +166,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "scenes": Command(
         "list the scenes, with what to watch",
-        ("name", "--json"),
+        "name --json",
         """\
   pendu-tui scenes crossover
   pendu-tui scenes --json | jq -r '.scenes[].name'
@@ -190,7 +175,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "methods": Command(
         "list the methods with claimed and measured properties",
-        ("names", "--method", "--fail-if", "--json"),
+        "names --method --fail-if --json",
         """\
   pendu-tui methods rk4 verlet
   pendu-tui methods --method mine.py:step --fail-if 'order < 1.9 or symplectic != yes'
@@ -200,7 +185,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
     ),
     "doctor": Command(
         "check the terminal, its colours, the recordings folder and versions; suggest fixes",
-        ("--json",),
+        "--json",
         """\
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
 """,

@@ -303,7 +303,7 @@ def add_options(parser: argparse.ArgumentParser, name: str) -> None:
     """Add the options of a command, and its examples below them."""
     command = COMMANDS[name]
     parser.set_defaults(**UNASKED)
-    _add(parser, name, command.options)
+    _add(parser, name, command.options.split())
     parser.set_defaults(**command.defaults)
     parser.epilog = f"examples:\n{command.examples}".replace("{verdicts}", MEANINGS)
 

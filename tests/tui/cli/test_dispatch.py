@@ -132,7 +132,7 @@ def test_every_option_is_explained_and_the_parser_takes_the_examples():
 def test_every_row_of_the_table_belongs_to_a_command():
     asked = set()
     for name in COMMANDS:
-        names = [*COMMANDS[name].options]
+        names = COMMANDS[name].options.split()
         for each in names:
             key = f"{name} {each}"
             asked |= {key, each}
