@@ -78,7 +78,7 @@ def test_a_failed_method_and_a_value_that_is_not_known_trip_every_comparison(unk
 def test_the_time_of_divergence_can_be_asked_for():
     diverged = reading(diverged_at=3.0)
     assert parse("rk4.diverged_at >= 0")(reading()) == ""
-    assert parse("rk4.diverged_at >= 0")(diverged)
+    assert parse("rk4.diverged_at >= 0")(diverged) == "rk4.diverged_at is 3"
     assert parse("rk4.diverged_at < 2")(diverged) == ""
 
 
@@ -104,6 +104,8 @@ def test_a_verdict_is_compared_with_one_of_its_words(word):
             "for example 'any.max_energy_error > 1e-2 or any.verdict != bounded'",
         ),
         ("rk4.energy > 1e999", "is not a finite number"),
+        ("x" * 60, f"{'x' * 60}' is not a comparison"),
+        ("x" * 61, f"{'x' * 57}...' is not a comparison"),
         ("velocity_verlt.energy > 1", "no method 'velocity_verlt': did you mean velocity_verlet?"),
         ("rk4.max_enrgy_error > 1", "'max_enrgy_error': did you mean max_energy_error?"),
     ],
@@ -161,6 +163,9 @@ def test_a_limit_on_a_slope_is_compared_with_its_bound(expression, slope, bound,
     failure = gate({"": {"trend": slope, "bound": bound}})
     assert failure.startswith(outcome)
     assert bool(failure) == bool(outcome)
+    gate = parse("absolute_trend > 1", ["absolute_trend"])
+    row = {"absolute_trend": 2.0, "bound": 9.0, "absolute_bound": 1.0}
+    assert gate({"": row}) == "absolute_trend is 2"
 
 
 def test_what_cannot_be_judged_does_not_pass_and_says_what_would_help():

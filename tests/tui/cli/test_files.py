@@ -1,6 +1,7 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
 import ctypes
+import errno
 import gc
 import os
 import signal
@@ -16,7 +17,9 @@ import pytest
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
+from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.options import resolve
 from tests.tui.command_line import pendu
 
 WRITERS = {
@@ -80,6 +83,27 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
 
     with pytest.raises(KeyboardInterrupt):
         wait()
+
+
+@pytest.mark.parametrize(
+    ("number", "advice"),
+    [
+        (errno.ENOENT, "choose a folder that exists"),
+        (errno.ENOSPC, "free some space or write elsewhere"),
+        (errno.EACCES, "choose a writable location"),
+        (errno.EROFS, "choose a writable location"),
+    ],
+)
+def test_an_error_of_a_file_comes_with_advice(number, advice):
+    found = explained(OSError(number, "why", "x.csv"))
+    assert (found.code, str(found)) == (5, f"x.csv: why; {advice}.")
+
+
+def test_a_bundled_recording_comes_before_one_of_the_library(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    (tmp_path / "drift.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
+    assert resolve("drift") == GOLDEN / "drift.mcap"
+    assert resolve("drift.mcap") == resolve("latest") == tmp_path / "drift.mcap"
 
 
 def test_force_does_not_replace_a_folder(tmp_path):

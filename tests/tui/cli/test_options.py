@@ -1,6 +1,5 @@
 """Numbers and names of a scene from options."""
 
-import math
 import re
 
 import pytest
@@ -37,25 +36,6 @@ def test_a_ladder_has_up_to_1000_step_sizes_the_largest_first():
     assert ladder("0.001:0.2:1000") == (0.2, 0.001, 1000)
     with pytest.raises(ValueError, match="is not a list of up to 1000 step sizes"):
         ladder("0.2:0.1:1001")
-
-
-DEFAULTS = {
-    "live": {"theme": "auto", "pixels": "auto", "speed": None, "plain": False},
-    "replay drift": {"start_at": 0.0, "loop": False, "paused": False},
-    "snapshot": {"time": 12.0, "size": (120, 40), "theme": "dark", "pixels": "braille"},
-    "serve": {"host": "127.0.0.1", "port": 8000, "at_most": 20, "theme": "dark"},
-    "accuracy": {"error": "theta", "cost": "evaluations", "workers": 1, "all": False},
-    "stability": {"steps": 10_000, "workers": 1},
-    "judge a.csv": {"start": (-math.inf, ""), "end": (math.inf, "")},
-    "recordings": {"verb": "list"},
-}
-
-
-@pytest.mark.parametrize("line", DEFAULTS)
-def test_what_is_not_given_is_as_the_help_says(line):
-    name, *words = line.split()
-    options = vars(parser_of(name).parse_args(words))
-    assert DEFAULTS[line].items() <= options.items()
 
 
 @pytest.mark.parametrize("text", ["0", "2", "nan"])

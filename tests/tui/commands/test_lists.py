@@ -8,7 +8,7 @@ from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import GROUPS, SCENES
 from pendu_tui.tui.commands.lists import MEASURED
-from pendu_tui.tui.words.cards import method_card, scene_card
+from pendu_tui.tui.words.cards import scene_card
 from tests.tui.command_line import pendu
 
 
@@ -49,7 +49,6 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
 def test_methods_that_are_named_are_listed_alone():
     listed = pendu("methods", "rk4", "verlet", "--json").json["methods"]
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
-    assert method_card(METHODS[0]) in pendu("methods", METHODS[0].key).out
     assert pendu("methods", "rk5").refused(2, "rk4")
 
 

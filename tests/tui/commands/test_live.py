@@ -36,6 +36,12 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert pendu("live", "--plain").refused(5, str(path))
 
 
+def test_a_picture_has_the_name_of_its_scene(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert pendu("snapshot", "--scene", "spin", "--time", 0, "--size", "60x16").code == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["spin.svg"]
+
+
 def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
     screens = []
     monkeypatch.setattr("pendu_tui.tui.commands.lab.check_terminal", lambda: None)
@@ -48,7 +54,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
     for command in (
         replay,
         ("replay", "drift"),
-        ("live", "--equal-cost", "--no-record"),
+        ("live", "--equal-cost", "--no-record", "--speed", 3),
         ("live",),
     ):
         assert pendu(*command).code == 0
@@ -59,9 +65,11 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
     assert (given.playhead.speed, usual.playhead.speed) == (2.0, 1.0)
     assert (usual.looping, usual.playhead.paused, usual.playhead.position) == (False, False, 0.0)
     assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
+    assert (equal.playhead.speed, live.playhead.speed) == (3.0, 1.0)
+    behind = ("--start-at", usual.length + 0.02)
+    assert pendu("replay", "drift", *behind).refused(2, f"0 to {usual.length:.2f} s")
     for source in sources:
         source.close()
-    assert pendu("replay", "drift", "--start-at", 99).refused(2, "--start-at 99 is outside")
 
 
 def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(tmp_path):

@@ -1,7 +1,6 @@
 """`pendu-tui run`: one scene, or every combination of a list."""
 
 import csv
-import math
 import os
 import re
 import signal
@@ -11,13 +10,10 @@ from contextlib import nullcontext
 
 import pytest
 
-from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import count_evaluations
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.words.numbers import about
 from tests.tui.command_line import PENDU, needs_signals, pendu
 
 
@@ -42,22 +38,6 @@ def test_the_progress_of_a_run_is_shown_to_its_end(monkeypatch):
     assert shown == [(step, 40) for step in (0, 10, 20, 30, 40)]
 
 
-def test_the_table_says_what_each_method_does_and_what_happened():
-    out = pendu("run", "--time", 60).out
-    for method, verdict in zip(USUAL_CAST, ["grows", "bounded", "bounded", "loses"], strict=True):
-        assert re.search(rf"^{method.label} +{verdict}", out, re.MULTILINE)
-    assert out.count("Explicit Euler went over the top at 7.15 s") == 1
-    rows = rows_of("--time 60")
-    assert rows["rk4"]["drift_per_second"] == rows["rk4"]["slope"] < 0
-    assert rows["velocity_verlet"]["slope"] is not None
-    assert rows["velocity_verlet"]["drift_per_second"] is None  # no evidence for a trend
-    chaos = "--theta 0.3 --h 0.654514 --time 200 --methods symplectic_euler"
-    row = rows_of(chaos)["symplectic_euler"]
-    assert row["verdict"] == "chaotic"
-    seconds = about(math.log(10) / row["lyapunov_per_second"])
-    assert f"nearby starts separate tenfold every {seconds}." in pendu("run", *chaos.split()).out
-
-
 EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=4.5", "--theta=0"]
 
 
@@ -65,15 +45,6 @@ EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=4.5", "--theta=0"]
 def test_every_scene_and_extreme_start_runs_and_prints_no_nan(start):
     assert pendu("run", start, "--time", 5, "--json").json["steps"]  # its parser refuses nan
     assert not re.search(r"\b(nan|inf)\b", pendu("run", start, "--time", 5).out)
-
-
-def test_evaluations_that_vary_are_counted():
-    rows = rows_of("--scene halving --time 20")
-    scene = SCENES["halving"]
-    for method in scene.cast:
-        start = (scene.theta, scene.omega)
-        counted = count_evaluations(method, scene.equations, start, scene.h, 100)
-        assert rows[method.key]["force_evaluations"] == counted
 
 
 def test_a_failed_method_is_reported_with_its_time():
@@ -151,16 +122,6 @@ def stopped(path, name: str) -> tuple[int, str, str]:
     os.kill(process.pid, getattr(signal, name))
     out, err = process.communicate(timeout=60)
     return process.returncode, out, err
-
-
-def test_other_models_have_the_numbers_and_the_heads_of_their_own():
-    rows = rows_of("--scene stiff-slow --time 5")
-    assert rows["imex_euler"]["spring_energy"] < 1e-4 < rows["rk4"]["spring_energy"] < 0.1
-    assert not {"spring_energy", "log_energy_error"} & rows_of("--time 1")["rk4"].keys()
-    assert "z = h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
-    errors = [row["log_energy_error"] for row in rows_of("--scene damped --time 5").values()]
-    assert errors[0] > 0.3 > abs(errors[3])
-    assert "ln(E/E_true)" in pendu("run", "--scene", "damped", "--time", 5).out
 
 
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")

@@ -19,14 +19,6 @@ def line_of(out, *words):
     return line.split()
 
 
-def test_the_tables_show_theory_next_to_measurement():
-    out = pendu(*SMALL).out
-    assert line_of(out, "RK4", "2.82")[1:3] == ["2.828427125", "2.828427125"]
-    # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
-    row = "28.65° 2.209 0.705 over the top 14.1"
-    assert " ".join(line_of(out, "Velocity Verlet", "28.65°")[2:]) == row
-
-
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
     few = ("stability", "--steps", 5, "--z-values", "0.01,0.02", "--theta-values", 1, "--h", 0.005)
     rows = pendu(*few, "--json").json["pendulum"]

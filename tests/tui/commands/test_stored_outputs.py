@@ -1,0 +1,75 @@
+"""What the commands print, word by word, and the defaults of their options."""
+
+import re
+import shlex
+
+import pytest
+
+from pendu_tui.engine.models import NUMBERS
+from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.dispatch import parser_of
+from tests.recordings.examples import record, two_runs
+from tests.recordings.test_verify import altered
+from tests.tui.command_line import pendu
+
+QUICK = "--time 5 --h-values 0.2:0.01:4"
+FEW = "--steps 300 --z-values 0.1:3:12 --theta-values 0.5,2"
+PRINTED = """\
+run --time 60
+run damped --time 20 --h 0.2 --fail-if 'rk4.verdict != bounded or any.theta_error > 1e-3'
+run stiff-slow --time 5
+run halving --time 20 --methods halving_v,verlet
+run --theta 1e-150 --time 1500 --methods explicit_euler
+run --theta 0.5,1 --h 0.05,0.1 --time 9 --methods rk4,verlet --fail-if 'rk4.slope < -1e-5'
+accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
+accuracy {QUICK} --methods heun --error energy
+stability {FEW}
+methods rk4 backward_euler heun
+scenes crossover
+recordings
+recordings show a
+recordings show cut
+recordings recover cut -o {FOLDER}/saved.mcap
+verify {FOLDER}
+verify b cut
+"""
+HEADS = """\
+run --time 1 --csv
+run --theta 1,2 --time 1 --csv
+accuracy {QUICK} --csv
+stability {FEW} --csv
+export a
+"""
+NEEDED = {"export": ["a"], "judge": ["a"], "replay": ["a"], "verify": ["a"]}
+
+
+@pytest.fixture
+def library(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.setenv("COLUMNS", "100")
+    record(tmp_path / "a.mcap", two_runs())
+    record(tmp_path / "b.mcap", altered(two_runs(), 3, 2, omega=-5.0))
+    cut = record(tmp_path / "cut.mcap", two_runs())
+    cut.write_bytes(cut.read_bytes()[:-40])
+    return tmp_path
+
+
+def test_outputs(snapshot, library):
+    texts = []
+    for lines, most in ((PRINTED, None), (HEADS, 1)):
+        for line in lines.splitlines():
+            filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library)
+            outcome = pendu(*shlex.split(filled))
+            shown = outcome.out.splitlines()[:most]
+            texts += ["", f"$ {line}", *shown, f"[{outcome.code}] {outcome.err.strip()}"]
+    text = "\n".join(each.rstrip() for each in texts).replace(str(library), "FOLDER")
+    text = re.sub(r"in \d+\.\d+ s$", "in N s", text, flags=re.MULTILINE)
+    snapshot("outputs.txt", re.sub(r"computed .*", "computed X", text) + "\n")
+
+
+def test_defaults(snapshot):
+    texts = []
+    for name in COMMANDS:
+        options = vars(parser_of(name).parse_args(NEEDED.get(name, [])))
+        texts += [f"{name} {key} = {options[key]}" for key in sorted({*options} - {*NUMBERS})]
+    snapshot("defaults.txt", "\n".join(texts) + "\n")
