@@ -96,15 +96,6 @@ def test_the_most_common_labels_of_the_lab(labels, text):
     assert " ".join(labels.values()) == text
 
 
-@given(st.floats(0, 1e9), st.floats(0.5, 1e6), st.integers(8, 200))
-def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns):
-    labels = list(time_axis(start, start + size, columns).labels.values())
-    assert len(labels) <= columns / 10 + 2
-    units = [label.partition(" ")[2] for label in labels]
-    assert set(units[:-1]) <= {""}
-    assert set(units[-1:]) <= {"s", "min", "h"}
-
-
 @st.composite
 def series(draw):
     """Times that ascend, some of them equal, on an edge or well beside it; values with gaps."""

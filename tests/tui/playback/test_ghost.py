@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.tui.drawing.picture import faint, ink_of
-from pendu_tui.tui.views.lab import TimeChart
-from pendu_tui.tui.views.stage import Stage
-from tests.tui.drawn import inks
-from tests.tui.harness import after, lab
+from tests.tui.harness import after
 
 OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 
@@ -27,20 +23,6 @@ def test_its_pendulums_and_errors_are_where_a_lab_with_its_step_size_would_have_
     low = found.window(4.0).low["energy_error"][:, 0]
     high = found.window(10.0).high["energy_error"][:, 0]
     assert np.nanmax(high) > np.nanmax(low) > 0
-
-
-async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_has():
-    async with lab() as theatre:
-        await theatre.run(5)
-        await theatre.press("+", "r")
-        await theatre.run(3)
-        await theatre.settled()
-        first = theatre.stage.query_one(Stage)
-        colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
-        assert colour in inks(first.picture(theatre.source, theatre.source.sample))
-        chart = theatre.stage.query(TimeChart).first()
-        assert colour in inks(chart.plot.picture)
-        assert "dim: before, h 0.05" in str(chart.border_subtitle)
 
 
 def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_one_drops_it():

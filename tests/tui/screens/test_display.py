@@ -8,7 +8,7 @@ from rich.color import Color
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.picture import PALETTES, TEXT
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.app import PenduApp
+from pendu_tui.tui.screens.app import PenduApp, portable
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views import VIEWS
 from tests.tui.drawn import screen
@@ -26,6 +26,7 @@ async def test_a_theme_changes_all_colours_and_no_character():
             await theatre.settled()
             await theatre.pilot.pause()
             seen[theme] = screen(theatre.app)
+            assert theatre.app.current_theme.error == PALETTES[theme].warn
             palette = {Color.parse(PALETTES[theme].colour(ink)) for ink in inks}
             assert {style.color for row in seen[theme] for _, style in row} >= palette
         for dark, light in zip(*map(chain.from_iterable, seen.values()), strict=True):
@@ -61,3 +62,9 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
 def test_an_empty_no_color_means_nothing(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("NO_COLOR", "")
     assert not PenduApp(LabScreen(Live(DEFAULT_SCENE))).no_color
+
+
+def test_a_wide_character_has_two_cells_of_a_picture():
+    svg = portable('<text x="10" y="1" textLength="30">世a</text>')
+    assert svg.count("<text") == 2
+    assert '<text x="10" y="1" textLength="20">世</text><text x="30" y="1" textLength="10">a' in svg

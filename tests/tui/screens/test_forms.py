@@ -50,6 +50,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         await theatre.press("M")
         form = theatre.app.screen
         known = [*METHODS]
+        assert form._methods == [each for each in known if "pendulum" in each.models]
 
         async def click(row):
             await theatre.pilot.click("#cast", offset=(10, row + 1))

@@ -83,6 +83,8 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
     replay.seek(6.0)
     here = " 6.00 s of 12.00 s"
     assert facts(replay, 80) == f"{here}  run 2/3  step  50/200"
+    full = facts(replay, 80)
+    assert [facts(replay, len(full) - less) == full for less in (0, 1)] == [True, False]
     replay.looping = True
     assert facts(replay, 40) == f"{here}  loop  run 2/3"
     assert facts(replay, 0) == here

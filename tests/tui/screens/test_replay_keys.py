@@ -56,6 +56,13 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
         assert replay.playhead.position == pytest.approx(1)
 
 
+async def test_an_incomplete_recording_is_said_to_be_one(path):
+    path.write_bytes(path.read_bytes()[:-40])
+    async with player(path) as theatre:
+        said = [notice.message for notice in theatre.app._notifications]
+        assert any("incomplete (its end is missing" in each for each in said)
+
+
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
     async with player(path) as theatre:
         pilot, playhead = theatre.pilot, theatre.source.playhead
@@ -125,7 +132,8 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
             await theatre.pilot.pause()
         assert " LIVE " in theatre.text(StatusLine)
         assert changed(theatre.source)
-        assert any("new.mcap" in notice.message for notice in theatre.app._notifications)
+        said = f"recorded as {path.with_name('new.mcap')};"
+        assert any(said in notice.message for notice in theatre.app._notifications)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
         await theatre.press("u", "right", "full_stop")

@@ -38,7 +38,7 @@ async def test_a_walk_over_the_keys(snapshot, monkeypatch, tmp_path):
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     texts: list[str] = []
     before: list[str] = []
-    async with lab(size=(110, 34)) as theatre:
+    async with lab(size=(120, 40)) as theatre:
         await theatre.run(2)
         for key in KEYS:
             await theatre.press(key)

@@ -1,3 +1,6 @@
+from contextlib import nullcontext
+from types import SimpleNamespace
+
 import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
@@ -6,6 +9,7 @@ from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     TerminalOptions,
@@ -17,8 +21,8 @@ XTERM = {"TERM": "xterm-256color"}
 
 
 def chosen(arguments: str = "", encoding: str = "utf-8", **environment: str) -> TerminalOptions:
-    options = parser_of("live").parse_args(arguments.split())
-    return terminal_options_of(options, XTERM | environment, encoding)
+    given = parser_of("live").parse_args(arguments.split())
+    return terminal_options_of(given, XTERM | environment, encoding)
 
 
 def test_what_is_asked_for_is_taken_whatever_the_terminal_says():
@@ -48,7 +52,27 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 )
 def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     assert colours({"TERM": term}) == number
-    assert colours({"TERM": term, "COLORTERM": "truecolor"}) == 1 << 24
+    for value in ("truecolor", "24bit"):
+        assert colours({"TERM": term, "COLORTERM": value}) == 1 << 24
+
+
+@pytest.mark.parametrize(
+    ("colour", "ground"),
+    [
+        ("rgb:ffff/ffff/ffff", "light"),
+        ("rgb:0/f/0", "light"),  # green is the brightest
+        ("rgb:f/0/0", "dark"),
+        ("rgba:0000/0000/ffff", "dark"),
+        ("", None),
+    ],
+)
+def test_the_background_is_what_the_terminal_answers(colour, ground, monkeypatch):
+    answer = f"\x1b]11;{colour}\x1b\\\x1b[?6c".encode()
+    asked = SimpleNamespace(write=lambda *_: None, read=lambda *_: answer)
+    monkeypatch.setattr(options, "os", asked)
+    monkeypatch.setattr(options, "select", SimpleNamespace(select=lambda *_: ([0], [], [])))
+    monkeypatch.setattr(options, "key_by_key", lambda _: nullcontext(True))
+    assert options.background() == ground
 
 
 def test_the_screen_has_the_frames_that_were_asked_for():

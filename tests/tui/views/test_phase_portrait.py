@@ -3,11 +3,8 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.drawing.frame import number_ticks, theta_ticks
 from pendu_tui.tui.drawing.picture import FRAME, QUIET
 from pendu_tui.tui.views.portrait import Portrait
 from pendu_tui.tui.views.viewport import Viewport
@@ -65,11 +62,3 @@ def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
         assert near or not (1 <= i < viewport.columns * 2 - 1 and 1 <= j < viewport.rows * 4 - 1)
         passed |= near
     assert passed == orbit  # and nowhere else
-
-
-@given(st.floats(-20, 20), st.floats(1e-3, 100), st.integers(1, 12))
-def test_ticks_are_in_view_and_not_too_many(low, span, most):
-    for ticks in (number_ticks(low, low + span, most), theta_ticks(low, low + span, most)):
-        assert len(ticks) <= 2 * most + 1
-        assert all(low - 1e-3 * span <= value <= low + span * 1.001 for value in ticks)
-        assert len({*ticks.values()}) == len(ticks)
