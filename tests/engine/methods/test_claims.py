@@ -11,11 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import (
     GENERAL,
     METHODS,
     RK4,
     VELOCITY_VERLET,
+    all_named,
     implicit,
     learned,
     matching,
@@ -134,7 +136,7 @@ def test_a_method_of_another_equation_has_no_order(coefficients, why):
     assert [bool(no_order(order)) for order in (0.4, 0.6)] == [True, False]
 
 
-@pytest.mark.parametrize(("parts", "limit"), [(7, 14), (8.1, math.inf)])
+@pytest.mark.parametrize(("parts", "limit"), [(0.1, 0.2), (7, 14), (8.1, math.inf)])
 def test_a_limit_is_found_up_to_sixteen(parts, limit):
     def slower(force, phase, h):
         return VELOCITY_VERLET.phases(force, phase, h / parts)
@@ -159,7 +161,9 @@ def test_a_step_without_a_solution_fails_and_others_of_an_array_do_not():
     theta, omega = step(PENDULUM.force(np.sin), (far, near), 2.2 / PENDULUM.w0)
     assert np.isnan([theta[0], omega[0]]).all()
     assert math.isnan(step(FORCE, (3.0, 0.0), 2.2 / PENDULUM.w0)[0])
-    assert np.isfinite([theta[1], omega[1]]).all()
+    alone = step(PENDULUM.force(np.sin), (near[:1] + 0.1, near[:1]), 2.2 / PENDULUM.w0)
+    assert (theta[1], omega[1]) == alone  # to the bit
+    assert np.isfinite(BACKWARD_EULER.step(FORCE, (1e6, 1.0), 0.05)).all()
 
 
 @given(z=st.floats(0.001, 5.0))
@@ -242,6 +246,8 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
         ("Störmer Verlet", ["velocity_verlet"]),
         ("rk", ["rk4"]),  # those for one scene match only if no general one does
         ("single", []),  # a label is matched whole
+        ("SINGLE VERLET", ["verlet_float32"]),
+        ("uler", []),  # not from the middle of a word
         ("verlet", ["velocity_verlet"]),  # another name
         ("moan", ["blanes_moan_4", "blanes_moan_6"]),  # a later word
         ("learned", ["learned_map", "learned_symplectic_map"]),
@@ -250,3 +256,22 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
 )
 def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed, keys):
     assert [method.key for method in matching(typed)] == keys
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [
+        ("moan", "may be blanes_moan_4 or blanes_moan_6"),
+        ("taylor", "no force evaluations to count"),
+        ("verlt", "choose from explicit_euler, rk4, lagged_verlet, conformal_verlet"),
+        ("rk4 RK4", "given twice"),
+    ],
+)
+def test_a_name_of_no_or_of_several_methods_is_refused(names, why):
+    with pytest.raises(InputError, match=why):
+        all_named(names.split(), model="damped")
+
+
+def test_what_was_measured_is_told_in_words():
+    told = str(measure.measured(IMPLICIT_MIDPOINT.phases)._replace(reversible=False))
+    assert "symplectic        yes\nreversible        no\nstable            at any h" in told

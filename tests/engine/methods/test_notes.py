@@ -18,6 +18,7 @@ from pendu_tui.engine.methods import (
     TAYLOR_20,
     VELOCITY_VERLET,
     method_of,
+    splitting,
 )
 from pendu_tui.engine.methods.learned import (
     FAMILY,
@@ -29,15 +30,16 @@ from pendu_tui.engine.methods.learned import (
 )
 from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET
 from pendu_tui.engine.methods.splitting import FOREST_RUTH
-from pendu_tui.engine.methods.tangent import jacobian
+from pendu_tui.engine.methods.tangent import Stretching, jacobian
 from pendu_tui.engine.methods.verlet import (
     HALVING_RICHARDSON,
     HALVING_VERLET,
     VERLET_COMPENSATED,
+    VERLET_FLOAT32,
     Compensated,
     Float32,
 )
-from pendu_tui.engine.models import Pendulum
+from pendu_tui.engine.models import LinearOscillator, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.spring import Spring
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled, count_evaluations
@@ -67,9 +69,28 @@ def test_forest_ruth_has_the_weaknesses_on_its_card():
     same_cost = Stepping(0.15, equal_cost=True, cast=(FOREST_RUTH, VELOCITY_VERLET)).own
     ours, verlets = map(largest_energy_error, (FOREST_RUTH, VELOCITY_VERLET), same_cost)
     assert 0.6 < ours / verlets < 1
+
+
+@pytest.mark.parametrize("method", splitting.FAMILY, ids=by_key)
+def test_kicks_and_drifts_add_up_to_a_step_of_which_the_longest_is_known(method):
     places = []
-    FOREST_RUTH.step(lambda theta: places.append(theta) or 0.0, (0.0, 1.0), 1.0)
-    assert places[2] - places[1] == pytest.approx(-1.7, abs=0.01)
+    theta, _ = method.step(lambda theta: places.append(theta) or 0.0, (0.0, 1.0), 1.0)
+    assert theta == pytest.approx(1.0, abs=1e-15)
+    longest = max(abs(np.diff(places)))
+    assert method.longest_substep == pytest.approx(max(longest, 1.0))
+    if method is FOREST_RUTH:
+        assert places[2] - places[1] == pytest.approx(-1.7, abs=0.01)
+    _, omega = method.step(lambda theta: 1.0, (0.0, 0.0), 1.0)
+    assert omega == pytest.approx(1.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("w0", [1.0, 3.0])
+def test_neighbours_of_explicit_euler_separate_by_its_growth(w0):
+    stretching = Stretching(EXPLICIT_EULER, LinearOscillator(w0**2), 0.5 / w0)
+    for steps in (30, 70):
+        stretching.carry((1.0, 0.5), steps)
+    assert stretching.steps == 100
+    assert stretching.log == pytest.approx(50 * math.log(1 + 0.5**2))
 
 
 EXACT = [PENDULUM.exact(2.0, 0.0).at(t + 1.0).theta for t in range(100)]
@@ -147,6 +168,7 @@ def test_a_minute_of_step_doubling_takes_the_claimed_evaluations(method):
     counted = count_evaluations(method, PENDULUM, (2.0, 0.0), 0.2, 300)
     assert counted / 300 == pytest.approx(method.force_evaluations, abs=0.5)
     assert count_evaluations(method, PENDULUM, (0.1, 0.0), 0.05, 10) == 60  # undivided
+    assert method_of("respa").force_evaluations == 11  # ten fast steps
 
 
 def log_energy_error(method, evaluations):
@@ -191,6 +213,7 @@ ordinary = st.floats(-1e15, 1e15).filter(lambda x: x == 0 or abs(x) > 1e-15)
 def test_a_number_of_32_bits_is_numpys_float32(a, b):
     x, y = np.float32(a), np.float32(b)
     assert Float32(a) == x
+    assert VERLET_FLOAT32.epsilon == np.finfo(np.float32).eps / 2
     assert Float32(a) + Float32(b) == x + y
     assert Float32(a) * Float32(b) == x * y
     assert isinstance(a * Float32(b), Float32)

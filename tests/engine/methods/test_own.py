@@ -129,9 +129,6 @@ WRONG = {
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
         "mine gives other numbers when it begins again after 37 of 80 steps",
     ),
-    "chance": (
-        euler("theta = theta + __import__('random').random()"), "mine gives other numbers when it begins again"
-    ),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
     "no Python": ("def mine(:", "line 1: invalid syntax."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),

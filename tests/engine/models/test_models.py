@@ -1,6 +1,7 @@
 """What holds for every model, and what each promises besides."""
 
 import math
+from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
@@ -35,6 +36,7 @@ def test_a_start_is_seen_at_its_angle_and_angular_velocity(model, theta, omega):
     seen = model.observe(model.start(theta, omega))
     assert seen[:2] == pytest.approx((theta, omega), abs=1e-14)
     assert list(seen.extra) == [each.name for each in model.variables]
+    assert model.observe(model.rest_phase(theta))[:2] == pytest.approx((theta, 0), abs=1e-14)
 
 
 def changes(model, phase):
@@ -87,6 +89,8 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     assert true == pytest.approx(DAMPED.energy()(DAMPED.exact(2.0, 0.0).at(30.0)))
     expected = [1, math.log(reference.least / true)]
     assert reference.errors(30.0, true * math.e, 0.0) == pytest.approx(expected)
+    assert reference.least == pytest.approx(1e-24 * 9.81)
+    assert math.isfinite(reference.errors(30.0, math.inf)[0])
     # of an energy that is hardly a number, and far back in time, there are still numbers
     assert DampedPendulum(9.81, 0.1).reference(1e-157, 0.0).errors(30.0, 0.0) == [0]
     assert np.isfinite(DampedPendulum(9.81, 20.0).reference(2.0, 0.0).errors(-1000.0, 10.0)).all()
@@ -182,7 +186,16 @@ def test_the_mean_field_has_the_equations_and_the_energy_of_its_docstring(phase)
     energy = omega**2 / 2 + 9.81 * (1 - math.cos(theta)) + 2.0 * field(theta) @ bloch
     assert MEAN_FIELD.energy()(phase) == pytest.approx(energy, abs=1e-13)
     seen = MEAN_FIELD.observe(phase).extra
-    assert list(seen.values()) == pytest.approx([*bloch, np.linalg.norm(bloch) - 1])
+    length = np.linalg.norm(bloch)
+    assert list(seen.values()) == pytest.approx([*bloch, length - 1])
+    assert MEAN_FIELD.extra_columns[0].value(seen) == pytest.approx(length)
+    assert MEAN_FIELD.start(theta, omega) == (theta, omega, 1, 0, 0)
+
+
+def test_the_fastest_motion_may_be_the_swing():
+    for model in (SPRING, MEAN_FIELD):
+        assert model.fastest == max(model.w0, 20.0 if model is MEAN_FIELD else 50.0)
+        assert replace(model, w0_squared=1e6).fastest == 1000.0
 
 
 @given(phase=phases, h=st.floats(0.01, 0.3))

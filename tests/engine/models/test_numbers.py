@@ -48,3 +48,5 @@ def test_a_number_is_read_in_its_unit(read, text, value):
 def test_what_is_no_such_number_is_refused(read, text):
     with pytest.raises(ValueError, match=r"\w"):
         read(text)
+    with pytest.raises(ValueError, match=r"115 is 18\.3 turns"):
+        start_angle("115")
