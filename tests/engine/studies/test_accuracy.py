@@ -152,6 +152,12 @@ LINES = [at(R, 10**n, 10.0 ** (4 - 4 * n), 1e-4 * 10**n) for n in range(1, 5)] +
 ]
 
 
+def test_a_point_knows_its_step_in_each_unit():
+    point = at(R, 20, 1e-5)
+    assert (point.h, point.z) == (0.5, 1.5)
+    assert point.steps_per_swing == pytest.approx(math.tau / 1.5)
+
+
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]

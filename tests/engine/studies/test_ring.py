@@ -40,6 +40,9 @@ def test_a_method_that_overflows_keeps_its_last_ring():
     neighbourhood = Neighbourhood(Scene(theta=1.0, omega=1e9, h=15.0), radius=1e308 / 1e3)
     neighbourhood.advance(500, Stepping(15.0))
     assert all(np.isfinite(ring).all() for ring in neighbourhood.rings)
+    for log_area, ratio in ((700, np.exp(700)), (710, np.inf)):
+        neighbourhood._carried[0].log_area = log_area
+        assert neighbourhood.area_ratios[0] == pytest.approx(ratio)
 
 
 def rings(neighbours, run, most=10_000):
@@ -66,6 +69,16 @@ def test_neighbours_take_the_steps_of_the_run_whenever_they_follow():
     assert np.array_equal(rings(Neighbours(0.1), run), there)
 
 
+def test_neighbours_follow_so_many_steps_at_once_and_in_each_methods_own():
+    run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
+    run.change(Stepping(0.2, True, DRIFT.cast))
+    run.forward(12)
+    for step in (5, 10, 12):
+        found = rings(neighbours, run, most=5)
+        assert neighbours.step == step
+    assert np.array_equal(found, [*expected((48, 0.05))[:3], expected((12, 0.2))[3]])
+
+
 def test_they_go_back_with_the_run_and_begin_again_with_another():
     run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
     run.forward(20)
@@ -85,5 +98,6 @@ def test_they_go_back_with_the_run_and_begin_again_with_another():
 
 def test_a_ring_is_as_wide_in_theta_as_in_omega_over_w0():
     (theta, omega), *_ = Neighbourhood(DRIFT, 0.05).rings
+    assert len(np.unique(theta.round(12))) == 33  # of 64 points: above and below, and two ends
     assert np.ptp(theta) == pytest.approx(2 * 0.05)
     assert np.ptp(omega) == pytest.approx(2 * 0.05 * DRIFT.w0)

@@ -88,8 +88,9 @@ def test_a_curve_beside_a_resonance_is_no_island():
 
 
 def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
-    spun = kind(SYMPLECTIC, 0.1, 0.5, omega=math.pi / 0.5)  # omega h = pi
-    assert (spun.spins, spun.fraction, spun.island) == (True, Fraction(1, 2), True)
+    for omega in (math.pi / 0.5, -math.pi / 0.5):  # omega h = pi
+        spun = kind(SYMPLECTIC, 0.1, 0.5, omega=omega)
+        assert (spun.spins, spun.fraction, spun.island) == (True, Fraction(1, 2), True)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +99,7 @@ def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
 def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(method, theta, z):
     found = kind(method, theta, z)
     assert (found.chaotic, found.rotation) == (True, None)
-    assert found.lyapunov > 0.05
+    assert found.lyapunov > (0.9 if z > 2 else 0.05)
 
 
 @pytest.mark.parametrize(("steps", "chaotic"), [(160, False), (200, True)])
@@ -138,9 +139,9 @@ def test_an_orbit_ends_where_numbers_stop_being_finite():
 
 
 def test_the_nearest_fraction_is_a_small_one():
-    rotations = 0.2499, 0.1672, 0.0159, 0.38, 1.0001, 0.0
+    rotations = 0.2499, 0.1672, 0.0159, 0.38, 1.0001, 0.0, 0.4167, 0.005
     found = [str(nearest_fraction(rotation)) for rotation in rotations]
-    assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0"]
+    assert found == ["1/4", "1/6", "1/63", "3/8", "1", "0", "5/12", "1/200"]
 
 
 @pytest.mark.parametrize(("change", "is_known"), [(5e-5, True), (2e-4, False)])

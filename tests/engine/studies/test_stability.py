@@ -20,14 +20,10 @@ from pendu_tui.engine.methods import (
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.stability import (
-    BAND,
-    ELSEWHERE,
     FATES,
     GREENE_Z,
-    GROWS,
     HELD,
     HOLDS,
-    PARKED,
     UNKNOWN,
     Grid,
     amplification,
@@ -67,9 +63,9 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, step
             worst = max(worst, abs(now - start) / start)
             if abs(phase[0]) > math.pi:
                 expected = "over the top"
-            elif not method.symplectic and now > (1 + BAND) * highest * start:
+            elif not method.symplectic and now > 1.5 * highest * start:
                 expected = "grows"
-            elif not method.symplectic and now < (1 - BAND) * lowest * start:
+            elif not method.symplectic and now < 0.5 * lowest * start:
                 expected = "loses"
             if expected != "holds":
                 break
@@ -92,21 +88,8 @@ def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monke
     cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
     assert len(np.unique(cells["steps"])) > 200
     assert begun[0] == 500
-    assert all(after < (1 - PARKED) * before for before, after in pairwise(begun))
-
-
-@pytest.mark.parametrize("method", USUAL_CAST[1:], ids=lambda method: method.key)
-def test_small_swings_are_held_below_the_linear_limit_and_no_longer_there(method):
-    # RK4's growth sets in slowly above its limit, and its decay below is no failure in 60 steps.
-    ladder, steps, fate = np.linspace(1.9, 3, 111), 500, ELSEWHERE
-    if not method.symplectic:
-        steps, fate = 60, GROWS
-    cells = outcomes(method, np.full(111, 0.05), ladder, steps)
-    first = ladder[np.flatnonzero(cells["fate"] == fate)[0]]
-    assert method.linear_limit <= first < method.linear_limit + 0.05
-    if method.symplectic:
-        small = np.linspace(0.05, 0.6, 12)
-        assert not is_lost(outcomes(method, np.full(12, 2.8), small, 2000)).any()
+    assert len(begun) > 5
+    assert all(after < 7 / 8 * before for before, after in pairwise(begun))
 
 
 @pytest.mark.parametrize(
@@ -155,6 +138,7 @@ GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2
 def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width):
     whole = GRID.unknown()
     assert (whole["fate"] == UNKNOWN).all()
+    assert not is_lost(whole).any()
     for part in GRID.parts(width):
         whole[part.z, part.method] = part.cells()
     assert len(GRID.parts(width)) == 2 * -(-13 // (width or 13))
@@ -195,6 +179,8 @@ def test_a_ladder_has_the_scenes_own_step_and_amplitude():
     own = ladder_of(Scene(theta=1.02, h=0.123), None, None, 100)
     assert own.theta.tolist() == [0.1, 0.5, 1.0, 1.02, 2.0, 3.0]
     assert Scene(h=0.123).z in own.z
+    assert (own.z[0], own.z[-1]) == pytest.approx((1e-3, 3.2))
+    assert np.max(own.z[1:] / own.z[:-1]) == pytest.approx(1.01, abs=1e-4)
     near = ladder_of(Scene(theta=1.005), None, [0.1, 0.2], 100)
     assert near.theta.tolist() == [0.1, 0.5, 1.005, 2.0, 3.0]
     assert near.z.tolist() == sorted([0.1, 0.2, Scene().z])
