@@ -1,8 +1,7 @@
-"""The six names of `from pendu_tui.engine import ...`."""
+"""The names of `from pendu_tui.engine import ...`."""
 
 import math
 import pkgutil
-from importlib import import_module
 from itertools import islice
 
 import numpy as np
@@ -18,11 +17,9 @@ WAVE = 10 + np.cos(TIMES)
 
 
 def test_no_module_hides_a_name_of_the_library():
-    for module in pkgutil.walk_packages(engine.__path__, f"{engine.__name__}."):
-        import_module(module.name)
-    names = set(engine.__all__)
-    assert not names & {module.name for module in pkgutil.iter_modules(engine.__path__)}
-    assert names <= set(dir(engine))
+    modules = {module.name for module in pkgutil.iter_modules(engine.__path__)}
+    assert "run" in modules
+    assert not modules & {*dir(engine)}
 
 
 def test_a_run_has_every_step_of_the_lockstep_as_arrays():
@@ -43,6 +40,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
 def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
     monkeypatch.setattr("pendu_tui.engine.library.MAX_READINGS", 40)
     assert len(simulate(h=0.1, time=2, methods="rk4,verlet").t) == 21
+    assert len(simulate(h=0.1, time=0.3, methods="rk4").t) == 4
     with pytest.raises(ValueError, match="21 steps are too many"):
         simulate(h=0.1, time=2.1, methods="rk4,verlet")
 
@@ -55,7 +53,9 @@ def test_results_print_briefly_and_refuse_other_methods_with_a_sentence():
             results["heun"]
     with pytest.raises(KeyError, match=r"'nope' does not name one .* explicit_euler, "):
         METHODS["nope"]
-    for result in (run, recommend(1e-2, methods="rk4,verlet", time=5)):
+    with pytest.raises(KeyError, match="one method"):
+        METHODS["blanes"]
+    for result in (run, recommend(1e-2, "spin", methods="rk4,verlet", time=1)):
         assert "rk4" in repr(result)
         assert len(repr(result)) < 1000
 
@@ -91,6 +91,8 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size
     assert (found.verdict, found.scale) == ("grows", pytest.approx(size))
     assert abs(found.slope * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
+    assert found.error == pytest.approx((RISING[-1] - RISING[0]) / found.scale)
+    assert judge(TIMES, WAVE).max_error == pytest.approx(2 / 11, rel=1e-3)  # downwards
 
 
 def test_a_trend_is_never_beyond_doubles():
@@ -102,6 +104,10 @@ def test_a_judged_series_prints_as_the_command_does():
     lines = str(judge(TIMES, WAVE)).splitlines()
     assert [line.split("  ")[0] for line in lines] == ["verdict", "trend", "bound", "energy error"]
     assert lines[0].endswith("bounded")
+    found = judge(TIMES, WAVE)
+    for size in (1, found.scale):
+        assert f"{found.slope * size:+.2e} ± {found.uncertainty * size:.0e} per" in lines[1]
+    assert "grows, then settles" in str(judge(TIMES, WAVE + 50 * (TIMES > 500)))
     assert "nan" not in str(judge(TIMES, [*WAVE[:-1], math.nan]))
     half_the_band = WAVE + TIMES / len(TIMES)  # rises by 1, in a band from -1 to 1
     assert "+50 % of the band" in str(judge(TIMES, half_the_band))
@@ -136,13 +142,14 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: judge(TIMES, WAVE, scale=np.array([1.0, 2.0])), "not a finite number"),
         (lambda: judge(TIMES, WAVE, scale=math.nan), "not a finite number"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
-        (lambda: simulate("swing", time=1), "no scene 'swing': did you mean"),
+        (lambda: simulate("swing" + "x" * 99, time=1), f"no scene 'swing{'x' * 55}';"),
         (lambda: simulate(5, time=1), "no scene '5'"),
         (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'"),
         (lambda: simulate(time=1, methods=5), "no method '5'"),
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
-        (lambda: simulate(time=1e8), "use every="),
+        (lambda: simulate(time=126_000), "use every="),  # ten million readings
+        (lambda: simulate(time=True), "time = True"),
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, tetha=2.0), "no number 'tetha': did you mean theta"),
@@ -152,6 +159,7 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: recommend(1e-3, time=0), "time = 0 is not above zero"),
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
+        (lambda: limits("linear"), "a pendulum that swings"),
         (lambda: limits(steps=0), "steps = 0"),
     ],
 )
@@ -166,6 +174,10 @@ def test_limits_are_where_the_swing_is_lost():
     assert (verlet.linear, verlet.reason) == (2, "over the top")
     assert found["rk4"].reason == "loses"
     assert found["blanes_moan_6"].z is None
+    assert limits(theta=2.0, methods="verlet", steps=5)["verlet"].z != verlet.z
+    assert list(limits(steps=5)) == GENERAL
+    theta, energy = (recommend(1e-2, methods="rk4", time=5, error=e) for e in ("theta", "energy"))
+    assert energy[0].point.steps != theta[0].point.steps
     for share, held in [(0.98, True), (1.0, False)]:
         run = simulate(theta=2.0, h=share * verlet.h, time=1000 * verlet.h, methods="verlet")
         assert (np.abs(run["verlet"].theta).max() < math.pi) == held
