@@ -150,14 +150,6 @@ def test_from_a_tiny_start_relative_errors_stay_finite_too():
     assert readings[0].energy_error > 1e290
 
 
-@pytest.mark.skipif(not available(), reason="Numba is not installed")
-@each_scene
-def test_methods_that_are_not_general_have_plain_loops(scene):
-    for method in scene.cast:
-        general = method.general and not scene.equations.without_force
-        assert isinstance(compiled(method, scene.equations), PlainLoops) == (not general)
-
-
 @st.composite
 def scenes_within_limits(draw):
     scene = EXAMPLES[draw(st.sampled_from([*MODELS]))]
