@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from pendu_tui.engine.methods.method import HAIRER, Method
-from pendu_tui.engine.models import FIRST_ORDER
+from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.model import Force, Phase, Rates
 
 
@@ -106,7 +106,7 @@ EXPLICIT_EULER = Method(
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, "
     "Numerical integration]",
     others={"rates": explicit_euler_on_rates},
-    models=("pendulum", "linear", *FIRST_ORDER),
+    models=tuple(MODELS),
 )
 
 RK4 = Method(
@@ -124,7 +124,7 @@ RK4 = Method(
     reference=f"{HAIRER}, II.1.1",
     used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
     others={"rates": rk4_on_rates},
-    models=("pendulum", "linear", "spring", *FIRST_ORDER),
+    models=tuple(MODELS),
 )
 
 HEUN = Method(

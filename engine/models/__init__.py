@@ -13,9 +13,6 @@ MODELS: dict[str, type[Model]] = {
     model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring, MeanField)
 }
 
-FIRST_ORDER = tuple(key for key, model in MODELS.items() if "force" not in model.offers)
-"""The keys of the models that are integrated by their rates."""
-
 DEFAULT_MODEL = Pendulum.key
 
 NUMBERS: dict[str, Number] = {
