@@ -41,15 +41,15 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the energy rises for good; if it has settled since, "
-            "the slope is measured there",
+            meaning="the energy rises for good; if it has since settled, "
+            "the slope is that of the settled part",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the energy falls for good; if it has settled since, "
-            "the slope is measured there",
+            meaning="the energy falls for good; if it has since settled, "
+            "the slope is that of the settled part",
         ),
         Verdict(
             CHAOTIC,

@@ -121,10 +121,10 @@ OPTIONS: dict[str, Settings] = {
     ),
     # results
     "--json": flag("one JSON object, SI units"),
-    "--csv": flag("a line of CSV for each row"),
+    "--csv": flag("CSV, a line for each row"),
     "-o": file(
         "FILE" + "|".join(SUFFIXES),
-        f"write FILE, in the form of its suffix: {', '.join(SUFFIXES)}",
+        f"write FILE in the format of its suffix: {', '.join(SUFFIXES)}",
         with_suffix(*SUFFIXES),
     ),
     "--force": flag("overwrite a file of that name"),
