@@ -1,7 +1,6 @@
 """Every key of the lab does what the help says."""
 
 import runpy
-from collections import Counter
 
 import pytest
 
@@ -13,7 +12,6 @@ from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens import keys
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
-from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
 from pendu_tui.tui.views.error_table import ErrorTable
@@ -204,8 +202,3 @@ def test_ctrl_z_is_a_key_where_programs_can_be_stopped(monkeypatch):
         monkeypatch.setattr("pendu_tui.recordings.system.CAN_STOP", can_stop)
         listed = runpy.run_path(keys.__file__)["KEYS"]
         assert ("ctrl+z" in [each.key for each in listed]) == can_stop
-
-
-def test_keys_that_stand_in_one_line_of_the_help_are_two_or_more():
-    groups = Counter(key.group for key in KEYS if key.group)
-    assert min(groups.values()) >= 2
