@@ -67,8 +67,6 @@ def rename(source: Path, target: Path) -> None:
     else:
         try:
             os.link(source, target)
-        except FileExistsError:
-            raise
         except OSError:  # the file system has no links
             import shutil
 
