@@ -25,7 +25,6 @@ from pendu_tui.recordings.format import (
 from tests.recordings.examples import SCENE, start
 
 MANY = 500
-FOREIGN = "/somebody/else"
 ESCAPES = "\x1b[2J\x1b]0;x\x07 [bold]"
 
 Entry = list[tuple[str, float, bytes]]
@@ -43,7 +42,7 @@ def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28) -> No
         metadata = {"format": FORMAT_VERSION}
         channels = {
             topic: writer.register_channel(topic, "json", schema, metadata)
-            for topic in (EVENTS, FOREIGN, *topics_of(SCENE))
+            for topic in (EVENTS, *topics_of(SCENE))
         }
         for number, messages in enumerate(entries):
             for topic, clock, data in messages:
@@ -79,14 +78,6 @@ def changed_h(h: float) -> Iterator[Entry]:
     yield from begun(event(Event("set_h", 1, 0, 0.0, h=h), 0.5))
     for step in range(1, 40):
         yield sample(first_sample()._replace(step=step), 0.5 + step / 30)
-
-
-def late() -> Iterator[Entry]:
-    """Samples that are years apart."""
-    yield event(start())
-    for number in range(10):
-        clock = number * 9.4e7
-        yield sample(first_sample()._replace(step=number * 10_000, t=clock), clock)
 
 
 def unlike(number: int) -> str:
@@ -127,11 +118,8 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
     "h of 0": partial(changed_h, 0.0),
     "h of 1e300": partial(changed_h, 1e300),
     "step 10^9": lambda: begun(sample(first_sample()._replace(step=10**9, t=1e8), 1.0)),
-    "30 years": late,
     "570 years": lambda: begun(sample(first_sample()._replace(step=1), 1.8e10)),  # > 2^63 ns
     "many runs": runs,
     "many marks": partial(noted, lambda n: Event("mark", 1, 0, 0.0, text=unlike(n))),
-    "many foreign messages": lambda: begun(*[[(FOREIGN, 0.0, b"")]] * 10 * MANY),
-    "many tiny events": lambda: [event(Event("mark", 1, 0, 0.0))] * 10 * MANY,
 }
 """Entries by what is hostile in them."""

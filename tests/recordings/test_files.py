@@ -4,12 +4,13 @@ import errno
 import os
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from mcap.writer import Writer
 
-from pendu_tui.recordings import files
+from pendu_tui.recordings import files, system
 from pendu_tui.recordings.files import (
     GOLDEN,
     DiskError,
@@ -144,6 +145,16 @@ def test_a_name_that_windows_keeps_for_a_device_is_refused_there(tmp_path, monke
     with pytest.raises(DiskError, match="is no name for a file"):
         files.check_target(tmp_path / name)
     files.check_target(tmp_path / "console.mcap")
+
+
+def test_a_name_is_given_once_also_without_links(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(OSError(errno.EPERM, "no")))
+    for content in ("first", "second"):
+        (tmp_path / "a.part").write_text(content)
+        with suppress(FileExistsError):
+            system.rename(tmp_path / "a.part", tmp_path / "a")
+        assert (tmp_path / "a.part").exists() == (content == "second")
+        assert (tmp_path / "a").read_text() == "first"
 
 
 def test_an_error_of_the_disk_or_in_a_file_names_the_file_first(tmp_path):

@@ -154,6 +154,8 @@ def test_a_summary_whose_times_are_not_those_of_a_chunk_is_damage(path, field, l
         assert "summary" in read.reason
         assert read.damaged
         assert [run.number for run in read.runs] == [2]  # the first start is in that chunk
+        list(read.entries())
+        assert read.lost_runs == {1}
 
 
 def test_a_summary_whose_chunks_overlap_is_not_used(path):
@@ -187,9 +189,10 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(path, o
     path.unlink()
     whole = values(ten_seconds(path))
     recovery = recover(spoil(path, 3, 6), out)
-    assert not verify(path).identical
+    verified = verify(path)  # up to the first loss
+    assert (verified.identical, verified.first_difference) == (False, None)
     kept = values(out)
-    assert recovery["damaged"]
+    assert (recovery["damaged"], recovery["runs_lost"]) == (True, 0)
     assert recovery["samples_kept"] == len(kept)
     assert recovery["entries_lost"] == len(whole) - len(kept) > 0
     after_gaps = [sample for sample in kept if sample not in whole]

@@ -73,6 +73,7 @@ def test_a_recording_is_valid_to_mcaps_readers_which_find_a_time_through_the_ind
         reader = make_reader(file, validate_crcs=True)
         for schema, channel, message in reader.iter_messages():
             assert schema.encoding == "jsonschema"
+            assert message.publish_time == message.log_time  # the same whenever it is made
             assert schema.name == ("pendu.Event" if channel.topic == EVENTS else "pendu.Sample")
             jsonschema.validate(json.loads(message.data), json.loads(schema.data))
         window = {"starting_at": 2_500_000_000, "ending_before": 3_500_000_000}
@@ -258,4 +259,5 @@ def test_a_long_headless_run_has_few_chunks(tmp_path):
     for each in (path, copy):
         with Recording.open(each) as recording:
             assert recording.samples == samples == 1001
-    assert path.read_bytes().count(b"\x04\x00\x00\x00zstd") < 35  # in chunks and their index
+    heads = path.read_bytes().count(b"\x04\x00\x00\x00zstd")  # in chunks and their index
+    assert 12 < heads < 25

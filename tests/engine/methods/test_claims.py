@@ -161,9 +161,16 @@ def test_a_step_without_a_solution_fails_and_others_of_an_array_do_not():
     theta, omega = step(PENDULUM.force(np.sin), (far, near), 2.2 / PENDULUM.w0)
     assert np.isnan([theta[0], omega[0]]).all()
     assert math.isnan(step(FORCE, (3.0, 0.0), 2.2 / PENDULUM.w0)[0])
-    alone = step(PENDULUM.force(np.sin), (near[:1] + 0.1, near[:1]), 2.2 / PENDULUM.w0)
-    assert (theta[1], omega[1]) == alone  # to the bit
-    assert np.isfinite(BACKWARD_EULER.step(FORCE, (1e6, 1.0), 0.05)).all()
+    assert np.isfinite([theta[1], omega[1]]).all()
+
+
+def test_a_solution_depends_on_no_other_and_is_found_after_many_turns():
+    step, h = BACKWARD_EULER.step, 0.9 / PENDULUM.w0
+    starts = np.append(3.0, np.linspace(0.05, 1.5, 50))
+    together, _ = step(PENDULUM.force(np.sin), (starts, 0 * starts), h)
+    alone = [step(PENDULUM.force(np.sin), (one, 0 * one), h)[0] for one in starts[:, None]]
+    assert np.array_equal(together, np.concatenate(alone))
+    assert all(math.isfinite(step(FORCE, (1e6 + n, 1.0 + n), h)[0]) for n in range(50))
 
 
 @given(z=st.floats(0.001, 5.0))

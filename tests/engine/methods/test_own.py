@@ -113,7 +113,6 @@ WRONG = {
         f"def mine(force, phase, h):\n    theta, omega = phase\n    {EULER}\n    return theta, omega",
         "mine is no generator function; make it one that takes (force, phase, h)",
     ),
-    "a partial": ("import functools\nmine = functools.partial(print)", "it is no generator function"),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
     "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),

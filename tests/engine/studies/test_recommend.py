@@ -103,13 +103,6 @@ def test_a_method_is_given_up_only_if_its_order_predicts_twice_the_limit():
         assert tried == pytest.approx(share, rel=0.1) if share > 0.5 else tried < 0.1
 
 
-def test_an_error_that_still_falls_with_the_order_is_not_rounding():
-    study = Study(SCENES["gentle"], 20.0, LOOPS)
-    falls, stays = (study.run(R, 2**power) for power in (17, 19))
-    assert study.flaw("theta", falls.errors["theta"], falls.steps) == "rounding"
-    assert (falls.flaws["theta"], stays.flaws["theta"]) == (None, "rounding")
-
-
 @pytest.mark.parametrize(
     ("quarter", "half", "flaw"),
     [(8.2, 4.05, None), (8.2, 3.95, "rounding"), (8.0, 4.05, "rounding")],
