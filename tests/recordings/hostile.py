@@ -91,10 +91,6 @@ def runs() -> Iterator[Entry]:
         yield sample(first_sample(run))
 
 
-def noted(value: Callable[[int], Event]) -> Iterator[Entry]:
-    return begun(*(event(value(number), number * 1e-3) for number in range(MANY)))
-
-
 def false_head(packed: int = 4_000_000) -> bytes:
     """The head of a chunk that claims to have so many bytes, and 4 MB of contents."""
     frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
@@ -120,6 +116,5 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
     "step 10^9": lambda: begun(sample(first_sample()._replace(step=10**9, t=1e8), 1.0)),
     "570 years": lambda: begun(sample(first_sample()._replace(step=1), 1.8e10)),  # > 2^63 ns
     "many runs": runs,
-    "many marks": partial(noted, lambda n: Event("mark", 1, 0, 0.0, text=unlike(n))),
 }
 """Entries by what is hostile in them."""

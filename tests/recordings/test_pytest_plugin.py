@@ -29,18 +29,6 @@ def test_energies_are_judged(energy_drift):
     energies = [10 + step * 7919 % 101 / 1e5 for step in range(4000)]
     assert energy_drift.check(times, energies).verdict == "bounded"
 """
-OWN_FIXTURE = """
-import pytest
-
-
-@pytest.fixture
-def energy_drift():
-    return "mine"
-
-
-def test_a_fixture_of_the_user_wins(energy_drift):
-    assert energy_drift == "mine"
-"""
 COMMANDS = ([Path(sys.executable).with_name("pytest")], [sys.executable, "-m", "pytest"])
 
 
@@ -52,10 +40,9 @@ def test_installed_is_enough_and_nothing_of_the_project_is_hidden(tmp_path, comm
         (tmp_path / name).mkdir()
         (tmp_path / name / "__init__.py").write_text(f"x = {name!r}\n")
     (tmp_path / "test_game.py").write_text(GAME)
-    (tmp_path / "test_own_fixture.py").write_text(OWN_FIXTURE)
     (tmp_path / "pytest.ini").write_text("[pytest]\npythonpath = .\n")
     options = ["-q", "-W", "error", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:asyncio"]
     done = subprocess.run(
         [*command, *options], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    assert "4 passed" in done.stdout, done.stdout + done.stderr
+    assert "3 passed" in done.stdout, done.stdout + done.stderr

@@ -206,13 +206,14 @@ LIMITED = """
 import resource, sys
 from pathlib import Path
 from pendu_tui.recordings.events import simulate
+from pendu_tui.recordings.files import in_use
 from pendu_tui.recordings.recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 recorder = LiveRecorder(Path(sys.argv[1]))
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
 samples = list(simulate(SCENE, 8.0, recorder.add))
 recorder.close()
-print(len(samples), recorder.failed)
+print(len(samples), recorder.failed, in_use(recorder.part))
 """
 
 
@@ -223,6 +224,7 @@ def test_a_real_file_size_limit_is_survived(tmp_path):
     assert done.stderr == ""
     assert done.stdout.startswith("81 ")
     assert "File too large" in done.stdout
+    assert done.stdout.endswith(" False\n")  # another may have it
     assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap.part"]
     assert verify(tmp_path / "lab.mcap.part").identical
 

@@ -269,7 +269,6 @@ def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed,
     ("names", "why"),
     [
         ("moan", "may be blanes_moan_4 or blanes_moan_6"),
-        ("taylor", "no force evaluations to count"),
         ("verlt", "choose from explicit_euler, rk4, lagged_verlet, conformal_verlet"),
         ("rk4 RK4", "given twice"),
     ],

@@ -165,11 +165,6 @@ def test_the_share_is_what_the_slope_adds_up_to_over_the_width_of_the_band():
     assert found.share == pytest.approx(2 / (2 * math.sqrt(2) + 2 / 64), rel=0.005)
 
 
-def test_a_wave_of_some_cycles_leaves_no_trend_behind():
-    for cycles in (2.1, 2.3, 2.6, 3.4):
-        assert told(np.sin(math.tau * cycles * T / 100 + 1) + 0.01 * NOISE) == "bounded"
-
-
 @pytest.mark.parametrize(
     ("freedom", "t", "chance"),  # of printed tables
     [(6, 2.447, 0.975), (10, 2.228, 0.975), (10, 3.169, 0.995), (120, 2.617, 0.995)],
