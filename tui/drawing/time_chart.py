@@ -75,7 +75,7 @@ class TimePlot:
             share = min(max((column - self.left + 0.5) / len(self.times), 0.0), 1.0)
         length = factor * (high - low)
         begin = low + share * (high - low - length)
-        limits = _time_axis(whole, Shown(), len(self.times), self.log_time)
+        limits = _time_axis(whole, Shown(log_time=self.log_time), len(self.times))
         begin = min(max(begin, limits.low), max(limits.high - length, limits.low))
         end = min(begin + length, limits.high)
         if begin == limits.low and end == limits.high:
@@ -169,9 +169,11 @@ def _plot(
         y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
     columns = columns_beside(label_width, width)
-    x_axis = _time_axis(window, shown, columns, shown.has_log_time)
-    edges, times = _moments(x_axis, columns, shown.has_log_time)
-    sides = [run.columns(edges, shown.log, shown.has_log_time) for run in runs]
+    x_axis = _time_axis(window, shown, columns)
+    moments = np.linspace(x_axis.low, x_axis.high, 2 * columns + 1)
+    if shown.has_log_time:
+        moments = 10.0**moments
+    sides = [run.columns(moments[::2], shown.log, shown.has_log_time) for run in runs]
     if shown.log:
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
     plot = _Plot(x_axis, y_axis, columns, rows)
@@ -179,7 +181,7 @@ def _plot(
     plot.log_time = shown.has_log_time
     if shown.log:
         plot.limit = min(math.log10(LARGEST), y_axis.high)
-    return plot, times, sides
+    return plot, moments[1::2], sides
 
 
 def _runs(
@@ -284,7 +286,7 @@ def _levels(shown: Shown) -> dict[str, float]:
     return {line.name: math.log10(abs(line.value)) if shown.log else line.value}
 
 
-def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Axis:
+def _time_axis(window: Window, shown: Shown, columns: int) -> Axis:
     """Return the axis of a stretch, of the last seconds, or of the whole run.
 
     A logarithmic axis begins at a power of ten, two or three decades before its end.
@@ -292,20 +294,12 @@ def _time_axis(window: Window, shown: Shown, columns: int, log_time: bool) -> Ax
     begin, end = time_span(window.x, shown.seconds, columns)
     if shown.stretch is not None:
         _, begin, end, _ = shown.stretch
-    elif log_time:
+    elif shown.has_log_time:
         begin = max(10.0 ** math.floor(math.log10(end) - 2.3), min(window.repeats, end / 10))
     note = " run" if window.turned else ""
-    if log_time:
+    if shown.has_log_time:
         return log_time_axis(begin, end, columns, note)
     return time_axis(begin, end, columns, note)
-
-
-def _moments(axis: Axis, columns: int, log_time: bool) -> tuple[Floats, Floats]:
-    """Return the moments [s] at the edges and in the middle of the columns."""
-    half_columns = np.linspace(axis.low, axis.high, 2 * columns + 1)
-    if log_time:
-        half_columns = 10.0**half_columns
-    return half_columns[::2], half_columns[1::2]
 
 
 def _crossings(heights: Floats, times: Floats, repeats: float) -> list[tuple[int, float]]:

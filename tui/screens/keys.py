@@ -78,8 +78,8 @@ KEYS: list[BindingType] = [
     ),
     _key(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion"),
     *(
-        _key(f"f{n}", f"view({name!r})", f"view: {view.title}", shown=f"F{n}", group=_VIEWS)
-        for n, (name, view) in enumerate(VIEWS.items(), 2)
+        _key(f"f{n}", f"view({name!r})", f"view: {title}", shown=f"F{n}", group=_VIEWS)
+        for n, (name, title) in enumerate(VIEWS.items(), 2)
     ),
     _key("e", "quantity", "chart: next quantity"),
     _key("y", "axes", "chart: log, log time, …"),

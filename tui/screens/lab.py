@@ -528,7 +528,7 @@ class LabScreen(SizedScreen[None]):
         panes = [type(each) for each in self._view_in_front.query(Pane) if each.HELP]
         owners: list[type[Widget]] = [*dict.fromkeys(panes), type(self)]
         # the keys of the view in front come first
-        owners.sort(key=lambda each: VIEWS[self.view].title != each.BINDING_GROUP_TITLE)
+        owners.sort(key=lambda each: VIEWS[self.view] != each.BINDING_GROUP_TITLE)
         self._show_text("Help", [help_text(owners, self.source.scene, self.app.size.width)])
 
     def action_events(self) -> None:

@@ -1,7 +1,7 @@
 """The views, each in a module of its own: a View with Panes that draw the screen's source."""
 
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the process that computes for a view starts faster without Textual
     from pendu_tui.tui.playback.shown import Shown
@@ -9,24 +9,19 @@ if TYPE_CHECKING:  # the process that computes for a view starts faster without 
     from pendu_tui.tui.views.view import View
 
 
-class ViewEntry(NamedTuple):
-    title: str
-    module: str  # imported when the view is first shown
-    widget: str
-
-
-VIEWS: dict[str, ViewEntry] = {
-    "lab": ViewEntry("Lab", "pendu_tui.tui.views.lab", "LabView"),
-    "phase": ViewEntry("Phase space", "pendu_tui.tui.views.phase", "PhaseView"),
-    "accuracy": ViewEntry("Accuracy", "pendu_tui.tui.views.accuracy", "AccuracyView"),
-    "stability": ViewEntry("Stability", "pendu_tui.tui.views.stability", "StabilityView"),
+VIEWS = {
+    "lab": "Lab",
+    "phase": "Phase space",
+    "accuracy": "Accuracy",
+    "stability": "Stability",
 }
-"""In the order of the key v."""
+"""The titles of the views by their modules, in the order of the key v."""
 
 
 def create(name: str, source: "Source", shown: "Shown") -> "View":
-    entry = VIEWS[name]
-    widget: type[View] = getattr(import_module(entry.module), entry.widget)
+    """Return a view, whose module is imported when it is first shown."""
+    module = import_module(f"{__name__}.{name}")
+    widget: type[View] = getattr(module, f"{name.title()}View")
     return widget(source, shown, name)
 
 
