@@ -535,7 +535,7 @@ class LabScreen(SizedScreen[None]):
         self._show_text("Events", numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
-        self._show_text("In words", description(self.source))
+        self._show_text("In words", description(self.source, stands_still=True))
 
     def action_screenshot(self) -> None:
         self._save("Screenshot", lambda folder: self.app.save_screenshot(path=str(folder)))

@@ -23,7 +23,7 @@ from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.screens.keys import ALWAYS
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.view import Pane
-from pendu_tui.tui.words.insight import insight, painted
+from pendu_tui.tui.words.insight import insight, painted, watched
 from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digits
 
 BADGE = Style(bold=True)
@@ -151,8 +151,10 @@ class InsightLine(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         width, height = self.room
         status = source.recording_status
-        watch = source.scene.watch
+        watch = watched(source, self.shown.hidden)
         text = insight(source, self.shown.hidden).text
+        if self.shown.held is not None:
+            text = "Let go or throw: all methods start from your hand."
         ink = TEXT
         if source.failure:
             text = f"{without_folder(source.failure)} The run stands still; space tries again."

@@ -77,8 +77,8 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
         return _returned(source.scene, source.history.returned, hidden)
     if found := _news(source, step - FRESH * pace / h, hidden):
         return found
-    if t < WATCH * pace and (watch := _watch(source, hidden)):
-        return watch
+    if t < WATCH * pace and (watch := watched(source, hidden)):
+        return Insight("watch", watch)
     known = lasting(source, hidden) or [Insight("nothing")]
     return known[int(step * h / (TURN * pace)) % len(known)]
 
@@ -113,13 +113,11 @@ def _news(source: Source, since: float, hidden: Collection[str]) -> Insight | No
     return None
 
 
-def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
-    """Return the scene's own sentence, unless its step or its methods have changed."""
+def watched(source: Source, hidden: Collection[str]) -> str:
+    """Return the scene's own sentence; "" if its step has changed or it names a hidden method."""
     scene = source.scene
     named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
-    if not scene.watch or source.stepping.h != scene.h or named:
-        return None
-    return Insight("watch", scene.watch)
+    return "" if source.stepping.h != scene.h or named else scene.watch
 
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
@@ -138,10 +136,10 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
         own = drift(source, index)
         if own and method.key not in hidden and (method not in ended or own.kind in IRREGULAR):
             found.append(own)
-    watch = _watch(source, hidden)
+    watch = watched(source, hidden)
     is_outdated = any(short_name(method) in source.scene.watch for method in ended)
     if watch and not is_outdated:
-        found.append(watch)
+        found.append(Insight("watch", watch))
     return found
 
 

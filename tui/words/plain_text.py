@@ -19,12 +19,12 @@ from pendu_tui.tui.words.numbers import about, factor, seconds, start, two_digit
 READING = 6.0  # s, to read a sentence, or to find an answer
 
 
-def description(source: Source, hidden: Collection[str] = ()) -> list[str]:
-    """Describe the run, its methods (without those with `hidden` keys), and the recording."""
+def description(source: Source, stands_still: bool = False) -> list[str]:
+    """Describe the run, its methods and the recording."""
     scene = source.scene
     kind = "The lab" if source.kind == "LIVE" else "The replay"
     state = f"runs at {factor(source.playhead.speed)}× speed and is"
-    if source.playhead.paused:
+    if source.playhead.paused or stands_still:
         state = "is paused"
     at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
     began = start(scene.theta, scene.omega)
@@ -46,10 +46,8 @@ def description(source: Source, hidden: Collection[str] = ()) -> list[str]:
         lines.append(f"It stands still: {source.failure}")
     if source.ghost:
         lines.append(f"Under it, {source.ghost.label}.")
-    for index, method in enumerate(scene.cast):
-        if method.key not in hidden:
-            lines.append(method_sentence(source, index))
-    return [*lines, _recording(source)]
+    methods = [method_sentence(source, index) for index in range(len(scene.cast))]
+    return [*lines, *methods, _recording(source)]
 
 
 def method_sentence(source: Source, index: int) -> str:
