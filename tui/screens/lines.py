@@ -315,13 +315,14 @@ class KeyLine(CellWidget):
         columns: list[str] = []
         for _, members in groupby(self._needed(), key=lambda each: each.group or each):
             bindings = [*members]
-            text = "".join(f" {key_text(each)}" for each in bindings)
+            keys = [f" {key_text(each)}".replace("ctrl+", "^") for each in bindings]
+            text = "".join(keys)
             hint = f"{bindings[0].description} "
-            if len(columns) + len(text) + 1 + len(hint) > self.room.width:
+            if len(columns) + len(text) + len(hint) > self.room.width:  # but for the last blank
                 continue
             row += [(f"{text} ", TEXT), (hint, QUIET)]
-            for each in bindings:
-                columns += [each.key] * (1 + len(key_text(each)))
+            for each, key in zip(bindings, keys, strict=True):
+                columns += [each.key] * len(key)
             columns += [bindings[-1].key] * (1 + len(hint))
         self._keys = columns
         return row
