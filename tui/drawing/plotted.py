@@ -25,7 +25,7 @@ from pendu_tui.tui.drawing.frame import (
 from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture
 
 MIN_COLUMNS = 20
-MIN_ROWS = 7
+MIN_ROWS = 6
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown
 
 MIN_COLUMNS = 20
-MIN_ROWS = 5
+MIN_ROWS = 4
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 LARGEST = 1e6  # larger values are off the chart, which leaves room for the other methods
 CROSSING = "×"

@@ -225,12 +225,14 @@ class AccuracyPane(Chooser[Point]):
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
         self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
-        words = self.words(*self._sentences(), rows=max(self.room.height - len(chart.rows), 1))
-        return Picture([*chart.rows, *words][: self.room.height])
+        words = self.words(*self._sentences(), rows=self.room.height - len(chart.rows))
+        return Picture([*chart.rows, *words])
 
     def _charted(self, room: Size, *_: object) -> tuple[Picture, Placed]:
         words = 2
-        if room.height >= 15:
+        if room.height < MIN_ROWS + 2:
+            words = 0
+        elif room.height >= 15:
             words = 6 if self.all else 4  # `all` adds the letters of all methods
         size = room.width, max(room.height - words, 1)
         points = [point for place in self.places for point in self.points_of(self.cast[place])]

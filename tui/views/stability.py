@@ -302,8 +302,11 @@ class StabilityPane(Chooser[tuple[int, int]]):
         words = ""
         if aim := self.aim(index):
             words = outcome(self.cells[aim[0], index, aim[1]])
-        if len(title + method.label + words) + 2 <= frame.left + frame.columns:
+        width = frame.left + frame.columns
+        if len(title + method.label + words) + 2 <= width:
             title += f"{method.label}: "
+        elif len(title + words) > width:  # half of a number would be another one
+            words = words.partition(",")[0]
         return panel(
             frame,
             scores(self.cells[:, index], self.grid.steps),

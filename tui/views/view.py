@@ -195,9 +195,9 @@ class Pane(CellWidget):
         """Return texts on rows, the last of which ends with an ellipsis if there are more."""
         width = max(self.room.width, 1)
         lines = [line for text in texts for line in wrap(text, width)]
-        if lines[rows:]:
-            lines[rows - 1 :] = [f"{lines[rows - 1][: width - 2]} …"]
-        return [[(line, TEXT)] for line in lines]
+        if 0 < rows < len(lines):
+            lines[rows - 1] = f"{lines[rows - 1][: width - 2]} …"
+        return [[(line, TEXT)] for line in lines[:rows]]
 
     def on_mouse_scroll_up(self, event: events.MouseEvent) -> None:
         self.wheel(event, 0.8)

@@ -140,7 +140,7 @@ def test_a_line_of_largest_errors_is_not_torn_by_zeros():
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
-    assert "A chart needs 20×5" in " ".join(text.split())
+    assert "A chart needs 20×4" in " ".join(text.split())
 
 
 def crosses(chart):

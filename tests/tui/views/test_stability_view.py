@@ -82,3 +82,9 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
         await pilot.press("2", "3", "4")
         await pilot.pause(0.3)
         assert "4 r" not in pane.text
+
+
+@pytest.mark.other_process
+async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
+    async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, _live):
+        assert pane.text.startswith("3 v held elsewhere\n")
