@@ -108,7 +108,7 @@ class TimeChart(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look
         # the same while paused
-        state = (self.room, source.ghost, source.history, source.knows_past)
+        state = (self.room, source.ghost, source.history, source.knows_past, *source.changes)
         self.plot = self._chart(sample, look, *state)
         above = title(look, source.exact, source.scene.equations, self.room.width - 4)
         self.write_titles(above, self._below(self.plot, source, look))

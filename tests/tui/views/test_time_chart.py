@@ -80,6 +80,8 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert theatre.stage.shown == Shown().through(WHOLE)
         await theatre.press("w", "z", "w")
         assert theatre.stage.shown == Shown().through(WHOLE)._replace(seconds=20.0)
+        await theatre.press("space", "+")
+        assert "h 0.1" in chart.text  # before the next step
 
 
 def charted(fps, scene, *, changes=False, returns=False):
