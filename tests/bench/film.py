@@ -1,6 +1,6 @@
 """Draw the pictures of the pages, and the animation of the README: a run and a throw.
 
-python tests/bench/film.py
+python -m tests.bench.film
 """
 
 import asyncio

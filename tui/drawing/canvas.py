@@ -296,12 +296,14 @@ class Canvas:
     ) -> None:
         """Give each shared cell to one of its methods, column by column from the left.
 
-        Of those that the column does not show yet, it is the one with the smallest share of its
-        columns so far, if in all others each gets an equal part.  So no share comes out smaller
-        than the smallest equal part, but for a column.
+        One cell is enough to show a method in a column.  So a cell goes to a method that its
+        column does not show yet, and if there are several, to the one that is shown in the
+        smallest share of its columns.  A column still to come counts as 1/n of a column for each
+        of the n methods that wait there for a cell.  So the shares end equal, but for a column,
+        wherever methods share all their cells.  If the column shows all of them, they take turns.
 
-        Flat lines at several heights of a cell become dotted: dashes that meet at their ends would
-        look like the steps of one line.
+        Lines at different heights of a shared cell become dotted: dashes that meet at their ends
+        would look like the steps of one line.
         """
         columns = self.columns
         layers = {ink: self._layers[ink] for ink in alone}
