@@ -1,56 +1,14 @@
-"""The lab as it looks: characters and colours of each view and of a replay, and a picture as SVG."""
+"""The lab as it looks: a replay, the lab in ASCII, and a picture as SVG."""
 
 import html
 import re
 
 import pytest
 
-from pendu_tui.engine.studies.accuracy import ladder
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.terminal.options import SMALLEST
 from tests.tui.command_line import pendu
-from tests.tui.drawn import looks
-from tests.tui.harness import Theatre, lab, player
-
-SMALL = (80, 24)
-LARGE = (120, 40)
-SECONDS = 12.0
-
-
-@pytest.fixture
-def robust_studies(monkeypatch):
-    """Let the views compute what no last bit of another processor's sine can change visibly.
-
-    In 60 steps chaos does not carry it as far as a dot; no error comes near the rounding.
-    """
-    steps = ladder(20.0, h_max=0.4, h_min=0.02, count=8)
-    monkeypatch.setattr("pendu_tui.tui.views.accuracy.usual", lambda scene, all: (20.0, steps))
-    monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (60,))
-
-
-async def settled(theatre: Theatre, *keys: str) -> str:
-    await theatre.run(SECONDS)
-    await theatre.press(*keys)
-    await theatre.settled()
-    await theatre.pilot.pause()
-    return looks(theatre.app)
-
-
-@pytest.mark.parametrize(
-    ("name", "size", "keys"),
-    [
-        ("lab-60x16", SMALLEST, []),
-        ("lab-80x24", SMALL, []),
-        ("lab-120x40", LARGE, []),
-        ("phase-80x24", SMALL, ["f3", "5"]),
-        ("accuracy-120x40", LARGE, ["f4"]),
-        ("stability-80x24", SMALL, ["f5"]),
-    ],
-)
-@pytest.mark.usefixtures("robust_studies")
-async def test_every_view(snapshot, name, size, keys):
-    async with lab(size=size) as theatre:
-        snapshot(f"{name}.txt", await settled(theatre, *keys))
+from tests.tui.harness import lab, player
+from tests.tui.views.test_snapshots import SECONDS, SMALL, settled
 
 
 async def test_a_replay(snapshot):

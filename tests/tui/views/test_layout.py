@@ -9,7 +9,7 @@ from textual.geometry import Region, Size
 
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.lab import SMALL, places
+from pendu_tui.tui.views.lab import places
 from pendu_tui.tui.views.view import Pane
 
 
@@ -19,28 +19,6 @@ def test_panes_cover_the_view_and_never_each_other(columns, rows):
     assert sum(region.area for region in regions) == columns * rows
     assert not any(one.intersection(other) for one, other in combinations(regions, 2))
     assert all(Region(0, 0, columns, rows).contains_region(region) for region in regions)
-
-
-@pytest.mark.parametrize(
-    ("body", "names"),  # cells above the table of four methods
-    [
-        ((60, 8), {"stage", "chart"}),
-        ((80, 15), {"stage", "chart"}),
-        ((81, 41), {"stage", "events", "chart", "phase"}),
-        ((120, 22), {"stage", "events", "chart", "phase"}),
-        ((120, 31), {"stage", "events", "chart", "phase"}),
-        ((200, 51), {"stage", "events", "chart", "second_chart", "phase"}),
-    ],
-)
-def test_there_are_more_panes_where_there_is_room_and_the_stage_is_about_square(body, names):
-    regions = places(*body)
-    assert set(regions) == names
-    stage = regions["stage"]
-    assert (stage.width, regions["chart"].width) >= SMALL
-    assert stage.width <= body[0] / 2
-    if "events" in names:
-        assert stage.width == pytest.approx(2 * stage.height, abs=6)
-    assert all(region.height >= 5 for region in regions.values())
 
 
 @pytest.mark.parametrize("fps", [5, 8, 10, 20, 30, 60])

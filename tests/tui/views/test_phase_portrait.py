@@ -29,21 +29,6 @@ def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span)
         assert min(values) <= 0 <= max(values)
 
 
-@pytest.mark.parametrize("scene", [DRIFT, SCENES["spin"], SCENES["gentle"]])
-@pytest.mark.parametrize("size", [(46, 15), (78, 17), (150, 55)])
-def test_the_three_regimes_are_named_where_they_are(scene, size):
-    viewport = Viewport.portrait(*size, scene)
-    words = Portrait.of(viewport, scene.equations).words
-    names = sorted(text.strip() for _, _, text in words if "ti" in text)
-    assert names == ["libration", "rotation", "rotation"]  # one for each sense
-    assert [text.rstrip() for _, _, text in words].count(" separatrix") == 1
-    for column, row, text in words:
-        if "ti" in text:
-            for at in range(column, column + len(text)):
-                state = viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2)
-                assert (scene.equations.level(*state) > 0) == (text.strip() == "libration")
-
-
 @pytest.mark.parametrize(
     ("theta", "omega"), [(1.0, 0.0), (0.3, -2.0), (3.1, 0.0), (0.0, 8.0), (2.0, -9.0), (3.1, 0.5)]
 )

@@ -44,3 +44,8 @@ def test_the_frame_leaves_out_a_method_beyond_its_limit():
     lab.run(20)
     found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
     assert found.frame < 0.12 < found.widest
+    lab.live.start(SCENES["gentle"])
+    lab.live.change(Stepping(2.4, equal_cost=True))  # its own z is 1.9
+    lab.run(20)
+    found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
+    assert 0.12 < found.frame == found.widest

@@ -137,6 +137,8 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         await theatre.press("u")
         assert theatre.source.scene == SCENES["drift"]
         assert theatre.source.sample.step == before.step
+        held, *_ = await grabbed(theatre, (15, 9), wait=0)
+        assert held is not None
 
 
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():

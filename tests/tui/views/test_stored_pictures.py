@@ -15,6 +15,7 @@ from pendu_tui.tui.playback.shown import Shown, Stretch, quantities
 from pendu_tui.tui.views.error_table import table
 from pendu_tui.tui.views.lab import places, title
 from pendu_tui.tui.views.portrait import (
+    PhasePoint,
     Portrait,
     Section,
     caption,
@@ -31,6 +32,7 @@ from tests.tui.drawn import look
 from tests.tui.harness import after
 
 DRIFT = SCENES["drift"]
+SIZES = (60, 8), (60, 19), (60, 20), (81, 41), (99, 44), (120, 31), (200, 45)
 
 
 def test_stages(snapshot):
@@ -66,7 +68,7 @@ def test_tables_and_titles(snapshot):
             texts.append(title(shown, live.exact, live.scene.equations, room))
         shown = Shown(stretch=Stretch(1, 2.5, 7.25, True), log_time=True)
         texts.append(title(shown, live.exact, live.scene.equations))
-    texts += [f"{size} {places(*size)}" for size in ((60, 19), (60, 20), (99, 44), (200, 45))]
+    texts += [f"{size} {places(*size)}" for size in SIZES]
     snapshot("tables.txt", "\n".join(texts) + "\n")
 
 
@@ -87,6 +89,10 @@ def test_phase_space(snapshot):
         line = Line("omega", 9.0, "pi/h")
         picture = phase_picture(portrait, points, state, state if around else None, line)
         texts.append(look(Picture(framed(viewport, picture))))
+    angle = np.linspace(0, math.tau, 64, endpoint=False)
+    ring = math.pi + 0.5 * np.cos(angle), 1.5 * np.sin(angle)
+    nowhere = PhasePoint(math.nan, math.nan, 3, "r", ring=ring)
+    texts.append(look(phase_picture(Portrait.of(views[0][0], model), [nowhere])))
     short = after(DRIFT, 1)
     points = method_points(short, short.sample, Shown(), None)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))

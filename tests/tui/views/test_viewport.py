@@ -6,8 +6,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from pendu_tui.engine.models.model import State
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.viewport import MIN_SPAN, Viewport
+from pendu_tui.tui.views.viewport import Viewport
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))
@@ -48,4 +49,6 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     # some roundings at the size of the numbers
     assert after.theta_at(x) == pytest.approx(before.theta_at(x), abs=1e-11)
     assert after.omega_at(y) == pytest.approx(before.omega_at(y), abs=1e-11)
-    assert before.zoomed(1e-9, x, y).theta_span == pytest.approx(MIN_SPAN)
+    assert before.zoomed(1e-9, x, y).theta_span == pytest.approx(1e-3)
+    assert before.zoomed(1e9, x, y).theta_span == pytest.approx(200 * math.pi)
+    assert before.stepped(State(0.0, before.omega_at(60.0)), 0.0, 0.0) == (0.0, 0.0)
