@@ -132,6 +132,7 @@ def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run
     assert window.t == pytest.approx([0, 0.1, 0.2, 0.1, 0.0])
     assert window.turned
     assert not run(DRIFT, (2, 0.1)).window().turned
+    assert run(DRIFT, (40, 0.1), (1, -0.1)).window().turned
 
 
 @pytest.mark.parametrize("name", ["drift", "damped", "mean-field", "spin", "stiff-slow"])
@@ -198,6 +199,7 @@ def test_at_equal_cost_it_is_the_modified_energy_of_the_steps_really_taken():
 def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     assert run(DRIFT, (200, 0.05), (199, -0.05)).returned is None
     assert run(DRIFT, (10, 0.05), (40, -0.03)).returned is None  # it goes past
+    assert run(DRIFT, (200, 0.05), (200, -0.05)).returned.step == 400
     history = run(DRIFT, (200, 0.05), (230, -0.05))
     assert history.returned.step == 400
     back = history.returned
@@ -216,5 +218,8 @@ def test_what_came_since_a_change_begins_behind_the_sample_at_it() -> None:
 
 
 def test_a_stretch_holds_both_its_ends() -> None:
+    history = filled(200)
+    window = history.between(15.0, 16.0)
+    assert window.x[[0, -1]] == pytest.approx([15.0 - window.repeats, 16.0], abs=0.4)
     window = filled(20).window()
     assert window.cut(window.x[3], window.x[7]).x.tolist() == window.x[3:8].tolist()

@@ -19,7 +19,6 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback import live
-from pendu_tui.tui.playback.live import FRAME_BUDGET
 from pendu_tui.tui.playback.source import doubled
 from tests.own_methods import load
 from tests.tui.harness import FPS, Lab
@@ -134,7 +133,7 @@ def test_where_a_lab_is_among_its_runs_steps_and_events():
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
-    bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
+    bench = Bench(speed=4096, second_per_look=0.005)
     bench.run(1)
     share = bench.live.playhead.position / 4096
     assert share < 0.9
@@ -193,6 +192,9 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     assert bench.live.stepping.smallest == SCENES["spin"].h
     kinds = [event.kind for event in bench.keeper.events]
     assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start", "set_h"]
+    later = Keeper()
+    bench.live.record(later)
+    assert later.events == bench.keeper.events
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 

@@ -1,5 +1,6 @@
 """A replay, driven by a clock that the test moves."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,15 @@ def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_ag
     table.replay.set_speed(4.0)
     table.run(0.5)
     assert table.replay.playhead.position == pytest.approx(2.0)
+
+
+def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_frame(sitting):
+    table = Table(sitting)
+    table.replay.tick(1.9)
+    assert len(table.replay.history.trails()) == 39
+    replay = Replay(Recording.open(sitting), clock=itertools.count(0, 0.003).__next__)
+    replay.seek(replay.length)
+    assert not replay.fill()
 
 
 def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table):
