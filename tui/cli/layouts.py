@@ -21,11 +21,10 @@ class Layout:
     """The look of a program's lines, for each that is not a plain row of the table before it.
 
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
-    columns below; a `row`, which may begin with words; a `name`
-    and its `value`, perhaps with a `unit`; `over`, names above a line of numbers; the `place` of a
-    column, from 1, or the `set` of xmgrace, from 0, and its `label`; the name of the `first`
-    column, `units` of the others; the beginning of a new run (`part`); the `end` of the data, until
-    they begin `again`.  A group `step` is a value of that name.
+    columns below; a `row`, which may begin with words; a `value`, its `name`, which is Step if
+    there is none, and perhaps its `unit`; `over`, names above a line of numbers; the `place` of a
+    column, from 1, or the `set` of xmgrace, from 0, and its `label`; the `units` of its other axis;
+    the beginning of a new run (`part`); the `end` of the data, until they begin `again`.
     """
 
     programs: str
@@ -43,7 +42,7 @@ class Layout:
 LAYOUTS = (
     Layout(
         programs="LAMMPS, all thermo styles",
-        line=r"^(?P<part>Loop time of)|^-+ Step +(?P<step>\d+) -"
+        line=r"^(?P<part>Loop time of)|^-+ Step +(?P<value>\d+) -"
         r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[(?P<row>.*)\]",
     ),
     Layout(
@@ -105,7 +104,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="VASP OSZICAR",
-        line=r"^ *(?P<step>\d+)(?= +T= )",
+        line=r"^ *(?P<value>\d+)(?= +T= )",
         units=("", "eV"),
     ),
     Layout(

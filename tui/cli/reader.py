@@ -11,9 +11,10 @@ import json
 import lzma
 import re
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from itertools import accumulate, chain, compress
+from itertools import accumulate, chain, compress, islice
 from statistics import mode
 from typing import Any
 
@@ -42,7 +43,7 @@ _NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)")
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
-_GLUED = re.compile(r"(?<=\d)(?=[-+]\d)|(?<=\d)(?=\*\*)")  # numbers that Fortran ran together
+_GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
 _COMMENTS = "#@!%;"
 _JSON_NUMBERS = msgspec.json.Decoder(list[float])
@@ -119,12 +120,18 @@ def _parsed(text: str) -> Any:
 def _is_broken(line: str) -> bool:
     """Return whether a line is no JSON, even with other numbers, and does not go on below."""
     bare = _NUMBERS.sub("0", _IS_FAILED.sub("0", line.rstrip(" ]\r")))
-    return not bare.endswith(",") and _parsed(bare) is bare
+    return not bare.endswith((",", "{", "[")) and _parsed(bare) is bare
 
 
 def _records(document: Any) -> list[str]:
     """Return a line for each object or row in a document."""
-    return [*map(_record, _items(document))]
+    lines = []
+    for item in _items(document):
+        if isinstance(item, dict):
+            lines.append(json.dumps(dict(_flat(item)), ensure_ascii=False))
+        else:
+            lines.append(" ".join(map(str, item if isinstance(item, list) else [item])))
+    return lines
 
 
 def _items(document: Any) -> list[Any]:
@@ -147,14 +154,8 @@ def _items(document: Any) -> list[Any]:
     return next(filter(None, map(_items, document.values())), [])
 
 
-def _record(item: Any) -> str:
-    """Return an object or a row in one line; the names of inner values have those around them."""
-    if isinstance(item, dict):
-        return json.dumps(dict(_flat(item)), ensure_ascii=False)
-    return " ".join(map(str, item if isinstance(item, list) else [item]))
-
-
 def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values in an object; the names of inner ones have those around them."""
     if isinstance(item, dict):
         for inner, value in item.items():
             yield from _flat(value, f"{name}.{inner}".lstrip("."))
@@ -191,39 +192,29 @@ def number(text: str) -> float | None:
     match = _WITH_UNIT.fullmatch(text)
     if match and is_unit(match[2]):
         text = match[1]
-    if "." in text and "," in text:
-        text = text.replace(min(".,", key=text.find), "")  # it parts thousands
+    text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
     with suppress(ValueError):
         return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
     return None
 
 
-def _floats(column: list[str]) -> list[float]:
-    """Return the numbers in these fields.  Raises ValueError."""
+def _numbers(fields: list[str]) -> Sequence[float | None]:
+    """Return the number in each field."""
     with suppress(msgspec.DecodeError):  # three times as fast
-        values = _JSON_NUMBERS.decode(f"[{','.join(column)}]")
-        if len(values) == len(column):  # no field has a comma
+        values = _JSON_NUMBERS.decode(f"[{','.join(fields)}]")
+        if len(values) == len(fields):  # no field has a comma
             return values
-    return [*map(float, column)]
-
-
-def _values(columns: list[list[str]], is_certain: bool) -> list[list[Any]]:
-    """Return the numbers in columns; nothing if they are not certain to be some.
-
-    Those of a single row may be None, but not the first.
-    """
     with suppress(ValueError):
-        return [*map(_floats, columns)]
-    if not is_certain:
-        return []
-    values = [[*map(number, column)] for column in columns]
-    is_single = len(columns[0]) == 1
-    needed = values[:1] if is_single else values
-    return [] if any(None in column for column in needed) else values
+        return [*map(float, fields)]
+    return [*map(number, fields)]
 
 
 Form = tuple[str | None, int, str]
 """The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
+
+
+Found = tuple[Sheet, list[int], Group, list[Sequence[float | None]]]
+"""Values for some columns of a sheet, found at these lines."""
 
 
 class _Text:
@@ -232,192 +223,213 @@ class _Text:
     def __init__(self, wanted: Wanted, file: str) -> None:
         self._wanted = wanted
         self._line = 0
-        self._sheets: list[Sheet] = []
+        self._tables = [Sheet(wanted)]  # the first has no columns
+        self._form: Form = (None, -1, "")  # of a row of the last table
+        self._page: set[str] = set()  # its head, which may be repeated on each page
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
         self._shapes: dict[str, tuple[Group, Group]] = {}
         """What a line holds, by its text with \\0 for each number: some columns, and the place of
-        each where `_NUMBERS` divides the line, -1 for a number that ended.
+        each where `_NUMBERS` divides the line, 0 for a number that ended.
         """
-        self._form: Form = (None, -1, "")
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._units = ("", "")  # of times and energies, if the layout has only these
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
         self._labels = dict(enumerate(next(named, ())))  # names of columns by place
         self._passed = 0  # columns of earlier sets
-        self._shared: list[str] = []  # units of xmgrace's y axis
-        self._over: list[str] = []  # names above a line of numbers
+        self._shared = ""  # the only unit of xmgrace's y axis
+        self._above: dict[str, list[str]] = {}  # the names in lines above one line of numbers
+        self._over = ""  # such a line
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
 
     def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
+        size = 1
         for lines in blocks:
             first = 0
-            size = len(lines)
             while first < len(lines):
-                some = lines[first : first + size]
-                if self._read_known(some):
-                    first += size
-                    size *= 2
-                elif size > 1:
-                    size = max(size // 4, 1)
-                else:
+                known = self._read_known(lines[first : first + size])
+                first += known
+                self._line += known
+                if first < len(lines):
                     self._line += 1
-                    self._read_new(*some)
+                    self._read_new(lines[first])
                     first += 1
-            if self._line > MAX_LINES_BEFORE and not self._sheets and not self._prints[0].puts:
+                size = 2 * known + 1
+            if self._line > MAX_LINES_BEFORE and self._form[1] < 0 and not self._prints[0].puts:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
-        named = [sheet for sheet in self._sheets if any(sheet.names)]
+        named = [sheet for sheet in self._tables if any(sheet.names)]
         for sheet in self._prints:
             sheet.choose()
             if sheet.choice and sheet.choice.energy and not (named and sheet.choice.doubt):
                 named.append(sheet)
-        return sorted(named or self._sheets or self._prints, key=lambda sheet: sheet.line)
+        return sorted(named or self._tables[1:] or self._prints, key=lambda sheet: sheet.line)
 
-    def _read_known(self, lines: list[str]) -> bool:
-        """Read lines that are all like earlier ones.  Return whether they are."""
-        if self._heads or self._over or self._is_over or self._begins:
-            return False
-        others = dict(enumerate(lines, self._line + 1))
-        puts: list[Any] = []
-        if self._sheets:
-            sheet = self._sheets[-1]
-            delimiter, width, opening = self._form
-            rows = {
-                number: line
-                for number, line in others.items()
-                if len(_split(line, delimiter)) == width
-                and line.startswith(opening)
-                and line.lstrip()[:1] not in _COMMENTS
-            }
-            fields = _split((delimiter or " ").join(rows.values()), delimiter)
-            columns = [fields[place::width] for place in sheet.kept]
-            is_whole = len(fields) == len(rows) * width
-            values = is_whole and _values(columns, delimiter is not None)
-            if rows and values:
-                puts.append((sheet, [*rows], sheet.kept, values))
-                others = {number: line for number, line in others.items() if number not in rows}
+    def _read_known(self, lines: list[str]) -> int:
+        """Read lines up to the first that is not like earlier ones.  Return how many."""
+        if self._is_over:
+            return 0
+        start = self._line + 1
+        others = {at: line for at, line in enumerate(lines, start) if line not in self._heads}
+        if self._over:
+            others[start] = self._over + lines[0]
+        for at in [at for at, line in others.items() if line in self._above and at + 1 in others]:
+            others[at] += others.pop(at + 1)
+        heads = [at for at, line in others.items() if line in self._page]
+        for at in heads:
+            del others[at]
+        found = [self._rows_in(others)]
+        rows = found[0][1]
+        for at in rows:
+            del others[at]
         if others:
-            found = self._prints_in(others)
-            if found is None:
-                return False
-            puts += found
-        for sheet, *put in puts:
-            sheet.put(*put)
-        self._line += len(lines)
-        return True
+            found += self._prints_in(others)
+        ends = [start + len(lines)]
+        for _, here, _, columns in found:
+            ends += [here[values.index(None)] for values in columns if None in values]
+        last = max([0, *rows[: bisect_left(rows, min(ends))]])
+        ends += [head for head in heads if head > last]  # no row is below it
+        end = min(ends)
+        for sheet, here, places, columns in found:
+            if count := bisect_left(here, end):
+                sheet.put(here[:count], places, [values[:count] for values in columns])
+        if end > start:
+            self._over = ""
+        self._tables[-1].heads += heads[: bisect_left(heads, end)]
+        return end - start
 
-    def _prints_in(self, lines: dict[int, str]) -> list[Any] | None:
-        """Return what lines of known shapes hold, None if a shape is new."""
+    def _rows_in(self, lines: dict[int, str]) -> Found:
+        """Return the rows of the last table in these lines."""
+        sheet = self._tables[-1]
+        delimiter, width, opening = self._form
+        if self._heads or self._begins or width < 0:
+            return sheet, [], (), []
+        if opening:  # its numbers may have run together
+            for at, line in lines.items():
+                if line.startswith(opening) and len(line.split()) < width:
+                    lines[at] = _GLUED.sub(r" \g<0>", line)
+        rows = {
+            at: line
+            for at, line in lines.items()
+            if len(_split(line, delimiter)) == width
+            and (delimiter or "," not in line)
+            and line.startswith(opening)
+            and line.lstrip()[:1] not in _COMMENTS
+        }
+        fields = _split((delimiter or " ").join(rows.values()), delimiter)
+        if len(fields) != len(rows) * width:  # a quotation mark is left open
+            return sheet, [], (), []
+        return sheet, [*rows], sheet.kept, [_numbers(fields[place::width]) for place in sheet.kept]
+
+    def _prints_in(self, lines: dict[int, str]) -> Iterator[Found]:
+        """Yield what lines of known shapes hold, and None for the first of another shape."""
         fields = _NUMBERS.split("\n".join(lines.values()))
         shapes = "\0".join(fields[::2]).split("\n")
-        starts = [0, *accumulate(shape.count("\0") for shape in shapes)]
-        puts: list[Any] = []
-        for shape in {*shapes}:
-            known = self._shapes.get(shape)
-            if known is None:
-                return None
-            places, found = known
-            if not places:
-                continue
+        unknown = (at for at, shape in zip(lines, shapes, strict=True) if shape not in self._shapes)
+        for at in islice(unknown, 1):
+            yield self._prints[-1], [at], (), [[None]]
+        starts = [0, *accumulate(2 * shape.count("\0") for shape in shapes)]
+        for shape in {*shapes} & self._shapes.keys():
+            places, picks = self._shapes[shape]
             here = [each == shape for each in shapes]
-            at = [*compress(starts, here)]
-            columns = [
-                [fields[2 * start + index] for start in at] if index > 0 else ["nan"] * len(at)
-                for index in found
-            ]
-            if not (values := _values(columns, is_certain=True)):
-                return None
-            puts.append((self._prints[-1], [*compress(lines, here)], places, values))
-        return puts
+            first = [*compress(starts, here)]
+            texts = ([fields[at + pick] if pick else "nan" for at in first] for pick in picks)
+            if places:
+                yield self._prints[-1], [*compress(lines, here)], places, [*map(_numbers, texts)]
 
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
-        if _OBJECT.match(line) and self._prints[-1].puts and _is_broken(line):
+        if _OBJECT.match(line) and _is_broken(line):
             self._prints[-1].skipped += 1
             return
-        names = self._over
-        self._over = []
-        if names and len(fields := line.split()) == len(names):
-            for name, field in zip(names, fields, strict=True):
-                self._print(name, field)
+        prints: dict[str, int] = {}
+        over = self._over
+        self._over = ""
+        fields = [*re.finditer(r"\S+", line)]
+        if over and len(fields) == len(self._above[over]):
+            for name, field in zip(self._above[over], fields, strict=True):
+                self._print(name, field[0])
+                prints[name] = len(over) + field.start()
+            self._remember(over + line, prints)
             return
-        prints: dict[str, tuple[int, str]] = {}
-        is_data = False
+        is_read = False
         for layout in LAYOUTS:
             for match in layout.pattern.finditer(line):
                 if any(layout.units):
                     self._units = layout.units
-                groups = {name: text for name, text in match.groupdict().items() if text}
-                is_data |= self._found(layout, line, groups)
-                for value, name in (("value", groups.get("name", "")), ("step", "Step")):
-                    if value in groups and not self._is_over:
-                        self._print(name, groups[value], groups.get("unit", ""))
-                        prints[name] = (match.start(value), groups[value])
-            if is_data:
+                is_read |= self._take(layout, match, prints)
+            if is_read:
                 break
-        is_nothing = not is_data and not self._is_over and self._words_or_row(line)
+        is_nothing = not is_read and not self._is_over and self._words_or_row(line)
         if is_nothing or prints:
             self._remember(line, prints)
 
-    def _remember(self, line: str, prints: Mapping[str, tuple[int, str]]) -> None:
-        """Remember what lines of this shape hold: these prints, at their places in the line."""
-        starts = [match.start() for match in _NUMBERS.finditer(line)]
-        if None in map(number, _NUMBERS.findall(line)):  # as in a version, 1.2.3
-            return
+    def _remember(self, line: str, prints: Mapping[str, int]) -> None:
+        """Remember what lines of this shape hold: these prints, where their values begin."""
+        starts = {match.start(): 2 * n + 1 for n, match in enumerate(_NUMBERS.finditer(line))}
         holds = {}
-        for name, (start, text) in prints.items():
+        for name, start in prints.items():
             place = self._prints[-1].places.get(name)
-            if place is None or _NUMBERS.search(name):  # another name may have this shape
-                return
-            if _IS_FAILED.fullmatch(text):
-                holds[place] = -1
-            elif start in starts:
-                holds[place] = 2 * starts.index(start) + 1
-            else:
-                return
+            pick = 0 if _IS_FAILED.match(line, start) else starts.get(start)
+            if place is None or pick is None or _NUMBERS.search(name):
+                return  # another name may have this shape
+            holds[place] = pick
         shape = _NUMBERS.sub("\0", line)
-        is_text = re.search(r"[^\W\d_]", shape) or not starts
-        if is_text and len(self._shapes) < MAX_SHAPES:
+        is_text = not starts or re.search(r"[^\W\d_]", shape)
+        is_odd = None in map(number, _NUMBERS.findall(line))  # as in a version, 1.2.3
+        if is_text and not is_odd and len(self._shapes) < MAX_SHAPES:
             self._shapes[shape] = (tuple(holds), tuple(holds.values()))
 
-    def _found(self, layout: Layout, line: str, groups: dict[str, str]) -> bool:
+    def _take(self, layout: Layout, match: re.Match[str], prints: dict[str, int]) -> bool:
         """Take what a layout found.  Return whether that is all there is in the line."""
+        line = match.string
+        groups = {name: text for name, text in match.groupdict().items() if text}
         match groups:
             case {"part": _}:
-                self._begins = True
-                self._is_over = False
-                self._passed += max(self._form[1] - 1, 0)
-                self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
-                self._shapes.clear()
+                self._begin_run()
             case {"end": _} | {"again": _}:
                 self._is_over = "end" in groups
             case _ if self._is_over:
                 pass
-            case {"value": _}:
-                pass
+            case {"value": value}:
+                name = groups.get("name", "Step")
+                self._print(name, value, groups.get("unit", ""))
+                prints[name] = match.start("value")
+                return "name" in groups
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
-                self._over = [name.strip() for name in re.findall(layout.cells, text)]
+                if len(self._above) < MAX_HEADS:
+                    names = [name.strip() for name in re.findall(layout.cells, text)]
+                    self._above[line] = names
+                self._over = line if line in self._above else ""
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
                 opening = fields[0]
                 if number(opening) is not None:
                     opening = ""
                 self._row(fields, delimiter, opening)
+            case {"set": place, "label": label}:
+                self._labels[int(place) + 1] = label
             case {"label": label}:
-                place = int(groups.get("place", 1)) - 1
-                if "set" in groups:
-                    place = int(groups["set"]) + 1
-                self._labels[place] = label
+                self._labels[int(groups.get("place", 1)) - 1] = label
             case {"units": units}:
-                self._shared = re.findall(r"\(([^()]*)\)", units)
-                energies = [unit for unit in self._shared if plain("energy", unit) and unit != "K"]
+                shared = re.findall(r"\(([^()]*)\)", units)
+                energies = [unit for unit in shared if plain("energy", unit) and unit != "K"]
                 self._units = ("", energies[0] if len(energies) == 1 else "")
+                self._shared = shared[0] if len(shared) == 1 else ""
             case _:
                 return False
         return True
+
+    def _begin_run(self) -> None:
+        """Begin a run, whose lines may look like earlier ones, but hold something else."""
+        self._begins = True
+        self._is_over = False
+        self._passed += max(self._form[1] - 1, 0)
+        self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
+        self._shapes.clear()
+        self._page.clear()
 
     def _print(self, name: str, text: str, unit: str = "") -> None:
         value = number(text)
@@ -426,11 +438,8 @@ class _Text:
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or that of its layout's times or energies."""
-        default = ""
-        if role(name)[0] == "time":
-            default = self._units[0]
-        elif is_energy(name):
-            default = self._units[1]
+        time, energy = self._units
+        default = time if role(name)[0] == "time" else energy * is_energy(name)
         return split_unit(name)[1] or default
 
     def _words_or_row(self, line: str) -> bool:
@@ -441,21 +450,20 @@ class _Text:
         bare = text.lstrip(_COMMENTS + " \t")
         is_comment = bare != text and number(text.split()[0]) is None
         fields, delimiter = self._fields(bare)
-        numbers = [*map(number, fields)]
-        if not any(each is not None for each in numbers):
-            ways = _ways(bare)
-            heads = chain(ways, *self._heads.values())
-            is_row = delimiter and len(fields) == self._form[1] and not self._begins
-            if is_row and not is_comment and not any(map(self._worth, heads)):
-                self._sheets[-1].skipped += 1
+        is_like = (len(fields), "") == self._form[1:]
+        if [*map(number, fields)].count(None) < len(fields):
+            if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
                 return False
-            self._heads[line] = ways
-            if len(self._heads) > MAX_HEADS:
-                del self._heads[next(iter(self._heads))]
+            return not is_like and (is_comment or number(fields[0]) is None)
+        ways = _ways(bare)
+        is_row = is_like and delimiter and not is_comment and not self._begins
+        if is_row and not any(map(self._worth, chain(ways, *self._heads.values()))):
+            self._tables[-1].skipped += 1
             return False
-        if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
-            return False
-        return len(fields) != self._form[1] and (is_comment or numbers[0] is None)
+        self._heads[line] = ways
+        if len(self._heads) > MAX_HEADS:
+            del self._heads[next(iter(self._heads))]
+        return False
 
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
@@ -468,75 +476,72 @@ class _Text:
             fields = _split(text, sign)
             if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
                 return fields, sign
-        divided = _GLUED.sub(" ", text).split()
+        divided = _GLUED.sub(r" \g<0>", text).split()
         if is_row or len(divided) == width:
             return divided, None
         return _split(text, None) or [""], None
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
-        """Add a row to its table, which may begin here.  Return whether it is a row."""
-        numbers = [number(each) for each in fields]
-        form = (delimiter, len(fields), opening)
-        is_like = form[1:] == self._form[1:]
-        is_sure = None not in numbers[bool(opening) :]
-        is_new = self._heads or self._begins or not is_like
-        if is_new and self._begin(fields, numbers, is_like, is_sure):
-            self._form = form
-            is_like = True
-        if is_like:
-            sheet = self._sheets[-1]
+        """Add a row to the last table, or to one that begins here.  Return whether it is a row."""
+        numbers = _numbers(fields)
+        is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
+        if is_row:
+            sheet = self._tables[-1]
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
-        elif self._sheets and opening == self._form[2] and (opening or numbers[0] is not None):
-            self._sheets[-1].skipped += 1
-        return is_like
+        elif opening == self._form[2] and (opening or numbers[0] is not None):
+            self._tables[-1].skipped += 1
+        return is_row
 
-    def _begin(
-        self, fields: list[str], numbers: list[float | None], is_like: bool, is_sure: bool
-    ) -> bool:
-        """Look for the head of this row.  Return whether a table begins, or goes on below it."""
-        before = self._sheets[-1] if self._sheets else None
-        names = self._head(fields, numbers)
+    def _has_table(self, fields: list[str], numbers: Sequence[float | None], form: Form) -> bool:
+        """Return whether a row belongs to the last table, or to one that begins here."""
+        last = self._tables[-1]
+        is_like = form[1:] == self._form[1:]
+        names = None
+        if self._heads or not is_like or self._begins:
+            names = self._head(fields, numbers)
+        goes_on = names == last.names and not self._begins
         if names is None:
-            names = self._labelled(len(fields))
-            is_sure = is_sure or self._worth([""] * len(fields), numbers) > 0
-            is_below = before and not self._begins and (is_like or any(before.names))
-            if is_below or not is_sure:
-                for line, ways in self._heads.items():
-                    if is_like and not self._begins and not any(map(self._worth, ways)):
-                        self._remember(line, {})  # it never will be a head
-                if is_like:
-                    self._heads.clear()
+            bare = [""] * len(fields)
+            is_sure = None not in numbers[bool(form[2]) :] or self._worth(bare, numbers)
+            goes_on = is_like and not (self._begins and is_sure)
+            if not goes_on and (not is_sure or (any(last.names) and not self._begins)):
                 return False
-        units = self._units_of(names, fields)
+        elif goes_on:
+            last.heads.append(self._line)
+        for line, ways in self._heads.items() if goes_on else ():
+            if names in ways and len(self._page) < MAX_HEADS:
+                self._page.add(line)
+            elif not any(map(self._worth, ways)):  # it never will be a head
+                self._remember(line, {})
+        if not goes_on:
+            names = names or self._labelled(len(fields))
+            self._begins = False
+            self._page.clear()
+            self._tables.append(Sheet(self._wanted, self._line))
+            for name, unit in zip(names, self._units_of(names, fields), strict=True):
+                self._tables[-1].add_column(name, unit)
+        if names:
+            self._form = form
         self._heads.clear()
-        if before and before.names == names and not self._begins:
-            has_remarks = self._line - before.last_line > 2
-            if not (has_remarks and before.ends_at(numbers)):
-                return True  # a page of the same table, or a restart
-        self._begins = False
-        self._sheets.append(Sheet(self._wanted, self._line))
-        for name, unit in zip(names, units, strict=True):
-            self._sheets[-1].add_column(name, unit)
         return True
 
-    def _head(self, fields: list[str], numbers: list[float | None]) -> list[str] | None:
+    def _head(self, fields: list[str], numbers: Sequence[float | None]) -> list[str] | None:
         """Return the best names above that fit a row, None without any."""
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        above = (names for ways in [*self._heads.values()][::-1] for names in ways)
-        labels = [names for names in (self._labelled(width),) if any(names)]
-        for names in chain(labels, above):
+        for names in chain([self._labelled(width)], *reversed(self._heads.values())):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
             elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
                 names = ["", *names]  # the rows are numbered
-            if len(names) == width and (worth := self._worth(names, numbers)) > most:
+            fits = any(names) and len(names) == width
+            if fits and (worth := self._worth(names, numbers)) > most:
                 found = names
                 most = worth
         return found
 
-    def _worth(self, names: list[str], numbers: list[float | None] | None = None) -> int:
+    def _worth(self, names: list[str], numbers: Sequence[float | None] | None = None) -> int:
         """Return how sure it is that these are the names of a row, 0 if they are not.
 
         Without numbers they are those of any row.
@@ -553,7 +558,7 @@ class _Text:
         if known > 1:
             return known
         is_data = numbers is None or any(number(name) is not None for name in names)
-        is_first = not self._sheets or self._begins
+        is_first = not self._tables[-1].names or self._begins
         return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
 
     def _labelled(self, width: int) -> list[str]:
@@ -564,18 +569,16 @@ class _Text:
     def _units_of(self, names: list[str], fields: list[str]) -> list[str]:
         """Return the unit of each column, as far as it is certain to be its own."""
         units = [self._unit(name) for name in names]
-        rows = (row for ways in self._heads.values() if names not in ways for row in ways)
-        for row in ([each.strip("()[]") for each in row] for row in rows):
-            if len(row) == len(names) and any(map(is_unit, row)) and not any(units):
-                units = row
-        for place, unit in enumerate(units):
-            match = _WITH_UNIT.fullmatch(fields[place])
-            if unit:
-                continue
-            if place and len(self._shared) == 1:
-                units[place] = self._shared[0]
-            elif match and is_unit(match[2]):
+        for row in chain.from_iterable(self._heads.values()):
+            bare = [each.strip("()[]") for each in row]
+            if len(row) == len(names) and row != names and not any(units):
+                units = bare if any(map(is_unit, bare)) else units
+        for place, field in enumerate(fields):
+            match = _WITH_UNIT.fullmatch(field)
+            if not units[place] and match and is_unit(match[2]):
                 units[place] = match[2]
+            if place:
+                units[place] = units[place] or self._shared
         return units
 
 

@@ -182,7 +182,7 @@ class Sheet:
         self.choice: Choice | None = None
         self.skipped = 0  # rows of another width
         self.puts = 0
-        self.last_line = line
+        self.heads: list[int] = []  # lines of its head, where it is repeated
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
         self._is_printed = is_printed
@@ -201,7 +201,6 @@ class Sheet:
         self, lines: Sequence[int], places: Group, columns: Sequence[Sequence[float | None]]
     ) -> None:
         """Add the values of some columns at these lines, at a single one only the numbers."""
-        self.last_line = lines[-1]
         for place, column in zip(places, columns, strict=True):
             if column[0] is not None:
                 self._lines[place].extend(lines)
@@ -237,13 +236,6 @@ class Sheet:
         if not self._is_printed and self.puts >= SAMPLE:
             self.kept = (self.choice or Choice()).columns or (0,)  # to count rows
 
-    def ends_at(self, row: Sequence[float | None]) -> bool:
-        """Return whether the last row has the time of this one, which begins a run."""
-        if self.choice is None:
-            self.choose()
-        time = (self.choice or Choice()).time
-        return len(time) == 1 and [*self._values[time[0]][-1:]] == [row[time[0]]]
-
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
         self.choose()
@@ -264,12 +256,21 @@ class Sheet:
         seen = len(here) if self._is_printed else self.puts
         skipped = self.skipped + seen - rows
         times[~(np.abs(times) < LATEST)] = np.nan
-        runs = list(islice(_runs(times), MAX_SERIES))
+        runs = list(islice(_runs(times, self._again(lines[here], times)), MAX_SERIES))
         if self.skipped > rows or (rows > 1 and len(runs) in (rows, MAX_SERIES)):
             raise unreadable(MIXED)
         for run in runs:
             yield Series(self, choice, times[run], energies[run], kinetic[run], skipped=skipped)
             skipped = 0
+
+    def _again(self, lines: Any, times: Any) -> Any:
+        """Return whether rows have the time of the row above their head and a remark."""
+        below = np.searchsorted(lines, self.heads)
+        below = below[(below > 0) & (below < len(lines))]
+        is_again = np.zeros(len(times), dtype=bool)
+        has_remark = lines[below] - lines[below - 1] > 2
+        is_again[below] = has_remark & (times[below] == times[below - 1])
+        return is_again
 
     def _sum(self, group: Group, lines: Any) -> Any:
         """Return the sum of some columns at the lines of the leading one, masked where one is not.
@@ -301,11 +302,11 @@ def _counts(samples: Sequence[Any]) -> bool:
     )
 
 
-def _runs(times: Any) -> Iterator[slice]:
+def _runs(times: Any, is_again: Any) -> Iterator[slice]:
     """Yield each part of the times that ends where time starts again; nan is no time."""
     first = 0
     while len(usable := times[first:][np.isfinite(times[first:])]):
-        starts = first + np.flatnonzero(times[first:] <= usable[0])
+        starts = first + np.flatnonzero((times[first:] <= usable[0]) | is_again[first:])
         last = int(starts[1]) if len(starts) > 1 else len(times)
         yield slice(first, last)
         first = last

@@ -31,7 +31,10 @@ MAX_NAME = 100  # characters
 _KNOWN = {"time": NANOSECONDS, "energy": BOLTZMANN}
 _OTHER_NAMES = {
     "time": (
-        (r"(f)emto-?seconds?|(p)ico-?seconds?|(n)ano-?seconds?|sec(onds?)?", ""),
+        (r"femto-?seconds?", "fs"),
+        (r"pico-?seconds?", "ps"),
+        (r"nano-?seconds?", "ns"),
+        (r"sec(onds?)?", "s"),
         (r"years?", "yr"),
         (r"au|atomic_unit", "a.u."),
     ),
@@ -43,7 +46,7 @@ _OTHER_NAMES = {
         (r"kcal/?mole?", "kcal/mol"),
     ),
 }
-_NO_UNITS = re.compile(r"kin|pot|tot|const|total|(kin|poten)tial|kinetic", re.IGNORECASE)
+_NO_UNITS = re.compile(r"kin(etic)?|pot(ential)?|tot(al)?|const", re.IGNORECASE)
 _BRACKETS = re.compile(r"(.+?)[\s/]*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]")
 _SUFFIX = re.compile(r"(.+?)[\s_/]((?:kJ|kcal)/mol\w*|[^\s_/]{2,}|[sJ])", re.IGNORECASE)
 _TIME_NAME = re.compile(r"(?:.*[^a-z])?t|.*time", re.IGNORECASE)
@@ -53,8 +56,8 @@ _TIME_NAME = re.compile(r"(?:.*[^a-z])?t|.*time", re.IGNORECASE)
 def shown(kind: str, unit: str) -> str:
     """Return the usual name of a unit of this kind; one that is not known as it is."""
     for pattern, name in _OTHER_NAMES[kind]:
-        if match := re.fullmatch(pattern, unit, re.IGNORECASE):
-            return name or f"{match[1] or match[2] or match[3] or ''}s".lower()
+        if re.fullmatch(pattern, unit, re.IGNORECASE):
+            return name
     return unit.lower() if kind == "time" and unit.lower() in NANOSECONDS else unit
 
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from pendu_tui.tui.cli import reader
 from pendu_tui.tui.cli.layouts import LAYOUTS
 from tests.tui.cli.test_reader import ENERGIES, columns, rows, tables
 
@@ -15,12 +16,7 @@ CASES = {
         "TotEng   = {e:14.4f} KinEng   = {k:14.4f} Temp     =       302.7782",
         LOOP,
     ),
-    "LAMMPS, units metal": (
-        "Time ps, TotEng eV",
-        "units metal\n   Step  Time  TotEng\n",
-        "{s:6} {t:6} {e:12.4f}",
-        LOOP,
-    ),
+    "LAMMPS, units metal": ("t ps, TotEng eV", "units metal\nt TotEng\n", "{t} {e:12.4f}", LOOP),
     "LAMMPS, units real": (
         "Time fs, TotEng kcal/mol",
         "  Unit style    : real\n   Step  Time  TotEng\n",
@@ -145,3 +141,13 @@ def test_each_layout_reads_its_case(layout):
     assert columns(series) == found
     assert list(series.energies) == pytest.approx(ENERGIES, abs=0.006)
     assert len(series.times) == 90
+
+
+@pytest.mark.parametrize("case", [*CASES.values(), ("", "Start\n", "t = {t}, E = {e}")])
+def test_few_lines_of_a_long_log_are_read_one_by_one(case, monkeypatch):
+    read = []
+    new = reader._Text._read_new
+    monkeypatch.setattr(reader._Text, "_read_new", lambda *line: (read.append(line), new(*line)))
+    text = (case[1] + rows(case[2])) * 30
+    tables(text + LOOP + text)
+    assert len(read) < text.count("\n") / 4
