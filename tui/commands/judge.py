@@ -70,8 +70,8 @@ def run(options: argparse.Namespace) -> int:
         rows = sum(1 + len(line) // columns for line in lines)
         charts = [line for answer in answers for line in _chart(answer, rows)]
     publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
-    failures = dict.fromkeys(gate({"": each | gated}) for each in files)
-    code = conclude(options.fail_if, [Check("", "; ".join(filter(None, failures)))])
+    checks = [Check(each["file"], gate({"": each | gated})) for each in files]
+    code = conclude(options.fail_if, checks, "files")
     return Exit.CHECK_FAILED if FAILED in [each["verdict"] for each in files] else code
 
 

@@ -192,7 +192,7 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     assert answer["fluctuation_order"] == pytest.approx(2, abs=1e-6)
     assert answer["drift_order"] is None
     outcome = pendu(*files, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8")
-    assert outcome.code == 1
+    assert (outcome.code, "in 2 of 2 files, first at 1.csv: " in outcome.err) == (1, True)
     assert "goes as h^2.00" in outcome.out
     assert "order of the files" not in outcome.out
     assert "order of the files" in pendu(*files, "--steps", "2,1").out
