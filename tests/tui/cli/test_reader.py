@@ -151,6 +151,7 @@ def test_documents_arrays_and_compressed_files_are_tables(data):
         "ETITLE: TS TOTAL\n" + rows("ENERGY: {t} {e}\nInfo: {n} 1"),
         rows(" time = {t}\n kinetic = {k}\n total energy = {e}"),
         rows('{{"t": {t}, "E": [1, {n}], "a": {{"total": {e}}}}}'),
+        "".join(rows("t = {t}, E = {e}" + ", x = 1" * (n % 2), n, n + 1) for n in range(90)),
     ],
 )
 def test_blocks_of_any_size_hold_the_same(text, size, monkeypatch):

@@ -117,7 +117,7 @@ def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
     twice = ("--step", "0.5fs", "--units", "time=ps,energy=eV")
     assert guess(text, *twice).refused(2, "--step has the unit", "leave out time=")
     assert guess(text, "--step", 2, "--units", "time=ps", "--json").json["time_unit"] == "ps"
-    for option in (("--step", "0"), ("--step", "fs"), ("--units", "ps"), ("--units", "mass=u")):
+    for option in (("--step", "0"), ("--step", "fs"), ("--units", "ps")):
         assert guess(text, *option).refused(2, option[0])
 
 
@@ -136,7 +136,7 @@ def test_only_energies_around_zero_are_advised_to_use_their_spread():
 def test_rows_that_cannot_be_used_are_counted():
     bad = "x,1\n1,\n,1\n2\nnan,1\ninf,1\n29,1\n"
     answer = judge(TABLE + bad + "32,100.5\n", "--json", "--from", 10).json
-    assert answer["skipped"] == 7
+    assert (answer["skipped"], answer["lowest_energy"]) == (7, pytest.approx(99, 1e-5))
     assert (answer["samples"], answer["first_time"], answer["diverged_at"]) == (201, 10.0, None)
 
 
@@ -192,7 +192,7 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     assert answer["fluctuation_order"] == pytest.approx(2, abs=1e-6)
     assert answer["drift_order"] is None
     outcome = pendu(*files, "--steps", "1,2", "--fail-if", "fluctuation_order > 1.8")
-    assert (outcome.code, "in 2 of 2 files, first at 1.csv: " in outcome.err) == (1, True)
+    assert (outcome.code, "in 2 of 2 files, " in outcome.err) == (1, True)
     assert "goes as h^2.00" in outcome.out
     assert "order of the files" not in outcome.out
     assert "order of the files" in pendu(*files, "--steps", "2,1").out
@@ -216,16 +216,15 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
     ("data", "names", "code", "words"),
     [
         ("", "t E", 3, "no row of numbers"),
-        (TABLE, "t Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (TABLE, "t E+Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
+        ("1 2\n", "1 2+", 2, "there is no column ''"),
         (WIDER, "1 2", 3, "another number of columns"),
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
         ("1 2\n", "t E", 2, "choose from 1, 2"),
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
         ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan or inf"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
-        ("\x1b[31m,\x07\n", "t E", 3, "no row of numbers"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
         (b"\x89MCAP0\r\n\0", "1 2", 3, "not text"),
