@@ -146,6 +146,8 @@ def test_the_first_energy_that_is_infinite_has_failed():
     assert (outcome.code, outcome.json["verdict"], outcome.json["samples"]) == (1, "failed", 300)
     assert (outcome.json["diverged_at"], outcome.json["skipped"]) == (30, 0)
     assert "end at 30" in judge(text).out
+    kinetic = "t,E,K\n" + lines("{t},{e},5") + "30,100,nan\n"
+    assert "end at 30" in guess(kinetic, "--scale", "kinetic:K").out
     first = f"-0.1,inf\n{lines('{t},{e}')}"
     assert guess(first).refused(3, "--from")
     assert guess(first, "--from", 0).code == 0
@@ -197,6 +199,8 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
     assert "order of the files" not in outcome.out
     assert "order of the files" in pendu(*files, "--steps", "2,1").out
     assert pendu(*files, "--steps", "1,1").refused(2, "not all the same")
+    Path("2.csv").write_text(TABLE + "30,nan\n")
+    assert "fluctuation   no clear power" in pendu(*files, "--steps", "1,2").out
 
 
 def test_a_gate_gives_the_values():
