@@ -32,3 +32,8 @@ def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, joined):
     live = Live(DRIFT.altered(h=z / DRIFT.w0))
     points = method_points(live, live.sample, Shown(), None)
     assert {point.chords > 0 for point in points} == {joined}
+
+
+def test_no_word_covers_the_letter_of_a_method():
+    for theta in np.linspace(-2, 2, 50):
+        assert "#" in phase_picture(PORTRAIT, [PhasePoint(theta, 0, 0, "#")]).text
