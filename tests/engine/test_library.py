@@ -143,7 +143,7 @@ def test_the_first_energy_that_is_nan_or_infinite_has_failed(energy, after):
         (lambda: judge(TIMES, WAVE, scale=math.nan), "not a finite number"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
         (lambda: simulate("swing" + "x" * 99, time=1), f"no scene 'swing{'x' * 55}';"),
-        (lambda: simulate(5, time=1), "no scene '5'"),
+        (lambda: recommend(1e-3, error="angle"), "no kind of error 'angle'"),
         (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'"),
         (lambda: simulate(time=1, methods=5), "no method '5'"),
         (lambda: simulate(time=math.nan), "time = nan"),

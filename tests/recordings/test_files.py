@@ -129,8 +129,9 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypat
         (tmp_path / "no" / "a.mcap", True, "does not exist"),
         (files.Path("-"), True, "no name for a file"),
     ):
-        with pytest.raises(DiskError, match=why):
+        with pytest.raises(DiskError, match=why) as refused:
             files.check_target(path, force)
+        assert refused.value.filename == str(path)
     files.check_target(taken, force=True)
     files.check_target(tmp_path / "free.mcap", force=None)
     files.check_target(files.Path(os.devnull))

@@ -87,6 +87,7 @@ def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
     for name, declared in schema["properties"].items():
         assert declared["type"] in ("integer", "number", "string", "boolean", "array"), name
         assert not {"anyOf", "oneOf", "$ref"} & set(declared), name
+        assert ("items" in declared) == (declared["type"] == "array")
     assert schema["properties"].get("theta", {}).get("description") == "rad"
 
 

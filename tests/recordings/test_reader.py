@@ -6,7 +6,6 @@ import struct
 import zlib
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
@@ -30,7 +29,7 @@ CHANCE = random.Random(1)
 
 
 @pytest.fixture
-def path(tmp_path) -> Path:
+def path(tmp_path):
     return record(tmp_path / "a.mcap", two_runs())
 
 
@@ -39,12 +38,12 @@ def out(tmp_path):
     return tmp_path / "out.mcap"
 
 
-def places_in(path: Path) -> list[reader.Place]:
+def places_in(path):
     with path.open("rb") as stream:
         return reader.read_contents(stream, check=True).places
 
 
-def is_whole(path: Path) -> bool:
+def is_whole(path):
     try:
         with Recording.open(path, check=True) as read:
             return read.complete and None not in [value for _, value in read.entries()]
@@ -52,7 +51,7 @@ def is_whole(path: Path) -> bool:
         return False
 
 
-def limits(path: Path) -> dict[str, int]:
+def limits(path):
     """Return the limits that just let this file pass."""
     data = path.read_bytes()
     heads = [HEAD.unpack_from(data, place.offset) for place in places_in(path)]

@@ -125,8 +125,9 @@ def test_a_wrong_time_is_found_and_a_folder_with_it_fails_as_a_test(verified, tm
     test("in/whole.mcap")
     reasons = {"0.mcap": "t is 0.6000.*, recorded 0.61", "in/cut.mcap": "its end is missing"}
     for name, reason in reasons.items():
-        with pytest.raises(pytest.fail.Exception, match=reason):
+        with pytest.raises(pytest.fail.Exception, match=reason) as failed:
             test(name)
+        assert not failed.value.pytrace
     ((empty,),) = (mark.args[1] for mark in verify_recordings(tmp_path / "none").pytestmark)
     with pytest.raises(pytest.fail.Exception, match="no recording below"):
         test(empty)
