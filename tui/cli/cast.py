@@ -98,12 +98,13 @@ def _tried(source: str, key: str, file: str) -> Measured:
 
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
-    from pendu_tui.tui.cli.workers import received, started  # multiprocessing takes 15 ms
+    # multiprocessing takes 15 ms
+    from pendu_tui.tui.cli.workers import awaited, received, started
 
     process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
-        found: Measured | OwnMethodError = received(results, process, MAX_SECONDS)
+        found: Measured | OwnMethodError = awaited(results, process, MAX_SECONDS, f"trying {key}")
     except TimeoutError:
         why = f"takes more than {MAX_SECONDS:g} s for a trial"
         raise OwnMethodError(f"{file}: {key} {why}.") from None

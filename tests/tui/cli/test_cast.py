@@ -2,13 +2,13 @@
 
 import json
 import subprocess
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
 from pendu_tui.engine.methods import METHODS, RK4, USUAL_CAST, Cast, named
 from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.tui.cli import cast as cast_options
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.scene import scene_of
 from tests.tui.command_line import PENDU, ROOT, pendu
@@ -101,11 +101,15 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
     ],
 )
 def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(mine, monkeypatch, work, why):
-    monkeypatch.setattr(cast_options, "MAX_SECONDS", 4.0)
+    waits = []
+    show = nullcontext(lambda *done: waits.append(done))
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.progress", lambda _: show)
+    monkeypatch.setattr("pendu_tui.tui.cli.cast.MAX_SECONDS", 4.0)
     Path("hostile.py").write_text(
         f"import os\ndef hostile(force, phase, h):\n    {work}\n    yield"
     )
     assert pendu("run", "--time", "2", "--method", "hostile.py").refused(3, "hostile.py", why)
+    assert bool(waits) == ("takes" in why)
 
 
 @pytest.mark.slow
