@@ -207,7 +207,7 @@ class _Plot(LineChart):
 
     limit = LARGEST
     levels: dict[str, float]
-    log_time = False
+    log_time: bool
 
     def draw_marks(self, changes: Sequence[tuple[float, str]]) -> None:
         """Draw the changes of the step and the levels."""

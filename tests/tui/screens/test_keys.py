@@ -11,7 +11,7 @@ from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens import keys
-from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, key_lines
+from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, help_text, key_lines
 from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
@@ -167,6 +167,8 @@ def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner):
     listed = bindings_of(owner)
     assert all(len(line) < COLUMN_WIDTH for line in key_lines(listed))
     assert len(list(key_lines(listed))) <= 38
+    wide, narrow = (help_text([owner], SCENES["spin"], columns) for columns in (80, 79))
+    assert wide.count("\n") < narrow.count("\n")  # in two columns
     keys = [key for binding in listed for key in binding.key.split(",")]
     assert len(keys) == len(set(keys))
 
