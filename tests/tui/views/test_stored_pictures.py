@@ -4,6 +4,7 @@ import math
 from itertools import product
 
 import numpy as np
+import pytest
 
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
@@ -109,6 +110,19 @@ def test_phase_space(snapshot):
         texts.append("".join(text for text, _ in caption(live, aim, width)))
     texts.append(place_text(SCENES["damped"].equations, State(-1e-3, 2.0), 80))
     snapshot("phase.txt", "\n".join(texts) + "\n")
+
+
+@pytest.mark.parametrize(("z", "joined"), [(0.25, False), (0.35, True), (0.95, True), (1.1, False)])
+def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, joined):
+    live = after(DRIFT.altered(h=z / DRIFT.w0), 0)
+    points = method_points(live, live.sample, Shown(), None)
+    assert {point.chords > 0 for point in points} == {joined}
+
+
+def test_no_word_covers_the_letter_of_a_method():
+    portrait = Portrait.of(Viewport.portrait(46, 15, DRIFT), DRIFT.equations)
+    for theta in np.linspace(-2, 2, 50):
+        assert "#" in phase_picture(portrait, [PhasePoint(theta, 0, 0, "#")]).text
 
 
 def test_the_legend_of_stability(snapshot):

@@ -23,7 +23,7 @@ from pendu_tui.tui.words.numbers import (
 ANY = st.floats(allow_nan=True, allow_infinity=True) | st.none()
 W0 = Scene().w0
 MODEL = Scene().equations
-ABOUT = {0.5: "0.5 s", 9.9: "9.9 s", 9.96: "10 s", 119: "119 s", 120: "2 min", 7199: "120 min"}
+ABOUT = {0.5: "0.5 s", 9.9: "9.9 s", 9.95: "10 s", 119: "119 s", 120: "2 min", 7199: "120 min"}
 ABOUT |= {7200: "2 h", 1.7e5: "47 h", 1.9e5: "2.2 days"}
 FACTORS = {
     0.125: "1/8",
