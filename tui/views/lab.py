@@ -174,12 +174,12 @@ class TimeChart(Pane):
         plot = self.plot
         if plot is None or plot.values is None:
             return
-        history = self.source.history
-        ends = plot.zoomed(history.window(), factor, self.pointer)
+        window = self.source.history.window()
+        ends = plot.zoomed(window, factor, self.pointer)
         if ends is None:
             if self._look.stretch is not None:
                 self.post_message(Zoomed(None))
-        elif factor >= 1 or len(history.between(*ends).x) >= 8:
+        elif factor >= 1 or len(window.cut(*ends).x) >= 8:
             run = self.source.sample.run
             self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
 

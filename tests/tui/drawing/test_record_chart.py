@@ -30,12 +30,6 @@ def test_energy_trend_and_axes_fill_the_size_given(snapshot):
     assert rows_of(chart(errors=spike), ENERGY)[0] <= 2  # a column spans all errors in it
 
 
-def test_the_band_is_two_deviations_to_each_side_of_the_trend():
-    text = chart(errors=0.0 * ERRORS, slope=0.0, deviation=5e-4).text
-    assert " 0.0010┤" in text
-    assert "-0.0010┤" in text
-
-
 @pytest.mark.parametrize("room", [(20, 7), (21, 40), (200, 10), (10, 3)])
 def test_any_size_has_a_chart_or_a_sentence(room):
     assert len(chart(size=room).rows) == room[1]

@@ -88,6 +88,10 @@ def test_a_question_stays_asked_when_the_user_goes_back_before_its_moment(lesson
     live.step(-2)
     assert not lesson.follow(live, before)
     assert lesson.stage == "asked"
+    lesson.begin(live, 1)
+    lesson.forward(live)
+    lesson.follow(live, live.sample)
+    assert lesson.stage == "told"
 
 
 def test_where_time_returns_the_pause_comes_at_the_start(live):

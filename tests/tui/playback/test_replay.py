@@ -174,6 +174,8 @@ def test_the_next_event_and_the_one_before_are_found(table):
     while places[-1] < table.replay.length - 1e-6:
         table.replay.seek_event(1)
         places.append(table.replay.playhead.position)
+        if places[-1] == pytest.approx(2.0):
+            assert table.replay.events[-1].kind == "set_h"
     assert [round(place) for place in places] == [0, 2, 4, 5, 9, 9, 12]  # a verdict
     for place in reversed(places[:-1]):
         table.replay.seek_event(-1)

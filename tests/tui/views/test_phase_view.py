@@ -40,7 +40,7 @@ def state(theatre):
 async def test_a_click_in_the_lab_starts_all_there_with_the_step_in_force_and_u_takes_it_back():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("plus")
+        await theatre.press("plus", "n")  # at equal cost: of the cheapest
         expected = shown(theatre).viewport.at_cell(40, 3)
         await theatre.pilot.click(shown(theatre), offset=(41 + LEFT, 4))
         assert (*state(theatre), theatre.source.scene.h) == (*expected, 0.1)

@@ -157,6 +157,10 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
     async with lab() as theatre:
         await theatre.run(1)
+        await theatre.pilot.click(Stage, offset=on_lane(theatre, 2)[1], button=3)
+        below = theatre.stage.query_one(Stage).size.height - 1
+        await theatre.pilot.click(Stage, offset=(1, below))  # far off
+        assert not theatre.stage.shown.hidden
         for place in (2, 0):
             stage, cell = on_lane(theatre, place)
             await theatre.pilot.click(stage, offset=cell)

@@ -70,6 +70,12 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.pilot.pause()
         farther = theatre.stage.shown.stretch
         assert farther.end - farther.begin == pytest.approx((half.end - half.begin) / 0.8)
+        for factor in (*[0.7] * 12, 1.1):  # not nearer than 8 rows
+            chart.zoom(factor)
+            await theatre.pilot.pause()
+            await theatre.run(0)
+        near = theatre.stage.shown.stretch
+        assert 8 <= (near.end - near.begin) / WHOLE.h < 8 / 0.7 * 1.1 + 1
         await theatre.press("w")
         assert theatre.stage.shown == Shown().through(WHOLE)
         await theatre.press("w", "z", "w")

@@ -23,9 +23,8 @@ def test_cards_as_they_are_stored(snapshot):
     snapshot("cards.txt", "\n\n".join(cards))
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
-def test_every_method_card_fits(method):
-    assert method.label in words(method_card(method))
+def test_every_method_card_fits():
+    assert all(each.label in words(method_card(each)) for each in METHODS)
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

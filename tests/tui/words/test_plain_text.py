@@ -23,7 +23,7 @@ from pendu_tui.tui.words.plain_text import (
     numbered,
     tell,
 )
-from tests.tui.harness import after, lab
+from tests.tui.harness import after
 
 DRIFT = SCENES["drift"]
 
@@ -85,15 +85,6 @@ def test_sentences_and_events_of_a_scene_fit_the_smallest_pane(scene):
             assert method.label.split()[-1] in sentence
         assert 10 < len(insight(live).text) <= 110
     assert all(len(str(line)) <= 46 for line in event_lines(live))
-
-
-async def test_d_opens_the_description_and_closes_it():
-    async with lab() as theatre:
-        await theatre.press("d")
-        text = theatre.app.screen.text
-        assert "\n".join(description(theatre.source)[1:]) in text
-        await theatre.press("d")
-        assert theatre.app.screen is theatre.stage
 
 
 def test_every_event_has_a_sentence_also_at_another_speed():
