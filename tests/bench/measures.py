@@ -25,7 +25,7 @@ CEILINGS = {
     "characters_of_engine": 258_900,
     "characters_of_recordings": 68_800,
     "characters_of_tui": 516_200,
-    "characters_of_tests": 686_200,
+    "characters_of_tests": 700_300,
     "characters_of_bench": 69_200,
     "files": 127,
     "long_lines": 0,
