@@ -158,8 +158,7 @@ class AccuracyPane(Chooser[Point]):
         self.here = ()
         self.points = {}
         self.cursor = self.pointer = None
-        every = with_all_methods(scene) if self.all else scene
-        self.compute(measured, every, self.time, self.steps, group="ladder")
+        self.compute(measured, scene.with_cast(self.cast), self.time, self.steps, group="ladder")
 
     def forget(self) -> None:
         self._study.forget()
