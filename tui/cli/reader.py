@@ -444,7 +444,7 @@ class _Text:
 
     def _words_or_row(self, line: str) -> bool:
         """Read a row, or words that may be a head.  Return whether it is neither."""
-        text = line.strip()
+        text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
         bare = text.lstrip(_COMMENTS + " \t")
@@ -467,10 +467,10 @@ class _Text:
 
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
-        text = text.strip()
         delimiter, width, _ = self._form
         if delimiter and len(fields := _split(text, delimiter)) == width:
             return fields, delimiter
+        text = text.strip()
         bare = re.sub(r'"[^"]*"', "", text)
         for sign in filter(bare.__contains__, _DELIMITERS):
             fields = _split(text, sign)

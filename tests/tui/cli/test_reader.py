@@ -174,6 +174,7 @@ def test_columns_of_inner_arrays_have_numbers():
     [
         ("t,E\n", "{t},{e}", ("nan", "-nan(ind)", "1.#QNAN", "#NUM!", "overflow", "")),
         ("t E\n", "{t} {e}", ("-1.#IND", "+Infinity", "********", "overflow")),
+        ("t\tE\n", "{t}\t{e}", ("nan", "")),
         ("t E\n", "{t}{e}", ("********",)),
         ("", "t = {t}, E = {e}", ("nan", "-nan(ind)", "1.#QNAN", "********", "inf")),
     ],
