@@ -112,7 +112,6 @@ def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(mine, monkeypa
     assert bool(waits) == ("takes" in why)
 
 
-@pytest.mark.slow
 def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_the_command(
     tmp_path,
 ):

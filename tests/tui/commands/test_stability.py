@@ -21,7 +21,9 @@ def line_of(out, *words):
 
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
     few = ("stability", "--steps", 5, "--z-values", "0.01,0.02", "--theta-values", 1, "--h", 0.005)
-    rows = pendu(*few, "--json").json["pendulum"]
+    answer = pendu(*few, "--json").json
+    assert answer["steps"] == 5
+    rows = answer["pendulum"]
     assert {row["first_failure_z"] for row in rows} == {None}
     assert pendu(*few).out.splitlines()[-1].split()[2:] == [*"----"]
 

@@ -61,6 +61,8 @@ def test_charts_as_they_are_stored(snapshot):
         plot(window(t, grows, repeats=1.1), ghost=ghost, changes=changes, seconds=20, **limit),
         plot(window(t, grows), 60, 9, names=names),
         plot(window(t, grows), 59, 8, names=names, places=[1, 2, 3]),
+        plot(window(t, grows), 59, 10, names=names),
+        plot(window(t, grows[:, :1] ** 10 * [1, 0, 0, 0] + grows), 60, 10, places=[0, 2]),
         plot(mixed, 60, 16, log=False, changes=changes, seconds=10, **limit),
         plot(window(t, -grows, -grows, turned=True), 72, 12, log=False, names=names),
         plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
@@ -186,13 +188,3 @@ def test_letters_have_rows_of_their_own_in_the_order_of_their_lines(wanted, room
     own = [math.floor(each + 0.5) for each in wanted]
     if len(set(own)) == len(own) and all(0 <= row < room for row in own):
         assert rows == own  # moved only where they must
-
-
-@pytest.mark.parametrize(("rate", "top"), [(3, "1e6┤"), (30, "10┤")])
-def test_a_line_that_leaves_the_chart_ends_with_its_value_and_at_once_takes_no_room(rate, top):
-    errors = np.stack([np.exp(rate * TIMES), 0.1 * TIMES, TIMES, TIMES], axis=1)
-    lines = plot(window(TIMES, errors), places=[0, 1], seconds=20).picture.text.splitlines()
-    value = f"↑e {errors[-1, 0]:.0e}".replace("e+", "e")
-    row = next(row for row, line in enumerate(lines) if value in line)
-    assert next(line for line in lines if "┤" in line).lstrip().startswith(top)
-    assert max(line.rfind("⠁") for line in lines[: row + 1]) < lines[row].index("↑") + 3

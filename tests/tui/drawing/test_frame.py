@@ -72,6 +72,7 @@ HOUR = 3600
         (log_axis(-5.3, 1.2, 8).labels, "1e-5 1"),
         (log_axis(-5.3, 1.2, 9).labels, "1e-6 1e-4 1e-2 1"),
         (log_axis(1.0, 4.0, 3).labels, "1 1e3"),
+        (log_x_axis(0.0, 0.0, 40).labels, "1 10"),
         (log_x_axis(-3.2, 1.1, 40).labels, "1e-4 1e-2 1 100"),
         (linear_axis(-0.06, 4.3, 14).labels, "0 1 2 3 4"),
         (linear_axis(-0.13, 0.19, 13).labels, "-0.2 -0.1 0 0.1 0.2"),
