@@ -5,8 +5,8 @@ ASE, CP2K's .ener, SIESTA's .MDE, Tinker's tables, GENESIS.
 """
 
 import re
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 from pendu_tui.tui.cli.units import split_unit
 
@@ -33,10 +33,10 @@ class Layout:
     file: str = r"(?!)"  # the end of the name of a file whose first columns are `columns`
     columns: tuple[str, ...] = ()
     cells: str = ""  # finds each of the names, if neither blanks nor commas part them
-    pattern: re.Pattern[str] = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "pattern", re.compile(self.line, re.IGNORECASE))
+    @cached_property
+    def pattern(self) -> re.Pattern[str]:
+        return re.compile(self.line, re.IGNORECASE)
 
 
 LAYOUTS = (
