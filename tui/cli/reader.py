@@ -12,7 +12,7 @@ import lzma
 import re
 import zlib
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import accumulate, chain, compress, islice
 from statistics import mode
@@ -32,6 +32,7 @@ BLOCK = 1 << 16  # characters
 MAX_DOCUMENT = 1 << 27  # characters of JSON
 MAX_INNER = 9  # of an array in a record
 MAX_COLUMNS = 5000
+MAX_TABLES = 10_000
 MAX_SHAPES = 10_000
 MAX_HEADS = 20  # lines that may be the head of the next row
 _UNPACK: dict[bytes, Callable[[Any], Any]] = {
@@ -258,6 +259,8 @@ class _Text:
                 size = 2 * known + 1
             if self._line > MAX_LINES_BEFORE and self._form[1] < 0 and not self._prints[0].puts:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
+            if len(self._tables) + len(self._prints) > MAX_TABLES:
+                raise unreadable(f"more than {MAX_TABLES:,} tables; leave some out.")
         named = [sheet for sheet in self._tables if any(sheet.names)]
         for sheet in self._prints:
             sheet.choose()
@@ -285,7 +288,9 @@ class _Text:
         if others:
             found += self._prints_in(others)
         ends = [start + len(lines)]
-        for _, here, _, columns in found:
+        for sheet, here, _, columns in found:
+            if sheet is self._tables[-1] and self._form[0]:
+                columns = columns[:1]  # others may have blanks
             ends += [here[values.index(None)] for values in columns if None in values]
         last = max([0, *rows[: bisect_left(rows, min(ends))]])
         ends += [head for head in heads if head > last]  # no row is below it
@@ -304,9 +309,9 @@ class _Text:
         delimiter, width, opening = self._form
         if self._heads or self._begins or width < 0:
             return sheet, [], (), []
-        if opening:  # its numbers may have run together
+        if opening and _GLUED.search("\n".join(lines.values())):
             for at, line in lines.items():
-                if line.startswith(opening) and len(line.split()) < width:
+                if line.startswith(opening):
                     lines[at] = _GLUED.sub(r" \g<0>", line)
         rows = {
             at: line
@@ -364,7 +369,7 @@ class _Text:
         if is_nothing or prints:
             self._remember(line, prints)
 
-    def _remember(self, line: str, prints: Mapping[str, int]) -> None:
+    def _remember(self, line: str, prints: dict[str, int]) -> None:
         """Remember what lines of this shape hold: these prints, where their values begin."""
         starts = {match.start(): 2 * n + 1 for n, match in enumerate(_NUMBERS.finditer(line))}
         holds = {}

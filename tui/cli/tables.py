@@ -200,11 +200,17 @@ class Sheet:
     def put(
         self, lines: Sequence[int], places: Group, columns: Sequence[Sequence[float | None]]
     ) -> None:
-        """Add the values of some columns at these lines, at a single one only the numbers."""
+        """Add the values of some columns at these lines; None is a blank."""
         for place, column in zip(places, columns, strict=True):
-            if column[0] is not None:
-                self._lines[place].extend(lines)
-                self._values[place].extend(column)  # type: ignore[arg-type]
+            values = column
+            here = lines
+            if None in column:
+                values = [value for value in column if value is not None]
+                here = [
+                    line for line, value in zip(lines, column, strict=True) if value is not None
+                ]
+            self._lines[place].extend(here)
+            self._values[place].extend(values)  # type: ignore[arg-type]
         is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
         if self.puts >= SAMPLE and not is_sampled:

@@ -143,7 +143,10 @@ def test_each_layout_reads_its_case(layout):
     assert len(series.times) == 90
 
 
-@pytest.mark.parametrize("case", [*CASES.values(), ("", "Start\n", "t = {t}, E = {e}")])
+MORE = [("", "Start\n", "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
+
+
+@pytest.mark.parametrize("case", [*CASES.values(), *MORE])
 def test_few_lines_of_a_long_log_are_read_one_by_one(case, monkeypatch):
     read = []
     new = reader._Text._read_new

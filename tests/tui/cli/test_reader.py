@@ -381,6 +381,12 @@ def test_long_lines_take_no_longer_than_short_ones(part):
     assert tables(part * 50_000 + "\n") == []
 
 
+def test_tables_without_end_are_refused(monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.cli.reader.MAX_TABLES", 9)
+    with pytest.raises(UserError, match="more than 9 tables"):
+        tables("1 2\n1\n" * 9)
+
+
 @pytest.mark.parametrize("text", ["{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null"])
 def test_documents_without_a_table_hold_none(text):
     assert [len(series.times) for series in tables(text)] == []
