@@ -1,7 +1,6 @@
 """The outcomes of runs of a million steps, by start and h·w0, from tests/bench/truths.py."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -47,13 +46,13 @@ ALLOWED: dict[str, set[tuple[str, ...]]] = {
 }
 
 
-def scene_at(start: str, z: float) -> Scene:
+def scene_at(start: str, z: float):
     """Return the scene of a cell."""
     theta, omega = STARTS[start]
     return Scene(theta=theta, omega=omega, h=z / Scene().w0)
 
 
-def truths() -> Iterator[tuple[Method, str, float, str]]:
+def truths():
     """Yield method, start, h·w0 and letter of each cell."""
     by_key = {method.key: method for method in GENERAL}
     for line in FILE.read_text().splitlines():
@@ -66,7 +65,7 @@ Course = list[tuple[str, int, float]]
 """Verdicts in order, each with its step and time [periods]."""
 
 
-def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course:
+def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int):
     """Return the verdicts on a method."""
     period = scene.exact().period or math.tau / scene.w0
     lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops, judged=True)
@@ -78,13 +77,13 @@ def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course
     ]
 
 
-def watch(scene: Scene) -> int:
+def watch(scene: Scene):
     """Return the steps of a test of a cell: 80 periods, and at least 6000 unless h·w0 is small."""
     period = scene.exact().period or math.tau / scene.w0
     return max(round(80 * period / scene.h), 6000 if scene.z > 0.3 else 1500)
 
 
-def is_true(letter: str, course: Course) -> bool:
+def is_true(letter: str, course: Course):
     """Return whether the truth allows these verdicts; none are always allowed."""
     words = [verdict for verdict, *_ in course if verdict != "undecided"]
     distinct = tuple(word for word, _ in groupby(words))

@@ -59,6 +59,9 @@ def test_every_scene_has_its_name_and_group_and_says_what_to_watch():
         assert scene.name == name
         assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and a blank
         assert scene.h / scene.speed < 0.4  # s from a step to the next
+        if line := scene.shot.line:
+            fences = {"pi/h": math.pi / scene.h, "2 pi/h": math.tau / scene.h}
+            assert line.value == pytest.approx(fences.get(line.name, line.value))
 
 
 # What the scenes tell people to watch.

@@ -1,7 +1,7 @@
 """Small recordings for tests, the same each time."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
@@ -14,18 +14,18 @@ from pendu_tui.recordings.recording import Recording
 SCENE = Scene("test", theta=2.0, h=0.1)
 
 
-def start(run: int = 1, scene: Scene = SCENE) -> Event:
+def start(run: int = 1, scene: Scene = SCENE):
     return Event("start", run, 0, 0.0, scene=scene)
 
 
-def two_runs() -> list[Entry]:
+def two_runs():
     """Two runs with all kinds of events, the second of which continues from the first."""
     entries = []
 
-    def note(clock: float, value: Sample | Event) -> None:
+    def note(clock: float, value: Sample | Event):
         entries.append(Entry(clock, value))
 
-    def advance(lockstep: Lockstep, steps: int, *clocks: float) -> None:
+    def advance(lockstep: Lockstep, steps: int, *clocks: float):
         for clock in clocks:
             lockstep.advance(steps)
             note(clock, lockstep.sample())
@@ -55,11 +55,11 @@ def two_runs() -> list[Entry]:
     return entries
 
 
-def samples_of(recording: Recording) -> list[Entry]:
+def samples_of(recording: Recording):
     return [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
 
 
-def record(path: Path, entries: list[Entry]) -> Path:
+def record(path: Path, entries: list[Entry]):
     """Write entries, with a chunk each second as in the lab."""
     flushed_at = 0.0
     with Recorder(path) as recorder:
@@ -77,14 +77,14 @@ Changes = Sequence[tuple[int, float]]
 
 def with_changes(
     scene: Scene, time: float, recorder: Recorder, changes: Changes, sample_every: int = 1
-) -> Iterator[Sample]:
+):
     """`headless.simulate` with changes of h; the clock runs forwards in both directions of time."""
     lockstep = Lockstep(scene, judged=True)
     clock = 0.0
     remaining = time
     recorded = 0  # milestones
 
-    def sampled() -> Sample:
+    def sampled():
         nonlocal recorded
         sample = lockstep.sample()
         recorder.add(sample, clock)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import struct
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -31,7 +31,7 @@ Entry = list[tuple[str, float, bytes]]
 """Messages: topic, clock [s], data."""
 
 
-def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28) -> None:
+def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28):
     """Write entries as a finished file."""
     with path.open("wb") as stream:
         writer = Writer(
@@ -51,54 +51,54 @@ def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28) -> No
         writer.finish()
 
 
-def event(value: Event, clock: float = 0.0, **changes: object) -> Entry:
+def event(value: Event, clock: float = 0.0, **changes: object):
     data = encode_event(value)
     if changes:
         data = json.dumps(json.loads(data) | changes).encode()
     return [(EVENTS, clock, data)]
 
 
-def sample(value: Sample, clock: float = 0.0) -> Entry:
+def sample(value: Sample, clock: float = 0.0):
     messages = zip(topics_of(SCENE), encode_readings(value), strict=True)
     return [(topic, clock, data) for topic, data in messages]
 
 
-def first_sample(run: int = 1) -> Sample:
+def first_sample(run: int = 1):
     return Lockstep(SCENE, run).sample()
 
 
-def begun(*entries: Entry) -> Iterator[Entry]:
+def begun(*entries: Entry):
     """A run with its first sample, and more."""
     yield event(start())
     yield sample(first_sample())
     yield from entries
 
 
-def changed_h(h: float) -> Iterator[Entry]:
+def changed_h(h: float):
     yield from begun(event(Event("set_h", 1, 0, 0.0, h=h), 0.5))
     for step in range(1, 40):
         yield sample(first_sample()._replace(step=step), 0.5 + step / 30)
 
 
-def unlike(number: int) -> str:
+def unlike(number: int):
     """A long text of its own for each number, which cannot be compressed to nothing."""
     return hashlib.sha256(number.to_bytes(8)).hexdigest() + "字" * 130
 
 
-def runs() -> Iterator[Entry]:
+def runs():
     for run in range(1, MANY):
         yield event(start(run, replace(SCENE, name=unlike(run))))
         yield sample(first_sample(run))
 
 
-def false_head(packed: int = 4_000_000) -> bytes:
+def false_head(packed: int = 4_000_000):
     """The head of a chunk that claims to have so many bytes, and 4 MB of contents."""
     frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
     numbers = (6, packed + 44, 1, 2, 4_000_000, 1, b"\x04\x00\x00\x00zstd", packed)
     return struct.pack("<BQQQQI8sQ", *numbers) + frame
 
 
-def false_heads(count: int) -> bytes:
+def false_heads(count: int):
     """Such heads, a hundred bytes apart."""
     return MAGIC + count * false_head().ljust(100, b"\0")
 

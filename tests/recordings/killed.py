@@ -12,7 +12,6 @@ from pathlib import Path
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.playback.live import Live
 from tests.own_methods import load
@@ -51,13 +50,13 @@ class Noting(LiveRecorder):
 
     last = (0, 0)  # run, step
 
-    def add(self, value: Sample | Event | None, clock: float) -> None:
+    def add(self, value, clock):
         super().add(value, clock)
         if isinstance(value, Sample):
             self.last = (value.run, value.step)
 
 
-def main(path: Path, log: Path) -> None:
+def main(path: Path, log: Path):
     """Play at 30 frames a second, and press about three keys a second."""
     recorder = Noting(path)
     live = Live(SCENE)

@@ -18,14 +18,14 @@ from tests.recordings.examples import samples_of, with_changes
 class Later:
     """A recorder for a run that follows others."""
 
-    def __init__(self, recorder: Recorder, run: int) -> None:
+    def __init__(self, recorder: Recorder, run: int):
         self._recorder, self._run, self._begin = recorder, run, recorder.seconds
 
-    def add(self, value: Sample | Event, clock: float) -> None:
+    def add(self, value: Sample | Event, clock: float):
         self._recorder.add(value._replace(run=self._run), self._begin + clock)
 
 
-def make(name: str, path: Path) -> None:
+def make(name: str, path: Path):
     with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recorder(path) as recorder:
         for run in golden.runs:
             steps = [value.step for _, value in samples_of(golden) if value.run == run.number]

@@ -120,12 +120,19 @@ def test_a_number_is_for_the_model_that_has_it_and_within_limits():
         Scene(model="spring", cast=())
 
 
-@pytest.mark.parametrize(("gravity", "most"), [(9.81, 100.0), (0.04, 20.0)])
-def test_the_limit_of_friction_is_100_per_s_or_100_w0(gravity, most):
-    damped = EXAMPLES["damped"].altered(gravity=gravity)
-    assert damped.altered(friction=0.999 * most).parameters["friction"] == 0.999 * most
-    with pytest.raises(InputError, match=rf"friction = .* out of range; use 0 to {most:g} s"):
-        damped.altered(friction=1.001 * most)
+@pytest.mark.parametrize(
+    ("key", "name", "gravity", "most"),
+    [
+        ("damped", "friction", 9.81, 100),
+        ("damped", "friction", 0.04, 20),  # 100 w0
+        ("mean_field", "level_frequency", 0.04, 200),  # 1000 w0
+    ],
+)
+def test_a_frequency_is_limited_beside_w0_too(key, name, gravity, most):
+    scene = EXAMPLES[key].altered(gravity=gravity)
+    assert scene.altered(**{name: 0.999 * most}).parameters[name] == 0.999 * most
+    with pytest.raises(InputError, match=rf"{name} = .* out of range; use .* to {most} s"):
+        scene.altered(**{name: 1.001 * most})
 
 
 def test_the_spring_starts_stretched_by_4_percent_beyond_equilibrium():

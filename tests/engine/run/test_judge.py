@@ -2,7 +2,6 @@
 
 import math
 import random
-from collections.abc import Iterable
 from dataclasses import replace
 from statistics import median
 
@@ -20,7 +19,6 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, available, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.bench.judging import exclude, judgements
 from tests.engine.run.test_record import noise_of
@@ -35,15 +33,15 @@ BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
 RESONANCES = [(1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757)]  # theta, h
 
 
-def course(method, scene: Scene, steps: int) -> list[str]:
+def course(method, scene, steps):
     return [verdict for verdict, *_ in verdicts(method, scene, LOOPS, steps)]
 
 
-def words(lockstep: Lockstep) -> list[str]:
+def words(lockstep):
     return [judgement.verdict for judgement in lockstep.judgements]
 
 
-def moved(scene: Scene, gaps: Iterable[int], loops=LOOPS) -> Lockstep:
+def moved(scene, gaps, loops=LOOPS):
     lockstep = Lockstep(scene, loops=loops, judged=True)
     for gap in gaps:
         lockstep.advance(gap)
@@ -51,7 +49,7 @@ def moved(scene: Scene, gaps: Iterable[int], loops=LOOPS) -> Lockstep:
     return lockstep
 
 
-def milestones(lockstep: Lockstep, kind: str) -> list[Milestone]:
+def milestones(lockstep, kind):
     return [each for each in lockstep.milestones if each.kind == kind]
 
 
@@ -108,7 +106,7 @@ def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict():
 
 
 @pytest.mark.parametrize("h", [0.02, 0.1, -0.05])
-def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h: float):
+def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
     judged = set()
     for steps in (5, 13, 29, 47):
@@ -156,7 +154,7 @@ def test_a_damped_energy_is_judged_only_where_it_is_above_rounding():
 
 
 @pytest.mark.parametrize(("share", "peak"), [(0.99, 0.0), (1.01, 0.5)])
-def test_a_damped_swing_counts_from_1e5_roundings_on(share: float, peak: float):
+def test_a_damped_swing_counts_from_1e5_roundings_on(share, peak):
     model = SCENES["damped"].equations
     energy = (share * 1e5 * R.epsilon * model.w0) ** 2
     judge = Judge(h=0.1, period=2.0, method=R, model=model, start=LookPoint(0, 0.0, 0.0, 0.0))
@@ -167,7 +165,7 @@ def test_a_damped_swing_counts_from_1e5_roundings_on(share: float, peak: float):
 BAND = 0.5 - 0.5 * np.cos(math.tau * np.arange(6000) / 16)
 
 
-def judge_of(errors, h=0.1, model=Pendulum(1.0)) -> Judge:  # noqa: B008
+def judge_of(errors, h=0.1, model=Pendulum(1.0)):  # noqa: B008
     """Return a judge of made-up errors, 16 steps of 0.1 a period."""
     points = [LookPoint(step, error, error, error) for step, error in enumerate(errors)]
     judge = Judge(h=h, period=1.6, method=R, model=model, start=points[0])
@@ -176,13 +174,13 @@ def judge_of(errors, h=0.1, model=Pendulum(1.0)) -> Judge:  # noqa: B008
     return judge
 
 
-def told(errors) -> tuple[str, bool]:
+def told(errors):
     judgement = judge_of(errors).judgement
     return judgement.verdict, judgement.rests
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_random_walk_of_roundings_is_no_trend(seed: int):
+def test_a_random_walk_of_roundings_is_no_trend(seed):
     walk = np.random.default_rng(seed).normal(0, 1e-15, 20_000)
     assert told([0.0, *walk.cumsum()])[0] in ("undecided", "bounded")
 
@@ -273,7 +271,7 @@ def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length():
 
 
 @pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
-def test_a_band_has_left_the_start_by_half_its_width(sign: int, word: str):
+def test_a_band_has_left_the_start_by_half_its_width(sign, word):
     for middle, expected in ((1.95, ("undecided", False)), (2.05, (word, True))):
         errors = sign * (middle + np.sin(np.arange(6000) / 3))
         assert told([0.0, *errors[1:]]) == expected
@@ -312,16 +310,16 @@ RESTING = Scene(theta=1.37437563948, h=1.15018130605433 / W0, cast=(E,))  # at o
     ],
     ids=lambda scene: scene.name,
 )
-def test_a_run_and_its_energies_alone_do_not_exclude_each_other(scene: Scene):
+def test_a_run_and_its_energies_alone_do_not_exclude_each_other(scene):
     found = list(judgements(scene, 60.0))
     assert not [method.key for method, of_run, alone in found if exclude(of_run, alone)]
     assert all(of_run.slope is not None or of_run.verdict == "failed" for _, of_run, _ in found)
 
 
 @pytest.mark.parametrize("name", ["drift", "rk4-limit", "chaos-loose"])
-def test_the_step_over_the_top_does_not_depend_on_samples(name: str):
+def test_the_step_over_the_top_does_not_depend_on_samples(name):
     scene = SCENES[name]
-    expected: dict[str, tuple[int, float, float]] = {}
+    expected = {}
     lockstep = Lockstep(scene)
     for _ in range(math.ceil(30 / scene.h)):
         lockstep.advance(1)
@@ -338,7 +336,6 @@ def test_the_step_over_the_top_does_not_depend_on_samples(name: str):
 
 
 def test_the_top_is_where_the_start_puts_it():
-    """No top for a pendulum that spins; a turn on, the same steps."""
     assert not milestones(moved(SCENES["spin"], [2000]), "over the top")
     first, *others = (
         [(each.method, each.step) for each in milestones(moved(scene, [400]), "over the top")]
@@ -385,7 +382,7 @@ def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():
     "name",
     ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped", "stiff-slow"],
 )
-def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str):
+def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name):
     scene, uneven = SCENES[name], random.Random(1)
     steps = min(8000, math.ceil(40 * (scene.exact().period or 1.0) / scene.h))
     whole = moved(scene, [steps])
@@ -397,7 +394,7 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name: str):
 
 @settings(max_examples=6, deadline=None)
 @given(back=st.integers(0, 1500), at=st.integers(0, 1500))
-def test_after_a_way_back_verdicts_are_those_of_their_step(back: int, at: int):
+def test_after_a_way_back_verdicts_are_those_of_their_step(back, at):
     run = RewindableRun(DRIFT, loops=LOOPS)
     run.forward(1500)
     run.go_to(back)

@@ -25,7 +25,7 @@ NOISE = RANDOM.standard_normal(2000)
 SINE = math.sqrt(2) * np.sin(7 * T)  # standard deviation 1
 
 
-def noise_of(times: float, seed: int = 1, count: int = 2000) -> np.ndarray:
+def noise_of(times: float, seed: int = 1, count: int = 2000):
     return correlated(count, times, np.random.default_rng(seed))
 
 
@@ -67,7 +67,7 @@ RESTING = {
 }
 
 
-def told(energies) -> str:
+def told(energies):
     """Return the verdict on energies about 1000, or why there is none."""
     found = judge_record(T, 1000 + energies)
     return found.reason or found.verdict
@@ -85,6 +85,8 @@ def test_what_has_left_its_start_and_rests_has_the_slope_of_the_rest(name):
         found = judge_record(T, 1000 + sign * RESTING[name])
         assert (found.verdict, found.rests) == (verdict, True)
         assert abs(found.slope) < 3 * found.uncertainty
+        if name == "a first sample far from the others":
+            assert found.independent > 1200
 
 
 @pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a walk"])
@@ -201,6 +203,14 @@ def test_an_end_is_new_a_quarter_of_its_move_beyond_all_before(before, length, m
     for height, expected in ((new, True), (old, False)):
         values = np.append(np.full(before, height), ramp)
         assert core.is_new(values, values[-length:], move) == expected
+
+
+@pytest.mark.parametrize(("before", "way"), [(10.9, 10), (11.1, 0), (-0.9, 10), (-1.1, 0)])
+def test_an_energy_has_not_left_if_it_was_half_its_band_beyond_start_and_rest(before, way):
+    values = np.repeat([0.0, before, 10.0], [4, 12, 48])
+    bins = core.Bins(np.arange(64.0), values, values - 1, values + 1, 0 * values + 0.5, 1e-12)
+    whole = core.Part(bins, values)
+    assert core._way_from_start(whole, whole.last(0.75)) == pytest.approx(way)
 
 
 def test_noise_models_are_weighted_by_their_likelihoods():

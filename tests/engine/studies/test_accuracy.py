@@ -160,6 +160,7 @@ def test_a_point_knows_its_step_in_each_unit():
 
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
+    assert cost_at(LINES[:4], "theta", "evaluations", 1.0) == 4 * 10
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
     assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
     assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
