@@ -257,7 +257,8 @@ class _Text:
                     self._read_new(lines[first])
                     first += 1
                 size = 2 * known + 1
-            if self._line > MAX_LINES_BEFORE and self._form[1] < 0 and not self._prints[0].puts:
+            is_empty = not any(sheet.puts for sheet in (*self._tables, *self._prints))
+            if is_empty and self._line > MAX_LINES_BEFORE:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
             if len(self._tables) + len(self._prints) > MAX_TABLES:
                 raise unreadable(f"more than {MAX_TABLES:,} tables; leave some out.")

@@ -143,7 +143,7 @@ def test_each_layout_reads_its_case(layout):
     assert len(series.times) == 90
 
 
-MORE = [("", "Start\n", "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
+MORE = [("", "Start\n" + LOOP, "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
 
 
 @pytest.mark.parametrize("case", [*CASES.values(), *MORE])
@@ -152,5 +152,6 @@ def test_few_lines_of_a_long_log_are_read_one_by_one(case, monkeypatch):
     new = reader._Text._read_new
     monkeypatch.setattr(reader._Text, "_read_new", lambda *line: (read.append(line), new(*line)))
     text = (case[1] + rows(case[2])) * 30
+    monkeypatch.setattr(reader, "MAX_LINES_BEFORE", 200)
     tables(text + LOOP + text)
     assert len(read) < text.count("\n") / 4
