@@ -183,7 +183,7 @@ def test_an_error_past_anothers_maximum_is_news_after_what_to_watch():
     live.milestones = [*live.milestones, top._replace(step=live.sample.step)]
     assert insight(live).kind == "over the top"  # which matters more
     lab.run(14.1)
-    assert insight(live).text == scene.shot.sentence
+    assert insight(live) == ("watch", scene.shot.sentence)
     other = Live(scene, clock=lambda: 0.0)
     other.change(Stepping(2 * scene.h))
     other.step(round(scene.shot.moment / scene.h / 2))
