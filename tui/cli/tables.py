@@ -17,8 +17,9 @@ import numpy as np
 
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
-from pendu_tui.tui.cli.units import Moment, plain, shown, size, split_unit
+from pendu_tui.tui.cli.units import Moment, is_of_another_kind, plain, shown, size, split_unit
 
+ROUNDING = 2e-15  # relative, of a converted time
 LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
@@ -30,8 +31,6 @@ MIXED = (
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 Group = tuple[int, ...]
 """Columns to add up."""
-
-NO_ENERGIES = ("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%")
 
 
 def unreadable(sentence: str) -> UserError:
@@ -145,8 +144,7 @@ def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Grou
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
         return _only(places)
-    others = [plain("time", unit) or unit.casefold() in NO_ENERGIES for unit in units]
-    fit = (place for place in places if plain("energy", units[place]) or not others[place])
+    fit = (place for place in places if not is_of_another_kind(units[place]))
     best = _by_role(names, fit)
     for kind in ("conserved", "total"):
         if kind in best:
@@ -348,6 +346,8 @@ class Series:
         """
         self.units = self._units()
         begin, last = (self._moment(each) for each in (start, end))
+        begin -= ROUNDING * abs(begin)
+        last += ROUNDING * abs(last)
         if not begin <= last:
             raise UserError(f"there is no time from {begin:g} to {last:g}.")
         step, _ = self.sheet.wanted.step or (1.0, "")
@@ -377,17 +377,29 @@ class Series:
     def _units(self) -> tuple[str, str]:
         """Return the units of time and energy.
 
-        Raises UserError if those of energies differ, or --step contradicts that of time.
+        Raises UserError if those of energies differ, or an option contradicts the file.
         """
         wanted = self.sheet.wanted
         time, energy, kinetic, _ = self.choice
-        found = {"time": self._unit("time", time), "energy": self._unit("energy", energy)}
+        if {*time} & {*energy}:
+            raise UserError(
+                f"{self.named(time)} is both the time and an energy; name another column."
+            )
+        groups = {"time": time, "energy": energy}
+        found = {kind: self._unit(kind, group) for kind, group in groups.items()}
         is_time = any(role(self.sheet.names[place])[0] == "time" for place in time)
         if wanted.step and (found["time"] or is_time):
             raise UserError(
                 f"--step is for steps, but {self.named(time)} is a time already; "
                 "name the column of steps with --time, or leave out --step."
             )
+        for kind, unit in wanted.units.items():
+            own = plain(kind, found[kind])
+            if own and own != plain(kind, unit):
+                raise UserError(
+                    f"{self.named(groups[kind])} is in {found[kind]}, not in {unit}; "
+                    f"leave {kind}= out of --units."
+                )
         if wanted.step:
             found["time"] = wanted.step[1]
         time_unit, energy_unit = (shown(*each) for each in (found | wanted.units).items())

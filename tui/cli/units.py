@@ -10,7 +10,6 @@ NANOSECONDS = {
     "ps": 1e-3,
     "ns": 1.0,
     "us": 1e3,
-    "µs": 1e3,
     "ms": 1e6,
     "s": 1e9,
     "yr": 3.15576e16,
@@ -27,13 +26,16 @@ BOLTZMANN = {  # per kelvin, in the 2019 SI
     "erg": 1.380649e-16,
     "k": 1.0,
 }
+_NO_ENERGIES = ("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%")
 MAX_NAME = 100  # characters
 _KNOWN = {"time": NANOSECONDS, "energy": BOLTZMANN}
+_PER_MOLE = r"(/?mole?|[\s.·]mol\^?(-1|⁻¹))"
 _OTHER_NAMES = {
     "time": (
         (r"femto-?seconds?", "fs"),
         (r"pico-?seconds?", "ps"),
         (r"nano-?seconds?", "ns"),
+        (r"micro-?seconds?|µs", "us"),  # in any case, which makes a mu of the micro sign
         (r"sec(onds?)?", "s"),
         (r"years?", "yr"),
         (r"au|atomic_unit", "a.u."),
@@ -42,8 +44,8 @@ _OTHER_NAMES = {
         (r"a\.?u\.?|h|ha|eh|hartrees|atomic_unit", "hartree"),
         (r"electronvolt", "eV"),
         (r"rydbergs?", "Ry"),
-        (r"kj/?mole?", "kJ/mol"),
-        (r"kcal/?mole?", "kcal/mol"),
+        (rf"kj{_PER_MOLE}", "kJ/mol"),
+        (rf"kcal{_PER_MOLE}", "kcal/mol"),
     ),
 }
 _NO_UNITS = re.compile(r"kin(etic)?|pot(ential)?|tot(al)?|const", re.IGNORECASE)
@@ -76,6 +78,12 @@ def size(kind: str, unit: str) -> float:
             "for example --units time=ps,energy=eV or --step 0.5fs."
         )
     return _KNOWN[kind][name]
+
+
+def is_of_another_kind(unit: str) -> bool:
+    """Return whether this is a known unit, but none of energy."""
+    is_known = bool(plain("time", unit)) or unit.casefold() in _NO_ENERGIES
+    return is_known and not plain("energy", unit)
 
 
 def is_unit(text: str) -> bool:
@@ -131,4 +139,6 @@ def assignments(text: str) -> dict[str, str]:
         raise ValueError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
     if "time" in found:
         _unit_of_time(found["time"])
+    if is_of_another_kind(found.get("energy", "")):
+        raise ValueError(f"{found['energy']!r} is no unit of energy; use for example eV or kJ/mol")
     return found

@@ -54,6 +54,9 @@ def columns(series: Series) -> str | None:
         ("t/ps,E/(kJ/mol)", "{t},{e}", "t ps, E kJ/mol"),
         ("time{picosecond},Etot/N[electronvolt]", "{t},{e}", "time ps, Etot/N eV"),
         ("Time [a.u.],Cons Qty [a.u.]", "{t},{e}", "Time a.u., Cons Qty hartree"),
+        ("time [µs],E [kJ mol^-1]", "{t},{e}", "time us, E kJ/mol"),  # micro sign
+        ("time [μs],E/(kJ·mol⁻¹)", "{t},{e}", "time us, E kJ/mol"),  # mu
+        ("t,E [kcal.mol-1]", "{t},{e}", "t, E kcal/mol"),
         ("S.timestep,log.total_energy", "{t},{e}", "S.timestep, log.total_energy"),
         ("t,|dE/E|", "{t},{e}", "t, |dE/E|"),
         ("t,(E-E0)/E0", "{t},{e}", "t, (E-E0)/E0"),
@@ -253,7 +256,7 @@ def test_names_that_differ_in_a_digit_are_columns_of_their_own(name):
     ("read", "form"), [(quantity, "1{}"), (assignments, "time={},energy=parsec")]
 )
 def test_units_of_time_are_known_ones(read, form):
-    for unit in ("fs", "Picoseconds", "a.u.", "yr"):
+    for unit in ("fs", "Picoseconds", "a.u.", "yr", "µs", "μs"):
         assert unit in str(read(form.format(unit)))
     for unit in ("kg", "parsec", "eV"):
         with pytest.raises(ValueError, match=f"'{unit}' is no known unit of time; use for .* fs"):
@@ -266,6 +269,9 @@ def test_units_are_given_of_time_of_energy_or_of_both():
     for text in ("time=ps,mass=u", "time=,energy=eV", ""):
         with pytest.raises(ValueError, match="names no units"):
             assignments(text)
+    for unit in ("ps", "bar"):
+        with pytest.raises(ValueError, match=f"'{unit}' is no unit of energy"):
+            assignments(f"energy={unit}")
 
 
 def test_units_have_the_sizes_of_the_si():
@@ -273,7 +279,7 @@ def test_units_have_the_sizes_of_the_si():
     joule |= {"hartree": 4.3597447222060e-18, "ry": 2.1798723611030e-18}
     joule |= {"kj/mol": 1e3 / 6.02214076e23, "kcal/mol": 4184 / 6.02214076e23, "k": 1.380649e-23}
     assert {unit: 1.380649e-23 / size for unit, size in joule.items()} == pytest.approx(BOLTZMANN)
-    seconds = {"fs": 1e-15, "ps": 1e-12, "ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1}
+    seconds = {"fs": 1e-15, "ps": 1e-12, "ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1}
     seconds |= {"yr": 365.25 * 86400, "a.u.": 1.054571817e-34 / joule["hartree"]}
     assert {unit: size * 1e9 for unit, size in seconds.items()} == pytest.approx(NANOSECONDS)
 

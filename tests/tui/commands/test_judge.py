@@ -99,8 +99,11 @@ def test_only_rows_in_the_range_of_time_are_judged():
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
     assert judge(TABLE, "--from", 5, "--to", 4).refused(2, "no time from 5 to 4")
     assert judge(TABLE, "--from", "5fs").refused(2, "the unit of time is not known")
-    answer = guess("t (ps),E\n" + lines("{t},{e}"), "--from", "5e3fs", "--to=20", "--json").json
-    assert (answer["first_time"], answer["last_time"]) == (5, 20)
+    for unit, size, other, by in (("ps", 1, "fs", 1e3), ("fs", 1000, "ps", 1e-3)):
+        table = f"t ({unit}),E\n" + lines("{t},{e}", [(t * size, e) for t, e in ROWS])
+        cut = ("--from", f"{5 * size * by}{other}", "--to", f"{20 * size * by}{other}")
+        answer = guess(table, *cut, "--json").json
+        assert (answer["first_time"], answer["last_time"]) == (5 * size, 20 * size)
     assert judge(TABLE, "--to", "nan").refused(2, "nan")
     assert judge(TABLE, "--from", 50).refused(3, "from 0 to 29.9, none from 50")
 
@@ -182,7 +185,14 @@ def test_a_scale_of_another_unit_is_refused():
     given = (*asked, "--units", "energy=kJ/mol")
     assert guess(text.replace(" [kJ/mol]", ""), *given).refused(2, "(kJ/mol, kcal/mol)")
     assert guess(text.replace("kcal", "kJ"), *given).code == 0
-    assert guess(text.replace(" [kcal/mol]", ""), *asked, "--units", "energy=eV").code == 0
+    assert guess(text.replace(" [kcal/mol]", ""), *given).code == 0
+
+
+def test_units_that_the_file_names_are_not_overruled():
+    text = "t,E [hartree],P [units]\n" + lines("{t},{e},{e}")
+    assert guess(text, "--units", "energy=eV").refused(2, "E is in hartree, not in eV")
+    for asked in (("--units", "energy=Ha"), ("--energy", "P", "--units", "energy=eV")):
+        assert guess(text, *asked).code == 0
 
 
 def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_step():
@@ -226,6 +236,7 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         (WIDER, "1 2", 3, "another number of columns"),
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
         ("1 2\n", "t E", 2, "choose from 1, 2"),
+        (TABLE, "t E+t", 2, "t is both the time and an energy"),
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
         ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan or inf"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
