@@ -1,10 +1,10 @@
 """Lesson: leads a lab through the scenes of a file, to moments, questions and answers."""
 
 from collections.abc import Iterable
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.stepping import Stepping, change_before
 from pendu_tui.engine.scenes import Scene, Shot
 from pendu_tui.tui.playback.live import Live
 
@@ -13,15 +13,29 @@ ASTRAY = "This is your own run now. Enter begins the page again."
 Stage = Literal["watching", "told", "asked", "answered", "over"]
 
 
+class LessonState(NamedTuple):
+    """Where a lesson stands: at a page, before the moment, there, or at the answer."""
+
+    page: int = 0  # its index
+    stage: Stage = "watching"
+    choice: int | None = None  # the number of the chosen answer
+
+
 class Lesson:
     """The pages of a lesson, and where it stands: before the moment, there, or at the answer."""
 
     def __init__(self, name: str, pages: Iterable[Scene]) -> None:
         self.name = name
         self.pages = tuple(pages)
-        self.index = 0
-        self.stage: Stage = "watching"
-        self.choice: int | None = None  # the number of the chosen answer
+        self.state = LessonState()
+
+    @property
+    def state(self) -> LessonState:
+        return LessonState(self.index, self.stage, self.choice)
+
+    @state.setter
+    def state(self, state: LessonState) -> None:
+        self.index, self.stage, self.choice = state
 
     def look_up(self, name: str) -> None:
         """Stand at the page of a scene or, without one, before the first."""
@@ -63,12 +77,11 @@ class Lesson:
 
     def is_astray(self, live: Live) -> bool:
         """Return whether the user has changed the run before its moment."""
-        expected = self._stepping
-        if self.shot.returns and live.changes[-1].step == self._turn:
-            expected = expected.reversed()
-        is_same = (live.scene, live.stepping) == (self.page, expected)
-        has_moment = self.shot.moment is not None
-        return self.stage == "watching" and has_moment and not is_same
+        at_start = change_before(live.changes, 1).stepping
+        later = [(each.step, each.stepping) for each in live.changes if each.step > 0]
+        turn = [(self._turn, self._stepping.reversed())] if self.shot.returns else []
+        is_page = (live.scene, at_start) == (self.page, self._stepping) and later in ([], turn)
+        return self.stage == "watching" and self.shot.moment is not None and not is_page
 
     def begin(self, live: Live, index: int) -> None:
         """Start the run of a page.  Raises InputError or OwnMethodError."""

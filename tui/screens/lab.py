@@ -23,7 +23,7 @@ from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings import files
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.tui.cli.errors import UserError, explained
-from pendu_tui.tui.playback.lesson import Lesson, tour
+from pendu_tui.tui.playback.lesson import Lesson, LessonState, tour
 from pendu_tui.tui.playback.live import Live, has_own
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
@@ -62,6 +62,7 @@ class State(NamedTuple):
     source: Source
     run: RunState
     shown: Shown
+    lesson: LessonState
 
 
 class LabScreen(SizedScreen[None]):
@@ -98,7 +99,7 @@ class LabScreen(SizedScreen[None]):
         self._lines: tuple[Pane, ...] = (StatusLine(), SeekBar(), LessonPanel(), InsightLine())
         self.scenes = Lesson("Scene", SCENES.values())
         self.scenes.look_up(source.scene.name)
-        self._before_lesson: tuple[State, str]
+        self._before_lesson: tuple[State, str, deque[State]]
         self._beat = 0  # sixtieths of a second
         self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
         self._changing = asyncio.Lock()
@@ -363,10 +364,12 @@ class LabScreen(SizedScreen[None]):
         if self.is_guided:
             self._leave_lesson()
             return
-        self._before_lesson = (self.state, self.view)
+        self._before_lesson = (self.state, self.view, self._undo)
         self.guide = self.guide or tour()
         self.is_guided = True
         self.is_guided = await self._turn_to(self.guide.index)
+        if self.is_guided:  # u does not leave it
+            self._undo = deque(maxlen=self._undo.maxlen)
 
     async def action_turn(self, way: str) -> None:
         """Go forward to the moment, the answer or the next page, or back."""
@@ -382,7 +385,7 @@ class LabScreen(SizedScreen[None]):
     def _leave_lesson(
         self, notice: str = "T resumes the lesson; u brings back the run before it."
     ) -> None:
-        before, view = self._before_lesson
+        before, view, self._undo = self._before_lesson
         self.is_guided = False
         self._undo.append(before)
         self.shown = before.shown
@@ -484,7 +487,7 @@ class LabScreen(SizedScreen[None]):
 
     @property
     def state(self) -> State:
-        return State(self.source, self.source.run_state, self.shown)
+        return State(self.source, self.source.run_state, self.shown, self.lesson.state)
 
     def action_undo(self) -> None:
         if not self._undo:
@@ -498,6 +501,7 @@ class LabScreen(SizedScreen[None]):
             self._enter(state.source)
             notice = "Back in the replay"
         self.source.return_to(state.run)
+        self.lesson.state = state.lesson
         self.shown = state.shown
         self.show_now()
         self.notify(notice, timeout=3)

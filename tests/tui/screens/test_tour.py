@@ -123,3 +123,25 @@ async def test_of_a_page_that_is_too_long_the_end_is_kept():
         await theatre.pilot.pause()
         assert panel(theatre).startswith("Page 1 of 1")
         assert panel(theatre).endswith("long.")
+
+
+async def test_undo_leads_back_to_the_page_before_and_never_out_of_the_tour():
+    async with lab(SCENES["drift"], (80, 24)) as theatre:
+        await theatre.press("plus", "T", "enter", "enter", "enter", "backspace")
+        assert theatre.source.scene == STEPS[0]
+        await theatre.press("u")
+        assert theatre.source.scene == STEPS[1]
+        assert "Tour 2 of 9" in panel(theatre)
+        await theatre.press("u", "u", "u", "u", "u")
+        assert theatre.source.scene == STEPS[0]
+        assert "Tour 1 of 9" in panel(theatre)
+
+
+async def test_a_run_whose_step_was_changed_and_changed_back_is_the_users_own():
+    async with lab(SCENES["drift"], (80, 24)) as theatre:
+        await theatre.press("T")
+        for key in ("plus", "u"):
+            await theatre.run(1)
+            await theatre.press(key)
+        assert "This is your own run now" in panel(theatre)
+        assert theatre.source.stepping.h == STEPS[0].h
