@@ -34,6 +34,8 @@ MAX_INNER = 9  # of an array in a record
 MAX_COLUMNS = 5000
 MAX_TABLES = 10_000
 MAX_SHAPES = 10_000
+MIN_ABOVE = 8  # lines that tell whether the last one was cut
+MAX_ABOVE = 64
 MAX_HEADS = 20  # lines that may be the head of the next row
 _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"\x1f\x8b": gzip.open,
@@ -84,6 +86,7 @@ def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
     """Yield some lines at a time.  Raises UserError where there is no end to them."""
     count = 0
     rest = ""
+    above: list[str] = []
     while chunk := text.read(BLOCK):
         *lines, rest = (rest + chunk).split("\n")
         count += len(lines)
@@ -92,7 +95,24 @@ def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
         if len(rest) > MAX_LINE:
             raise unreadable("a line is longer than 1 MB; is this a table?")
         yield lines
-    yield [rest]
+        above = (above + lines)[-MAX_ABOVE:]
+    yield [_uncut(rest, above)]
+
+
+def _uncut(line: str, above: list[str]) -> str:
+    """Return the last line, with a word for its last number if the file was cut in that.
+
+    It is then shorter than in all lines above that look the same.
+    """
+    *_, number, end = ["", *_NUMBERS.split(line)]
+    if end or not number:
+        return line
+    shape = _NUMBERS.sub("0", line).split()
+    like = [each for each in above if _NUMBERS.sub("0", each).split() == shape]
+    lengths = [len(_NUMBERS.findall(each)[-1]) for each in like]
+    if len(like) < MIN_ABOVE or len(number) >= min(lengths):
+        return line
+    return f"{line.removesuffix(number)}cut"
 
 
 def _json(text: io.TextIOBase) -> Iterator[list[str]]:
@@ -194,6 +214,7 @@ def number(text: str) -> float | None:
     if match and is_unit(match[2]):
         text = match[1]
     text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
+    text = re.sub(r"(\.\d+)([-+]\d{3})$", r"\1e\2", text)  # Fortran's large exponents
     with suppress(ValueError):
         return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
     return None

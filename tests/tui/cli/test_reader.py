@@ -204,6 +204,25 @@ def test_energies_that_are_only_rarer_have_not_failed(text, diverged_at, skipped
     assert series.skipped == skipped
 
 
+@pytest.mark.parametrize("size", [30, 1 << 16])
+@pytest.mark.parametrize("form", ["{t},{e}", "{t} {e}", "{t};{e:}", "t = {t}, E = {e}"])
+def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(
+    form, size, monkeypatch
+):
+    monkeypatch.setattr("pendu_tui.tui.cli.reader.BLOCK", size)
+    for end, samples, diverged_at in (
+        ("-344.9", 90, None),
+        ("-344.9\n", 91, None),
+        ("-344.99999999999999", 91, None),
+        ("nan", 90, 45.0),
+    ):
+        (series,) = tables(rows(form) + form.format(t=45.0, e=end))
+        assert (len(series.times), series.diverged_at) == (samples, diverged_at)
+        assert series.skipped == (end == "-344.9")
+    few = rows(form, 0, 7) + form.format(t=45.0, e="-344.9")
+    assert [len(series.times) for series in tables(few)] == [8]
+
+
 OBJECTS = rows('{{"t": {t}, "E": {e}}}')
 
 
@@ -348,6 +367,11 @@ def test_columns_are_named_or_numbered_and_added(head, asked, found):
     (series,) = tables(head + rows("{t:.6E} {k} {p}").replace("E+", "D+"), time=time, energy=energy)
     assert columns(series) == found
     assert series.energies == pytest.approx(ENERGIES)
+
+
+def test_fortran_leaves_out_the_e_of_three_digits():
+    (series,) = tables("t E\n" + rows("{t} -4.52-107"))
+    assert set(series.energies) == {-4.52e-107}
 
 
 def test_columns_of_different_units_are_not_added():
