@@ -5,6 +5,7 @@ Arguments that cannot be used raise InputError, a ValueError with a sentence.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial, wraps
 from types import MappingProxyType
@@ -160,7 +161,7 @@ class Judged:
     fluctuation: float | None  # standard deviation about a line, over the scale
     independent: float  # samples
     scale: float  # in the energies' unit
-    diverged_at: float | None = None  # the time of the first energy that is nan or infinite
+    diverged_at: float | None = None  # the time of the first energy that has failed
 
     def __str__(self) -> str:
         return "\n".join(self.lines())
@@ -196,14 +197,15 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     """Judge the energies of any program at increasing times.
 
     Errors and trend are relative to `scale`: "first", the first energy, "std", the standard
-    deviation of the energies, or a number.  If an energy is nan or inf, the verdict is `failed`.
+    deviation of the energies, or a number.  If one is nan, inf or 1e300, the verdict is `failed`.
     """
     import numpy as np
 
     from pendu_tui.engine.run.record import judge_record
+    from pendu_tui.engine.run.verdicts import TOO_LARGE
 
     t, e = _series(times, energies)
-    finite = int(np.isfinite(e).cumprod().sum())
+    finite = int((np.abs(e) < TOO_LARGE).cumprod().sum())
     diverged_at = None
     if finite < len(e):
         diverged_at = float(t[finite])
@@ -398,10 +400,10 @@ def _whole(name: str, value: int) -> int:
 def _array(name: str, values: Any) -> "Floats":
     import numpy as np
 
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        array = np.empty(0)
+    array = np.empty(0)
+    with suppress(TypeError, ValueError, OverflowError):
+        if not np.iscomplexobj(values):
+            array = np.asarray(values, dtype=float)
     if array.ndim != 1 or not array.size:
         raise InputError(f"{name} must be a list of numbers or an array, one for each sample.")
     return array

@@ -17,6 +17,7 @@ from pendu_tui.engine.run.verdicts import (
     BOUNDED,
     FAILED,
     LEAVES,
+    TOO_LARGE,
     Judgement,
     Milestone,
     MilestoneKind,
@@ -125,7 +126,7 @@ class Lockstep:
             each.name: start[each.name] or 1.0 for each in model.variables if each.relative
         }
         # of energies: relative errors must be finite, too
-        self._limit = min(1.0, self._reference.scale) * 1e300
+        self._limit = min(1.0, self._reference.scale) * TOO_LARGE
         self._tracks = [
             _Track(loops(method, model).advance, start_phase, self._reference.start)
             for method in scene.cast

@@ -15,6 +15,9 @@ CHAOTIC: Final = "chaotic"
 FAILED: Final = "failed"
 UNDECIDED: Final = "undecided"
 
+TOO_LARGE = 1e300
+"""An energy as large has failed: squares and differences overflow."""
+
 LEAVES = (GROWS, LOSES)
 """The verdicts on an energy that has left its start for good."""
 
@@ -182,4 +185,4 @@ def not_within(
         longer = math.ceil((margin / abs(excess)) ** (2 / 3))
         if longer <= LONGEST:
             advice = f"a record about {longer} times as long would tell"
-    return f"cannot tell: {name} is {slope:.2g} ± {margin:.1g} at 99 %; {advice}"
+    return f"cannot tell: {name} is {slope:.3g} ± {margin:.1g} at 99 %; {advice}"

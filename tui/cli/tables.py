@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pendu_tui.engine.run.verdicts import TOO_LARGE
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.units import Moment, is_of_another_kind, plain, shown, size, split_unit
@@ -326,7 +327,7 @@ class Series:
     energies: Any
     kinetic: Any
     skipped: int = 0  # rows without numbers, or not later than one before
-    diverged_at: float | None = None  # the time of the first energy that is no finite number
+    diverged_at: float | None = None  # the time of the first energy that has failed
     units: tuple[str, str] = ("", "")  # of time and energy
 
     @property
@@ -358,7 +359,8 @@ class Series:
             raise unreadable(MIXED)
         self.skipped += skipped
         used = np.flatnonzero(is_later & (times >= begin) & (times <= last))
-        lost = np.flatnonzero(~np.isfinite(self.energies[used] + self.kinetic[used]))
+        sizes = np.abs(self.energies) + np.abs(self.kinetic)
+        lost = np.flatnonzero(~(sizes[used] < TOO_LARGE))
         if len(lost):
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
@@ -367,7 +369,7 @@ class Series:
             why = f"it has times from {whole[0]:g} to {whole[-1]:g} {self.units[0]}".rstrip()
             why += f", none from {begin:g} to {last:g}."
             if self.diverged_at is not None:
-                why = f"at {self.diverged_at:g} its energy is nan or infinite already; "
+                why = f"at {self.diverged_at:g} its energy is nan, infinite or too large already; "
                 why += "begin later with --from, or repeat it with smaller steps."
             raise unreadable(why)
         self.times = times[used]

@@ -301,6 +301,7 @@ def test_64_samples_are_needed():
         (1.0, 2.0, 1.999, "cannot tell: it is 1 ± 1 at 99 %"),
         (5.0, 6.0, 3.999, "it is 5, above 3.999"),
         (5.0, 6.0, 4.001, "cannot tell: it is 5"),
+        (6.58e-7, 6.64e-7, 6.6e-7, "cannot tell: it is 6.58e-07 ± 6e-09 at 99 %"),
         (-5.0, 6.0, -4.0, ""),
         (0.0, 0.0, 0.0, ""),
         (2.0, 1.0, 1.5, "it is 2, above 1.5"),

@@ -143,17 +143,21 @@ def test_rows_that_cannot_be_used_are_counted():
     assert (answer["samples"], answer["first_time"], answer["diverged_at"]) == (201, 10.0, None)
 
 
-def test_the_first_energy_that_is_infinite_has_failed():
-    text = f"{TABLE}30.0,-1e999\n31.0,nan\n32,100\n"
-    outcome = judge(text, "--json")
-    assert (outcome.code, outcome.json["verdict"], outcome.json["samples"]) == (1, "failed", 300)
-    assert (outcome.json["diverged_at"], outcome.json["skipped"]) == (30, 0)
+def test_the_first_energy_that_is_infinite_or_too_large_has_failed():
+    for end in ("-1e999", "-1.79769e+308"):
+        text = f"{TABLE}30.0,{end}\n31.0,nan\n32,100\n"
+        outcome = judge(text, "--json")
+        answer = outcome.json
+        assert (outcome.code, answer["verdict"], answer["samples"]) == (1, "failed", 300)
+        assert (answer["diverged_at"], answer["skipped"]) == (30, 0)
+        assert answer["lowest_energy"] > 0
     assert "end at 30" in judge(text).out
     kinetic = "t,E,K\n" + lines("{t},{e},5") + "30,100,nan\n"
     assert "end at 30" in guess(kinetic, "--scale", "kinetic:K").out
-    first = f"-0.1,inf\n{lines('{t},{e}')}"
-    assert guess(first).refused(3, "--from")
-    assert guess(first, "--from", 0).code == 0
+    for energy in ("inf", "1e305"):
+        first = f"-0.1,{energy}\n{lines('{t},{e}')}"
+        assert guess(first).refused(3, "--from")
+        assert guess(first, "--from", 0).code == 0
 
 
 def test_trends_have_the_units_of_the_heads():
@@ -238,7 +242,7 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         ("1 2\n", "t E", 2, "choose from 1, 2"),
         (TABLE, "t E+t", 2, "t is both the time and an energy"),
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
-        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan or inf"),
+        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan, inf"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
