@@ -58,6 +58,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _main(arguments: Sequence[str] | None) -> int:
+    if sys.stderr is None:  # the shell has closed it
+        sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115  # until the exit
+    if sys.stdout is None:
+        warn("output: it is closed; redirect it to a file or to /dev/null.")
+        return Exit.DISK
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             if not stream.isatty():  # the same bytes on every system
@@ -143,6 +148,8 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     hint = did_you_mean(first, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
     if os.path.isfile(first):  # noqa: PTH113  # False for a name that is too long
         hint = f"; for the energies in this file use pendu-tui judge {first}."
+        if first.endswith(".py"):
+            hint = f"; to add the method in this file use pendu-tui --method {first}."
     raise UserError(f"there is no command or scene {first!r}{hint}")
 
 

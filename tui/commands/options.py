@@ -238,6 +238,7 @@ OPTIONS: dict[str, Settings] = {
         "the time of a step, or of a row if there is no column of times, such as 0.5fs",
         units.quantity,
     ),
+    "judge --json": flag("one JSON object, in the units of the file"),
     "--units": option(
         "UNITS",
         "the units, where the file does not name them: time=ps,energy=kJ/mol",

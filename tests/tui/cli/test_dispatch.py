@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from importlib.metadata import version
@@ -23,7 +24,8 @@ from tests.tui.command_line import PENDU, pendu
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("swing.toml").write_text("theta = 0.5\n", encoding="utf-8")
-    Path("swing.csv").touch()
+    for name in ("swing.csv", "swing.py"):
+        Path(name).touch()
     for name in ("swing.mcap", "killed.mcap.part"):
         Path(name).write_bytes((GOLDEN / "drift.mcap").read_bytes())
 
@@ -44,6 +46,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("nothing.toml", 3, "nothing.toml"),
         ("nothing.mcap", 3, "nothing.mcap"),
         ("swing.csv", 2, "pendu-tui judge swing.csv"),
+        ("swing.py", 2, "pendu-tui --method swing.py"),
         ("crosover", 2, "did you mean crossover?"),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),
@@ -99,6 +102,15 @@ def test_a_closed_pipe_prints_nothing_and_exits_with_141():
     assert (done.returncode, done.stderr) == (141, "")
 
 
+@pytest.mark.skipif(not shutil.which("bash"), reason="needs bash")
+def test_a_closed_stdout_is_one_sentence_and_exit_5_and_a_closed_stderr_silence():
+    for closed, code, told in ((">&-", 5, 1), (">&- 2>&-", 5, 0), ("2>&-", 2, 0)):
+        line = f"{shlex.join(map(str, PENDU))} {'swing.csv' if code == 2 else 'scenes'} {closed}"
+        done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stdout) == (code, "")
+        assert done.stderr.count("\n") == done.stderr.count("pendu-tui: ") == told
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /dev/full")
 def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5():
     with Path("/dev/full").open("w") as full:
@@ -115,6 +127,7 @@ def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
 def test_help_and_version():
     codes = pendu("--help").out.partition("exit codes:")[2].partition("\n\n")[0]
     assert [int(code) for code in re.findall(r"\d+", codes)] == [*Exit][:-1]  # a pipe sees no code
+    assert "SI units" not in pendu("judge", "--help").out
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
 
 
