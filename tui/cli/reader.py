@@ -596,9 +596,10 @@ class _Text:
     def _units_of(self, names: list[str], fields: list[str]) -> list[str]:
         """Return the unit of each column, as far as it is certain to be its own."""
         units = [self._unit(name) for name in names]
-        for row in chain.from_iterable(self._heads.values()):
+        others = (ways for ways in self._heads.values() if names not in ways)
+        for row in chain.from_iterable(others):
             bare = [each.strip("()[]") for each in row]
-            if len(row) == len(names) and row != names and not any(units):
+            if len(row) == len(names) and not any(units):
                 units = bare if any(map(is_unit, bare)) else units
         for place, field in enumerate(fields):
             match = _WITH_UNIT.fullmatch(field)

@@ -66,6 +66,7 @@ def columns(series: Series) -> str | None:
         ("t,KE (eV),PE (eV)", "{t},{k},{p}", "t, KE+PE eV"),
         ("t,E,dE/E", "{t},{e},{k}", "t, E"),
         ("t,E,p", "{t},{e},word", "t, E"),
+        ("t, E, h", "{t}, {e}, {k}", "t, E"),  # h is no hour
         ("x,E", "{t},{e}", "x, E"),  # evenly
         ("x,E", "{k},{e}", "row, E"),  # no column increases
         ("t,total,Total Energy", "{t},{k},{e}", None),
