@@ -136,7 +136,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="prints of name value",
-        line=rf"(?<!\S)(?P<name>[A-Z]\w{{,40}}) +{VALUE},?"
+        line=rf"(?<!\S)(?!{FAILED}(?!\S))(?P<name>[A-Z]\w{{,40}}) +{VALUE},?"
         rf"(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
     ),
     Layout(

@@ -178,6 +178,7 @@ def test_columns_of_inner_arrays_have_numbers():
     [
         ("t,E\n", "{t},{e}", ("nan", "-nan(ind)", "1.#QNAN", "#NUM!", "overflow", "")),
         ("t E\n", "{t} {e}", ("-1.#IND", "+Infinity", "********", "overflow")),
+        ("t E T\n", "{t} {e} 3", ("nan", "inf")),
         ("t\tE\n", "{t}\t{e}", ("nan", "")),
         ("t E\n", "{t}{e}", ("********",)),
         ("", "t = {t}, E = {e}", ("nan", "-nan(ind)", "1.#QNAN", "********", "inf")),
@@ -186,7 +187,7 @@ def test_columns_of_inner_arrays_have_numbers():
 def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends):
     for end in ends:
         last = "".join(form.format(t=45 + n / 2, e=end) + "\n" for n in range(5))
-        (series,) = tables(head + rows(form.replace("}{", "} {")) + last)
+        (series,) = tables(f"{head}{rows(form.replace('}{', '} {'))}a note\n{last}")
         assert (len(series.times), series.diverged_at) == (90, 45.0)
 
 
