@@ -10,7 +10,8 @@ from functools import cached_property, lru_cache
 
 from pendu_tui.tui.cli.units import split_unit
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+NUMBER = r"[-+]?(?:\d*\.\d+[-+]\d{3}(?!\d)|(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)"
+"""-4.52-107 is Fortran's -4.52e-107."""
 FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
 VALUE = rf"(?P<value>{FAILED}|{NUMBER})"

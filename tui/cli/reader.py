@@ -42,7 +42,7 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+)?)")
+_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)")
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")

@@ -371,8 +371,9 @@ def test_columns_are_named_or_numbered_and_added(head, asked, found):
     assert series.energies == pytest.approx(ENERGIES)
 
 
-def test_fortran_leaves_out_the_e_of_three_digits():
-    (series,) = tables("t E\n" + rows("{t} -4.52-107"))
+@pytest.mark.parametrize(("head", "row"), [("t E\n", "{t} {E}"), ("", "t = {t} E = {E} J")])
+def test_fortran_leaves_out_the_e_of_three_digits(head, row):
+    (series,) = tables(head + rows(row.replace("{E}", "-4.52-107")))
     assert set(series.energies) == {-4.52e-107}
 
 
