@@ -557,7 +557,12 @@ class _Text:
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        for names in chain([self._labelled(width)], *reversed(self._heads.values())):
+        last = self._tables[-1]
+        labels = [self._labelled(width)]
+        has_labels = len(last.names) != width and last.names == self._labelled(len(last.names))
+        if has_labels and last.puts > 1:
+            labels.clear()  # a row that was cut
+        for names in chain(labels, *reversed(self._heads.values())):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
             elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
