@@ -134,7 +134,7 @@ def print_sentences(source: Source, lesson: Lesson | None = None) -> int:
     finally:
         source.close()
     code = say_goodbye(source)
-    if stopped():
+    if stopped() and code == Exit.FINE:
         return Exit.INTERRUPTED
     return code
 

@@ -1,12 +1,15 @@
 """`pendu-tui live` before there is a screen."""
 
+import signal
+
 import pytest
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.files import DiskError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.commands.lab import lesson_of, say_goodbye
+from pendu_tui.tui.commands import lab
+from pendu_tui.tui.commands.lab import lesson_of
 from pendu_tui.tui.playback.live import Live
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
@@ -82,12 +85,13 @@ def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(tmp_path):
     assert lesson_of(asking).page.shot.question == "Why?"
 
 
-def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys):
+def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(lab, "tell", lambda *_, **__: signal.raise_signal(signal.SIGTERM))
     live = Live(DEFAULT_SCENE)
     live.record(LiveRecorder(tmp_path / "lab.mcap"))
     live.recorder._fail(DiskError("no space is left", "disk"))
     live.recorder.abandon()
-    assert say_goodbye(live) == 5
+    assert lab.print_sentences(live) == 5
     printed = capsys.readouterr()
     part = tmp_path / "lab.mcap.part"
     assert printed.out == f"saved {part}\nreplay it with: pendu-tui replay {part}\n"
