@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import sys
 import time
 from contextlib import suppress
@@ -165,7 +166,7 @@ def test_an_error_of_the_disk_or_in_a_file_names_the_file_first(tmp_path):
     assert failed.value.errno == errno.ENOSPC
     for text in ("it is odd", "it is odd."):
         with (
-            pytest.raises(RecordingError, match=f"^{tmp_path}: it is odd.$"),
+            pytest.raises(RecordingError, match=rf"^{re.escape(str(tmp_path))}: it is odd\.$"),
             files.named(tmp_path),
         ):
             raise RecordingError(text)

@@ -58,11 +58,12 @@ def test_outputs(snapshot, library):
     texts = []
     for lines, most in ((PRINTED, None), (HEADS, 1)):
         for line in lines.splitlines():
-            filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library)
+            filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library.as_posix())
             outcome = pendu(*shlex.split(filled))
             shown = outcome.out.splitlines()[:most]
             texts += ["", f"$ {line}", *shown, f"[{outcome.code}] {outcome.err.strip()}"]
-    text = "\n".join(each.rstrip() for each in texts).replace(str(library), "FOLDER")
+    text = "\n".join(each.rstrip() for each in texts)
+    text = text.replace(str(library), "FOLDER").replace("FOLDER\\", "FOLDER/")
     text = re.sub(r"in \d+\.\d+ s$", "in N s", text, flags=re.MULTILINE)
     text = re.sub(r"\d+\.\d kB", "N kB", text)  # of a version's name and a library that compresses
     snapshot("outputs.txt", re.sub(r"computed .*", "computed X", text) + "\n")
