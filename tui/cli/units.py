@@ -1,5 +1,6 @@
 """Units of time and energy: how heads of tables write them, and their sizes."""
 
+import math
 import re
 from functools import lru_cache
 
@@ -111,7 +112,7 @@ def moment(text: str) -> Moment:
     """Return a number and its unit of time, for example of `50ps` or `-2`."""
     number = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
     match = re.fullmatch(rf"{number}\s*([^\W\d]\S*)?", text.strip())
-    if match is None:
+    if match is None or math.isinf(float(match[1])):
         raise ValueError(f"{text!r} is not a time; use for example 2 or 0.5fs")
     return float(match[1]), _unit_of_time(match[2]) if match[2] else ""
 
@@ -119,7 +120,7 @@ def moment(text: str) -> Moment:
 def quantity(text: str) -> Moment:
     """Return a time above zero, and its unit."""
     value, unit = moment(text)
-    if not 0 < value < float("inf"):
+    if value <= 0:
         raise ValueError(f"{text!r} is not a step; use for example 2 or 0.5fs")
     return value, unit
 

@@ -99,6 +99,7 @@ def test_only_rows_in_the_range_of_time_are_judged():
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
     assert judge(TABLE, "--from", 5, "--to", 4).refused(2, "no time from 5 to 4")
     assert judge(TABLE, "--from", "5fs").refused(2, "the unit of time is not known")
+    assert judge(TABLE, "--from", "1e999").refused(2, "'1e999' is not a time")
     for unit, size, other, by in (("ps", 1, "fs", 1e3), ("fs", 1000, "ps", 1e-3)):
         table = f"t ({unit}),E\n" + lines("{t},{e}", [(t * size, e) for t, e in ROWS])
         cut = ("--from", f"{5 * size * by}{other}", "--to", f"{20 * size * by}{other}")
