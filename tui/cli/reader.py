@@ -109,8 +109,10 @@ def _uncut(line: str, above: list[str]) -> str:
         return line
     shape = _NUMBERS.sub("0", line).split()
     like = [each for each in above if _NUMBERS.sub("0", each).split() == shape]
-    lengths = [len(_NUMBERS.findall(each)[-1]) for each in like]
-    if len(like) < MIN_ABOVE or len(number) >= min(lengths):
+    numbers = [_NUMBERS.findall(each)[-1] for each in like]
+    has_exponent = ["e" in each.lower() for each in (number, "".join(numbers))]
+    has_grown = has_exponent == [True, False]  # to 1e+300, for example
+    if has_grown or len(like) < MIN_ABOVE or len(number) >= min(map(len, numbers)):
         return line
     return f"{line.removesuffix(number)}cut"
 

@@ -217,6 +217,7 @@ def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(
         ("-344.9\n", 91, None),
         ("-344.99999999999999", 91, None),
         ("nan", 90, 45.0),
+        ("1E300", 90, 45.0),
     ):
         (series,) = tables(rows(form) + form.format(t=45.0, e=end))
         assert (len(series.times), series.diverged_at) == (samples, diverged_at)
