@@ -25,6 +25,7 @@ from pendu_tui.recordings.format import (
 from tests.recordings.examples import SCENE, start
 
 MANY = 500
+FOREIGN = "/somebody/else"
 ESCAPES = "\x1b[2J\x1b]0;x\x07 [bold]"
 
 Entry = list[tuple[str, float, bytes]]
@@ -42,7 +43,7 @@ def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28):
         metadata = {"format": FORMAT_VERSION}
         channels = {
             topic: writer.register_channel(topic, "json", schema, metadata)
-            for topic in (EVENTS, *topics_of(SCENE))
+            for topic in (EVENTS, FOREIGN, *topics_of(SCENE))
         }
         for number, messages in enumerate(entries):
             for topic, clock, data in messages:

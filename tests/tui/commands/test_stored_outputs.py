@@ -10,7 +10,7 @@ from pendu_tui.tui.cli.commands import COMMANDS
 from pendu_tui.tui.cli.dispatch import parser_of
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
-from tests.tui.command_line import IS_WINDOWS, pendu
+from tests.tui.command_line import pendu
 
 QUICK = "--time 5 --h-values 0.2:0.01:4"
 FEW = "--steps 300 --z-values 0.1:3:12 --theta-values 0.5,2"
@@ -54,7 +54,6 @@ def library(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.skipif(IS_WINDOWS, reason="it has / in names, and shlex takes a backslash away")
 def test_outputs(snapshot, library):
     texts = []
     for lines, most in ((PRINTED, None), (HEADS, 1)):
