@@ -81,7 +81,7 @@ class EnergyDrift(_Checks):
     ) -> "Order":
         """Fail unless the energy of runs (h, times, energies) fluctuates as h^`at_least` or better.
 
-        It fails if the order and twice its uncertainty are below the limit, and if the runs are so
+        It fails if the order plus twice its uncertainty is below the limit, and if the runs are so
         short that they do not tell one order from the next.
         """
         __tracebackhide__ = True
