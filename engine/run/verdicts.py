@@ -38,21 +38,21 @@ VERDICTS: dict[str, Verdict] = {
             BOUNDED,
             sign="=",
             ink="good",
-            meaning="the energy stays in a band; a drift is smaller than the band, and bounded",
+            meaning="the energy stays in a band; any drift adds up to less than the band's width",
         ),
         Verdict(
             GROWS,
             sign="+",
             ink="text",
-            meaning="the energy rises for good; if it has since settled, "
-            "the slope is that of the settled part",
+            meaning="the mean energy has risen for good; if it then levelled off, "
+            "the slope is that of the level part",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the energy falls for good; if it has since settled, "
-            "the slope is that of the settled part",
+            meaning="the mean energy has fallen for good; if it then levelled off, "
+            "the slope is that of the level part",
         ),
         Verdict(
             CHAOTIC,

@@ -27,7 +27,7 @@ _FIRST_LOOK = (
     Scene(
         "gentle",
         theta=0.1,
-        watch="Nearly linear: a step gains explicit Euler z² of its energy, costs RK4 z⁶/72.",
+        watch="Nearly linear: explicit Euler gains z² of its energy per step, RK4 loses z⁶/72.",
         shot=Shot(front=("explicit_euler", "velocity_verlet", "rk4")),
     ),
     Scene(
@@ -36,19 +36,19 @@ _FIRST_LOOK = (
         h=0.5,
         model="linear",
         speed=2.0,
-        watch="Linear, so theory is exact: a step gains explicit Euler 25 % of its energy.",
+        watch="Linear, so theory is exact: explicit Euler gains 25 % of its energy per step.",
         shot=Shot(theta=math.pi),
     ),
     Scene(
         "large-swing",
         theta=2.5,
-        watch="A swing of 143° takes 1.64 small ones; explicit Euler never ends its first.",
+        watch="A 143° swing takes 1.64 times as long as a small one; explicit Euler goes over.",
     ),
     Scene(
         "crossover",
         h=0.2,
         speed=4.0,
-        watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute.",
+        watch="RK4's energy error starts far below Verlet's and passes it after half a minute.",
         shot=Shot(
             log=False,
             front=("velocity_verlet", "rk4"),
@@ -62,7 +62,7 @@ _FIRST_LOOK = (
         theta=math.radians(179.9),
         h=0.02,
         speed=4.0,
-        watch="RK4's energy error is smallest, yet soon it falls at the wrong time.",
+        watch="RK4 has the smallest energy error, yet falls from the top at the wrong time.",
         shot=Shot(quantity="theta_error"),
     ),
     Scene(
@@ -80,7 +80,7 @@ _STABILITY = (
         "euler-caught",
         h=0.1,
         speed=60.0,
-        watch="Explicit Euler's gain ends: half a turn a step holds it near 110 E0.",
+        watch="Explicit Euler's energy levels off near 110 E0, at half a turn per step.",
         shot=Shot(theta=math.pi, line=Line(ENERGY_ERROR.name, 110.0, "110 E0")),
     ),
     Scene(
@@ -104,7 +104,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.02,
         speed=16.0,
-        watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
+        watch="Just above z = 2: Verlet leaves the bottom, nonlinearity holds it at 0.48 rad.",
         shot=Shot(
             theta=0.6,
             log=False,
@@ -137,7 +137,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.86,
         speed=8.0,
-        watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
+        watch="Just above z = 2√2: RK4 gains energy until nonlinearity holds it at 0.2 rad.",
         shot=Shot(theta=0.25, log=False, front=("rk4",)),
     ),
     Scene(
@@ -175,7 +175,7 @@ _STABILITY = (
         h=1.45,
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
-        watch="4 steps a swing: Verlet's energy doubles and comes back. - ends the resonance.",
+        watch="4 steps a swing: Verlet's energy doubles and comes back. Press - to avoid this.",
         often_said="h over the golden ratio avoids resonances because it is irrational. 5/8 of h "
         "does, too: it is far from the resonance that counts.",
         shot=Shot(log=False, front=("velocity_verlet",)),
@@ -216,7 +216,7 @@ _STIFFNESS = (
         h=0.02,
         cast=_SPRING,
         speed=0.5,
-        watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
+        watch="h·omega = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
         often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the "
         "spring.",
         # Verlet and RESPA lie on implicit midpoint
@@ -282,7 +282,7 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="Same data, 100 s: field and map lose 60 %, H and SympNet under 1 %.",
+        watch="In 100 s field and map lose 60 % of the energy; H and SympNet err by under 1 %.",
         often_said="A learned Hamiltonian conserves energy. It conserves the learned one; the true "
         "one errs by a percent.",
         # the field lies on the map, H on SympNet

@@ -94,7 +94,7 @@ Exit code 1: no method reaches the target.
   pendu-tui stability --steps 1000 -o limits.svg
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.csv
 
-CSV has every swing of the map; a figure shows the limits over the amplitude.
+CSV has every swing of the map; a figure shows the limits against amplitude.
 """,
     ),
     "run": Command(

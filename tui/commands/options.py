@@ -121,7 +121,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     # results
     "--json": flag("one JSON object, SI units"),
-    "--csv": flag("CSV, a line for each row"),
+    "--csv": flag("print CSV"),
     "-o": file(
         "FILE" + "|".join(SUFFIXES),
         f"write FILE in the format of its suffix: {', '.join(SUFFIXES)}",
@@ -167,7 +167,7 @@ OPTIONS: dict[str, Settings] = {
         default=8000,
     ),
     "--host": option("ADDRESS", "address to listen on (%(default)s)", default="127.0.0.1"),
-    "--at-most": option("N", "limit of open labs (%(default)s)", count, default=20),
+    "--at-most": option("N", "maximum number of open labs (%(default)s)", count, default=20),
     # times and steps
     "run --time": option(
         "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
