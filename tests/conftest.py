@@ -51,3 +51,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def _tests_are_importable(monkeypatch):
     """Undo what trying a user's method sets, so that other processes can import `tests`."""
     monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+
+
+@pytest.fixture(autouse=True)
+def _no_own_method_is_known(monkeypatch):
+    monkeypatch.setattr("pendu_tui.recordings.events._own", {})

@@ -8,7 +8,7 @@ from statistics import fmean
 import pytest
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods import method_of
+from pendu_tui.engine.methods import learned, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene
 from tests.sine import needs_rounded_sine
@@ -50,6 +50,8 @@ def test_a_scene_says_why_there_is_no_map_of_it_and_no_ring():
     assert "friction takes it" in found["damped"][0]
     assert found["damped"][1] == found["drift"][0] == found["drift"][1] == ""
     assert "without curves" in found["stiff-slow"][1]
+    for method in learned.FAMILY:
+        assert method.label in replace(DEFAULT_SCENE, cast=(method,)).why_no_ring
 
 
 def test_every_scene_has_its_name_and_group_and_says_what_to_watch():

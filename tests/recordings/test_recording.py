@@ -4,11 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.recordings.events import Entry, Event, simulate
+from pendu_tui.engine.methods import RK4
+from pendu_tui.engine.run.verdicts import Milestone
+from pendu_tui.recordings.events import Entry, Event, arithmetic_here, noticed, simulate
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
-from pendu_tui.recordings.recording import Recording
+from pendu_tui.recordings.recording import Recording, Run
 from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 
@@ -98,3 +100,10 @@ def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
     hostile.write(tmp_path / "a.mcap", entries())
     with pytest.raises(RecordingError, match="a sample is incomplete"):
         Recording.open(tmp_path / "a.mcap")
+
+
+def test_milestones_are_in_the_order_of_steps_also_while_time_runs_back():
+    run = Run(1, SCENE, arithmetic_here(), 0.0, 9.0)
+    for step, t in ((200, 10.0), (600, 4.0)):
+        run.add(9.0, noticed(1, Milestone("over the top", RK4, step, t, 0.1)))
+    assert [each.step for each in run.milestones] == [200, 600]

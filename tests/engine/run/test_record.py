@@ -42,6 +42,7 @@ MAKES = {
     "a first sample near": (np.where(T > 0, 3 + NOISE, 0), "bounded"),
     "a trend of a hundredth of the band": (SINE + 3e-4 * T, "bounded"),
     "a line within noise": (NOISE + T / 50, "grows"),
+    "a drift in the last seventh": (NOISE + np.clip(T - 86, 0, None), "grows"),
     "a line downwards within a wobble": (SINE - T / 50, "loses"),
     "a line within five slow beats": (np.sin(0.3 * T) + 0.03 * T, "grows"),
     "a line within correlated noise": (noise_of(200) + 0.1 * T, "grows"),
@@ -373,3 +374,10 @@ def test_what_has_no_order_is_refused(steps, sizes, reason):
 def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest, longer):
     assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
     assert f"about {longer} times as long" in Order(2.0, uncertainty).doubt
+
+
+def test_blocks_end_where_the_values_end_and_rounding_is_as_wide_as_a_digit():
+    assert core.blocks_of(np.arange(7.0), 3).tolist() == [2, 5]
+    t = np.arange(64.0)
+    expected = 1 / math.sqrt(12 * ((t - t.mean()) ** 2).sum())
+    assert Slope(t, 0 * t, rounding=1.0).uncertainty == pytest.approx(expected, rel=0.1)

@@ -11,7 +11,7 @@ import pytest
 
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series, Wanted
+from pendu_tui.tui.cli.tables import Series, Wanted, find
 from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS, assignments, quantity
 
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
@@ -425,3 +425,7 @@ def test_tables_without_end_are_refused(monkeypatch):
 @pytest.mark.parametrize("text", ["{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null"])
 def test_documents_without_a_table_hold_none(text):
     assert [len(series.times) for series in tables(text)] == []
+
+
+def test_a_name_may_have_a_plus():
+    assert find(("t", "KE+PE"), "KE+PE") == (1,)

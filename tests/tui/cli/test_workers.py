@@ -4,12 +4,13 @@ import argparse
 import os
 import signal
 import sys
+import time
 from contextlib import nullcontext
 
 import pytest
 
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.workers import workers_of
+from pendu_tui.tui.cli.workers import received, started, workers_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -84,3 +85,14 @@ def test_there_are_workers_or_a_cluster():
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert pendu(*RUNS, "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
+
+
+def silent(there):
+    time.sleep(5)
+
+
+def test_a_process_is_awaited_for_so_long():
+    process, here = started(silent)
+    with pytest.raises(TimeoutError):
+        received(here, process, 0.2)
+    process.terminate()

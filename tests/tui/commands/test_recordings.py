@@ -42,6 +42,10 @@ def test_show_shows_what_a_recording_contains(whole):
     whole.write_bytes(whole.read_bytes()[:-40])
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)
+    data = bytearray(whole.read_bytes())
+    data[0] ^= 1
+    whole.write_bytes(data)
+    assert pendu("recordings", "show", whole, "--json").json["damaged"]
 
 
 def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path, monkeypatch):
