@@ -73,6 +73,7 @@ def columns(series: Series) -> str | None:
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
         ("t,E1,E2", "{t},{k},{e}", None),
         ("t,energy (ps)", "{t},{e}", None),
+        ("t,E (V/m)", "{t},{e}", None),
         ("x,y,E", "{t},{s},{e}", None),
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
         ("  t     E", "{n:<4} {t} {e}", "t, E"),  # pandas
