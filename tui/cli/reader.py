@@ -506,7 +506,7 @@ class _Text:
             if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
                 return fields, sign
         divided = _GLUED.sub(r" \g<0>", text).split()
-        if is_row or len(divided) == width:
+        if is_row or len(divided) == width or re.search(r"\d\*{2,}$", text):
             return divided, None
         return _split(text, None) or [""], None
 
@@ -518,7 +518,11 @@ class _Text:
             sheet = self._tables[-1]
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
         elif opening == self._form[2] and (opening or numbers[0] is not None):
-            self._tables[-1].skipped += 1
+            sheet = self._tables[-1]
+            if any(value != value for value in numbers[1:]):  # some of what ended are missing
+                sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
+            else:
+                sheet.skipped += 1
         return is_row
 
     def _has_table(self, fields: list[str], numbers: Sequence[float | None], form: Form) -> bool:

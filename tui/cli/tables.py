@@ -265,7 +265,12 @@ class Sheet:
         if self.skipped > rows or (rows > 1 and len(runs) in (rows, MAX_SERIES)):
             raise unreadable(MIXED)
         for run in runs:
-            yield Series(self, choice, times[run], energies[run], kinetic[run], skipped=skipped)
+            found = np.flatnonzero(np.isfinite(times[run]))
+            lost = (~(np.abs(energies[run][found[-1] + 1 :]) < TOO_LARGE)).sum()
+            may_divide = len(runs) > 1 or found[-1] - found[0] >= len(found)  # one row of nan
+            series = Series(self, choice, times[run], energies[run], kinetic[run], skipped=skipped)
+            series.has_ended = lost > may_divide
+            yield series
             skipped = 0
 
     def _again(self, lines: Any, times: Any) -> Any:
@@ -327,6 +332,7 @@ class Series:
     energies: Any
     kinetic: Any
     skipped: int = 0  # rows without numbers, or not later than one before
+    has_ended: bool = False  # neither time nor energy is a number after the last time
     diverged_at: float | None = None  # the time of the first energy that has failed
     units: tuple[str, str] = ("", "")  # of time and energy
 
@@ -364,6 +370,8 @@ class Series:
         if len(lost):
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
+        elif self.has_ended and len(used) and used[-1] == np.flatnonzero(is_later)[-1]:
+            self.diverged_at = float(times[used[-1]])
         if not len(used):
             whole = times[is_later]
             why = f"it has times from {whole[0]:g} to {whole[-1]:g} {self.units[0]}".rstrip()

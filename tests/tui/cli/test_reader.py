@@ -193,6 +193,25 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
 
 
 @pytest.mark.parametrize(
+    ("text", "diverged_at"),
+    [
+        ("t,E\n" + rows("{t},{e}") + "nan,nan\n", 44.5),
+        ("t,E\n" + rows("{t},{e}") + "inf,-345\n", None),
+        ("t,E\n" + rows("{t},{e}\nnan,nan"), None),  # one row divides others
+        ("t,E\n" + rows("{t},{e}").replace("\n", "\nnan,nan\n", 1) + 2 * "nan,nan\n", 44.5),
+        ("t,E\n" + 2 * (rows("{t},{e}") + "nan,nan\n"), None),
+        (rows("t = {t}, E = {e}") + 2 * "t = nan, E = nan\n", 44.5),
+        ("t K E\n" + rows("{t} 3 {e}") + "45.0 nan\n45.5 nan\n", 44.5),
+        ("t K E\n" + rows("{t} 3 {e}") + "45.0***********\n", 44.5),
+        ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", None),
+    ],
+)
+def test_rows_without_a_time_at_the_end_have_failed(text, diverged_at):
+    series = tables(text)[-1]
+    assert (len(series.times), series.diverged_at) == (90, diverged_at)
+
+
+@pytest.mark.parametrize(
     ("text", "diverged_at", "skipped"),
     [
         (rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
