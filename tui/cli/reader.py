@@ -503,7 +503,7 @@ class _Text:
         bare = re.sub(r'"[^"]*"', "", text)
         for sign in filter(bare.__contains__, _DELIMITERS):
             fields = _split(text, sign)
-            if fields and not any(re.search(r"\d\s+[-+.\d]", field) for field in fields):
+            if fields and not any(re.search(r"\d\s+(?:[-+.\d]|\(nan)", field) for field in fields):
                 return fields, sign
         divided = _GLUED.sub(r" \g<0>", text).split()
         if is_row or len(divided) == width or re.search(r"\d\*{2,}$", text):

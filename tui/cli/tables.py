@@ -361,7 +361,7 @@ class Series:
         times = self.times * step
         is_later = times > np.fmax.accumulate(np.append(-np.inf, times[:-1]))
         skipped = len(times) - int(is_later.sum())
-        if skipped > len(times) / 2:
+        if skipped > len(times) / 2 and not (self.has_ended and np.isnan(times[~is_later]).all()):
             raise unreadable(MIXED)
         self.skipped += skipped
         used = np.flatnonzero(is_later & (times >= begin) & (times <= last))

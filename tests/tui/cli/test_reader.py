@@ -182,6 +182,7 @@ def test_columns_of_inner_arrays_have_numbers():
         ("t E T\n", "{t} {e} 3", ("nan", "inf")),
         ("t\tE\n", "{t}\t{e}", ("nan", "")),
         ("t E\n", "{t}{e}", ("********",)),
+        ("t E\n", "{t} {e}", ("(nan,nan)",)),
         ("", "t = {t}, E = {e}", ("nan", "-nan(ind)", "1.#QNAN", "********", "inf")),
     ],
 )
@@ -196,6 +197,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
     ("text", "diverged_at"),
     [
         ("t,E\n" + rows("{t},{e}") + "nan,nan\n", 44.5),
+        ("t,E\n" + rows("{t},{e}") + 200 * "nan,nan\n", 44.5),
         ("t,E\n" + rows("{t},{e}") + "inf,-345\n", None),
         ("t,E\n" + rows("{t},{e}\nnan,nan"), None),  # one row divides others
         ("t,E\n" + rows("{t},{e}").replace("\n", "\nnan,nan\n", 1) + 2 * "nan,nan\n", 44.5),
