@@ -371,7 +371,7 @@ class Series:
             self.diverged_at = float(times[used[lost[0]]])
             used = used[: lost[0]]
         elif self.has_ended and len(used) and used[-1] == np.flatnonzero(is_later)[-1]:
-            self.diverged_at = float(times[used[-1]])
+            self.diverged_at = float(np.nextafter(times[used[-1]], np.inf))  # later than all
         if not len(used):
             whole = times[is_later]
             why = f"it has times from {whole[0]:g} to {whole[-1]:g} {self.units[0]}".rstrip()

@@ -153,6 +153,8 @@ def test_the_first_energy_that_is_infinite_or_too_large_has_failed():
         assert (answer["diverged_at"], answer["skipped"]) == (30, 0)
         assert answer["lowest_energy"] > 0
     assert "end at 30" in judge(text).out
+    outcome = judge(f"{TABLE}nan,nan\n")
+    assert (outcome.code, "end at 29" in outcome.out) == (1, True)
     kinetic = "t,E,K\n" + lines("{t},{e},5") + "30,100,nan\n"
     assert "end at 30" in guess(kinetic, "--scale", "kinetic:K").out
     for energy in ("inf", "1e305"):
