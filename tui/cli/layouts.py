@@ -137,8 +137,10 @@ LAYOUTS = (
     ),
     Layout(
         programs="prints of name value",
-        line=rf"(?<!\S)(?!{FAILED}(?!\S))(?P<name>[A-Z]\w{{,40}}) +{VALUE},?"
-        rf"(?=\s*$| +[A-Z]\w* +{NUMBER},?(?:\s*$| +[A-Z]))",
+        line=rf"(?<!\S)(?!{FAILED}(?!\S))(?:(?:INFO|DEBUG|and|has|with) +)?"
+        rf"(?P<name>[A-Z]\w{{,40}}(?: [A-Z]\w{{,40}}){{,2}}) +{VALUE},?"
+        r"(?=\s*$| +(?:(?:[A-Z]\w* +){1,3}(?=(?:e|energy|quantity|time|step) ))?[A-Z]\w*"
+        rf" +{NUMBER},?(?:\s*$| +(?![^\d=:]{{,60}}[=:])[A-Z]))",
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",

@@ -422,6 +422,7 @@ class _Text:
                 pass
             case {"value": value}:
                 name = groups.get("name", "Step")
+                name += "'" * (name in prints and is_energy(name))  # so that neither is certain
                 self._print(name, value, groups.get("unit", ""))
                 prints[name] = match.start("value")
                 return "name" in groups
@@ -434,9 +435,7 @@ class _Text:
                 self._over = line if line in self._above else ""
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
-                opening = fields[0]
-                if number(opening) is not None:
-                    opening = ""
+                opening = fields[0] * (number(fields[0]) is None)
                 self._row(fields, delimiter, opening)
             case {"set": place, "label": label}:
                 self._labels[int(place) + 1] = label

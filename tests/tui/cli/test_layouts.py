@@ -123,7 +123,12 @@ CASES = {
         "",
     ),
     "JSON, an object a line": ("t, E", "", '{{"t":{t},"h":"a","E":{e}}}', ""),
-    "prints of name value": ("time, energy", "", "[{n}/90] step {s}, time {t}, energy {e}", ""),
+    "prints of name value": (
+        "time, total energy",
+        "",
+        "[{n}/90] step {s}, time {t}, total energy {e} kinetic energy {k}",
+        "",
+    ),
     "prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8": (
         "time ps, Ekin + Etot (const) Ry",
         "",
@@ -141,6 +146,25 @@ def test_each_layout_reads_its_case(layout):
     assert columns(series) == found
     assert list(series.energies) == pytest.approx(ENERGIES, abs=0.006)
     assert len(series.times) == 90
+
+
+@pytest.mark.parametrize(
+    ("row", "found"),
+    [
+        ("INFO step {s}, time {t}, energy {e}, kinetic energy {k}", "time, energy"),
+        (
+            "time {t} kinetic energy {k} potential energy {p}",
+            "time, kinetic energy+potential energy",
+        ),
+        ("step {s} wall time {n} with energy {e}", "step, energy"),
+        ("time {t}\ntotal  energy {e} kinetic  energy {k}", None),
+        ("time {t}\nE = {k} (E = {e})", None),
+    ],
+)
+def test_the_words_before_a_number_are_its_name_which_is_not_certain_twice_in_a_line(row, found):
+    (series,) = tables(rows(row))
+    assert columns(series) == found
+    assert found is None or series.energies == pytest.approx(ENERGIES)
 
 
 MORE = [("", "Start\n" + LOOP, "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
