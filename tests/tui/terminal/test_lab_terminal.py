@@ -141,7 +141,7 @@ def test_a_method_that_does_not_yield_is_told_of_and_the_keys_work(tmp_path, lib
 @pytest.mark.parametrize(
     ("work", "code", "words", "left"),
     [
-        ("__import__('time').sleep(99)", 2, b"mine.py, line 5: `while", ".mcap"),
+        ("__import__('time').sleep(99)", 3, b"mine.py, line 5: `while", ".mcap"),
         ("sum(iter(int, 1))", -signal.SIGKILL, b"a call in C", ".part"),  # keeps the interpreter
     ],
 )
