@@ -60,11 +60,12 @@ def start_angle(text: str) -> float:
 
 
 def seconds(text: str) -> float:
-    """Return a time [s] from `2`, `2s`, `50ms`, `1min` or `1h`."""
-    bare = re.sub(r"\s*(ms|s|min|h)$", "", text)
+    """Return a time [s] from `2`, `2s`, `50ms`, `20us`, `1min` or `1h`."""
+    bare = re.sub(r"\s*([mµu]?s|min|h)$", "", text)
     unit = text[len(bare) :].strip()
     value = _float(bare, text, "a time", "0.05 (seconds), 50ms or 1min")
-    return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
+    parts = {"ms": 1e3, "us": 1e6, "µs": 1e6}.get(unit, 1)  # of a second
+    return value / parts * {"min": 60, "h": 3600}.get(unit, 1)
 
 
 def _float(bare: str, text: str, what: str, example: str) -> float:

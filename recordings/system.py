@@ -71,7 +71,11 @@ def rename(source: Path, target: Path) -> None:
             import shutil
 
             with source.open("rb") as old, target.open("xb") as new:
-                shutil.copyfileobj(old, new)
+                try:
+                    shutil.copyfileobj(old, new)
+                except OSError:  # half a file under a final name would look whole
+                    target.unlink()
+                    raise
         source.unlink()
 
 

@@ -98,9 +98,10 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
             case [first, last, many] if 2 <= (size := count(many)) <= 1_000_000:
                 low = element(first)
                 high = element(last)
-                if low < high:
-                    steps = range(size - 1)
-                    return [*(low + (high - low) * i / (size - 1) for i in steps), high]
+                if not low < high:
+                    raise ValueError(f"{text!r} does not ascend; write the lower value first")
+                steps = range(size - 1)
+                return [*(low + (high - low) * i / (size - 1) for i in steps), high]
         raise ValueError(f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})")
 
     return read

@@ -28,6 +28,8 @@ from pendu_tui.engine.inputs import angle, number, seconds, start_angle
         (seconds, "2", 2.0),
         (seconds, "2s", 2.0),
         (seconds, "50ms", 0.05),
+        (seconds, "20us", 2e-5),
+        (seconds, "20 µs", 2e-5),
         (seconds, "2min", 120.0),
         (seconds, "1.5h", 5400.0),
     ],

@@ -24,11 +24,19 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]  # its own h
 
 
-@pytest.mark.parametrize("text", ["1:2", "2:1:3", "1:1:3", "1:2:1"])
-def test_a_list_is_ascending_and_what_is_none_is_refused(text):
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("1:2", "is not a list"),
+        ("1:2:1", "is not a list"),
+        ("2:1:3", "does not ascend"),
+        ("1:1:3", "does not ascend"),
+    ],
+)
+def test_a_list_is_ascending_and_what_is_none_is_refused(text, why):
     assert values(number)("0.2,0.1,0.2") == [0.1, 0.2]
     assert values(number)("1:2:3") == [1.0, 1.5, 2.0]
-    with pytest.raises(ValueError, match="is not a list"):
+    with pytest.raises(ValueError, match=why):
         values(number)(text)
 
 
