@@ -200,7 +200,7 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
         if opcode == message:
             if not latest <= log_time <= MAX_TIME:
                 raise ValueError("time runs back, or is too late")
-            if sequence != current or log_time > latest:
+            if sequence != current:
                 latest = log_time
                 current = sequence
                 channels: list[int] = []

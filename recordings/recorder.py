@@ -259,4 +259,4 @@ class LiveRecorder(Recorder):
             self._lock.release()
 
     def _fail(self, error: DiskError) -> None:
-        self.failed = self.failed or printable(str(error), 500)
+        self.failed = printable(str(error), 500)

@@ -183,17 +183,20 @@ def test_a_text_of_more_than_200_characters_is_cut_off_with_an_ellipsis():
 @pytest.mark.parametrize("function", ["sin", "sqrt"])
 def test_a_fingerprint_differs_if_one_value_does(monkeypatch, function):
     right = getattr(math, function)
-    values = []
+    places = []
 
     def wrong(x):
-        values.append(right(x))
-        if len(values) == 1234:
-            return math.nextafter(values[-1], 2)
-        return values[-1]
+        places.append(x)
+        if len(places) == 1234:
+            return math.nextafter(right(x), 2)
+        return right(x)
 
     monkeypatch.setattr(math, function, wrong)
     assert fingerprint.__wrapped__(function) != fingerprint(function)
     monkeypatch.undo()
+    sizes = sorted(map(abs, places))
+    assert (sizes[0], sizes[-1]) == pytest.approx((1e-8, 1e8), rel=0.2)
+    assert (min(places) < 0) == (function == "sin")
     assert fingerprint.__wrapped__(function) == fingerprint(function)
 
 

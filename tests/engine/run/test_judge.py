@@ -218,6 +218,29 @@ def test_with_less_than_four_steps_a_turn_an_error_beats_and_must_be_long(h, nee
     assert judge_of([0.0, 0.0, 0.0], h=h).judgement.progress.need == need
 
 
+@pytest.mark.parametrize(
+    ("steps", "parted", "peak", "verdict"),
+    [
+        (1000, 18.3, 0.0, "undecided"),
+        (1000, 18.4, 0.0, "chaotic"),  # by e^15 times the steps, and e^3.35 near the top
+        (1000, 19.3, math.e**2 - 1, "undecided"),  # e of which is the orbit's own growth
+        (1000, 19.4, math.e**2 - 1, "chaotic"),
+        (4096, 4.9, 0.0, "bounded"),
+        (4096, 5.1, 0.0, "undecided"),
+        (4095, 4.9, 0.0, "undecided"),
+    ],
+)
+def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, verdict):
+    scene = Scene(theta=1.0, h=1 / W0)
+    start = LookPoint(0, 0.0, 0.0, 0.0)
+    period = scene.exact().period  # times w0: 6.70
+    judge = Judge(scene.h, period, method=V, model=scene.equations, start=start)
+    orbit = judge._orbit
+    orbit.steps = steps
+    orbit.log = math.log(steps) + parted
+    assert orbit.verdict("undecided", peak, periods=100.0) == verdict
+
+
 def test_growth_is_that_of_the_logarithm_where_energy_is_multiplied_each_step():
     euler, *others = moved(SCENES["linear"], [400]).judgements
     assert euler.growth == pytest.approx(math.log(1 + 0.5**2) / 0.5, rel=1e-9)

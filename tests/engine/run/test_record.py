@@ -246,6 +246,16 @@ def test_the_bound_holds_the_slope_at_99_percent():
     assert share == pytest.approx(0.99, abs=1e-4)
 
 
+def test_in_white_noise_of_a_known_size_a_slope_is_normal():
+    times = np.arange(64) - 31.5
+    noise = NOISE[:64] - NOISE[:64].mean()
+    noise = noise - times * (times @ noise) / (times @ times)
+    slope = Slope(times, noise / noise.std(), 0.0, white=1.0)
+    sigma = 1 / math.sqrt(times @ times)
+    assert slope.uncertainty == pytest.approx(sigma, rel=0.05)
+    assert slope.bound == pytest.approx(2.576 * sigma, rel=0.05)  # of 99 %
+
+
 @pytest.mark.parametrize(("chance", "is_evident"), [(3.5e-3, False), (2.5e-3, True)])
 def test_a_trend_of_three_sigmas_is_evident(chance, is_evident):
     found = judge_record(T, 1000 + with_chance(noise_of(60, 2), chance))

@@ -138,9 +138,13 @@ def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
         assert attempt.point is None or Z_LIMITS[0] <= attempt.point.z <= Z_LIMITS[1]
 
 
-@pytest.mark.parametrize("kind", ["theta", "energy"])
-def test_no_recommended_step_is_longer_than_half_a_swing(kind):
-    scene = replace(DRIFT, theta=0.02, cast=(V, R, method_of("implicit_midpoint")))
-    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, 1e-2):
+@pytest.mark.parametrize(
+    ("theta", "omega", "kind", "target"),
+    [(0.02, 0.0, "theta", 1e-2), (0.02, 0.0, "energy", 1e-2), (0.0, 30.0, "energy", 0.1)],
+)
+def test_no_recommended_step_is_longer_than_half_a_swing_or_turn(theta, omega, kind, target):
+    cast = (V, R, method_of("implicit_midpoint"))
+    scene = replace(DRIFT, theta=theta, omega=omega, cast=cast)
+    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, target):
         assert attempt.succeeded
-        assert attempt.point.z <= math.pi
+        assert attempt.point.h * max(scene.w0, omega) <= math.pi
