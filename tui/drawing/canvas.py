@@ -139,8 +139,6 @@ class Canvas:
         import numpy as np
 
         with np.errstate(all="ignore"):
-            if len(x) == 1:
-                self.scatter(x, y, ink)
             dx = np.diff(x)
             dy = np.diff(y)
             steep = abs(dy) > abs(dx)  # these lines have a dot in each row, others in each column
@@ -172,13 +170,13 @@ class Canvas:
                 if 0 <= column + across < self.columns and 0 <= row + below < self.rows:
                     layer[(row + below) * self.columns + column + across] |= bits
 
-    def braille(self, column: int, row: int, lines: Iterable[str], ink: int) -> None:
-        """Set the dots of braille characters, drawn elsewhere, from a cell on."""
+    def braille(self, lines: Iterable[str], ink: int) -> None:
+        """Set the dots of braille characters, drawn elsewhere."""
         layer = self._layer(ink)
-        for down, line in enumerate(lines, row):
-            for right, character in enumerate(line[: self.columns - column], column):
+        for row, line in enumerate(lines):
+            for column, character in enumerate(line):
                 if "⠀" < character <= "⣿":
-                    layer[down * self.columns + right] |= ord(character) & 0xFF
+                    layer[row * self.columns + column] |= ord(character) & 0xFF
 
     def label(self, column: int, row: int, text: str, ink: int) -> None:
         """Write text over the dots from a cell on, cut off at the edges."""

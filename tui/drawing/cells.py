@@ -94,12 +94,6 @@ class CellWidget(Widget):
     def draw(self) -> None:
         """Show the current state."""
 
-    def on_resize(self) -> None:
-        if self.room != self.size:  # the lines may be of another size
-            self.room = self.size
-            self.refresh()
-        self.draw()
-
     def on_show(self) -> None:
         self.draw()
 
@@ -169,7 +163,7 @@ class CellWidget(Widget):
         return segments
 
     def style_of(self, ink: int, base: Style) -> Style:
-        return base if ink == NOBODY else base + Style(color=palette(self.app.theme).colour(ink))
+        return base + Style(color=palette(self.app.theme).colour(ink))
 
     def notify_style_update(self) -> None:
         """Forget the styles of the old theme or sheet."""

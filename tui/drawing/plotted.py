@@ -90,7 +90,7 @@ def loglog_chart(
     curves = [(one, *axes.curve(one)) for one in series]
     for ink in dict.fromkeys(one.ink for one, *_ in curves):
         some = [(x, y, one.dotted) for one, x, y in curves if one.ink == ink]
-        canvas.braille(0, 0, plotted(some, axes.width, axes.rows), ink)
+        canvas.braille(plotted(some, axes.width, axes.rows), ink)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         last = axes.width - len(one.mark)
         cells = [
@@ -181,7 +181,7 @@ def record_chart(
         *((ink, across, values, True) for ink, values in dotted),
     ):
         curve = (chart.right(x).tolist(), chart.up(y).tolist(), is_dotted)
-        chart.canvas.braille(0, 0, plotted([curve], chart.width, rows), ink)
+        chart.canvas.braille(plotted([curve], chart.width, rows), ink)
     return Picture([[(title[:width].ljust(width), TEXT)], *chart.picture()])
 
 
