@@ -201,15 +201,17 @@ def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
 
 
 @pytest.mark.parametrize(
-    ("radius", "hollow", "text"),
+    ("x", "radius", "hollow", "text"),
     [
-        (4, False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"),
-        (4, True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊"),
-        (2, True, "\n  ⢰⣲\n"),
+        (6, 4, False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"),
+        (6, 4, True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊"),
+        (6, 2, True, "\n  ⢰⣲\n"),
+        (-2, 4, False, "⡀\n⣿\n⠋"),
+        (13, 4, False, "     ⢀\n     ⣿\n     ⠙"),
     ],
 )
-def test_a_disc_is_round_because_dots_are_square(radius, hollow, text):
-    assert drawn(lambda canvas: canvas.disc(6, 6, radius, 0, hollow=hollow), 6, 3).text == text
+def test_a_disc_is_round_because_dots_are_square(x, radius, hollow, text):
+    assert drawn(lambda canvas: canvas.disc(x, 6, radius, 0, hollow=hollow), 6, 3).text == text
 
 
 def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
@@ -238,4 +240,4 @@ def test_pictures_are_compared_row_by_row():
     assert list(new.changes(old, 8)) == [(0, 8, 0)]  # up to the end, where a row may be wide
     assert list(new.changes(new, 6)) == []
     assert Canvas(0, 2).picture().text == "\n"
-    assert Picture.of_text("a b", 2, 6).text == "\n\na\nb\n\n"
+    assert Picture.of_text("a b", 2, 7).text == "\n\na\nb\n\n\n"

@@ -53,7 +53,7 @@ def test_charts_as_they_are_stored(snapshot):
     waves = np.sin(3 * t)[:, None] * rates
     names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     ghost = (window(t, 1.7 * grows), USUAL_CAST)
-    changes = [(0.0, "start"), (7.7, "h 0.1"), (19.0, "h 0.05"), (20.0, "end")]
+    changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
     limit = {"line": Line("energy_error", 0.011, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
@@ -64,7 +64,9 @@ def test_charts_as_they_are_stored(snapshot):
         plot(window(t, grows), 59, 10, names=names),
         plot(window(t, grows[:, :1] ** 10 * [1, 0, 0, 0] + grows), 60, 10, places=[0, 2]),
         plot(mixed, 60, 16, log=False, changes=changes, seconds=10, **limit),
-        plot(window(t, -grows, -grows, turned=True), 72, 12, log=False, names=names),
+        plot(window(t, -grows, -grows / 2, turned=True), 72, 12, log=False, names=names),
+        plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=names),
+        plot(window(t, grows[:, 2]), 40, 5),
         plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
     ]
     series = [
@@ -74,6 +76,7 @@ def test_charts_as_they_are_stored(snapshot):
         Series(FRAME, "up", [1e1, 1e7], [1e-3, 1e2], dotted=True),
     ]
     texts = [look(each.picture) for each in pictures]
+    texts.append(look(loglog_chart([], 40, 9, x_label="cost", y_label="error")))
     picture = loglog_chart(series, 60, 18, x_label="cost", y_label="error")
     column, row = LogLog.fitting(series, 60, 18).cell(3e3, 3e-2)
     assert cells(picture)[row, column] == ("e", 0)
@@ -139,6 +142,30 @@ def test_a_line_of_largest_errors_is_not_torn_by_zeros():
     assert shown == {*range(min(shown), max(shown) + 1)}
 
 
+def test_of_errors_neither_zeros_at_the_start_nor_the_smallest_fortieth_are_on_the_axis():
+    errors = np.full(41, 0.1)
+    errors[:3] = 0.0, 1e-12, 1e-8
+    chart = plot(window(np.arange(41), errors), places=[0], seconds=41, width=51)
+    assert chart.at(chart.left) is None
+    assert "1e-8" in chart.picture.text
+    assert "1e-12" not in chart.picture.text
+
+
+@pytest.mark.parametrize(("repeats", "begin"), [(1.1, 1.1), (0.9, 1.0), (500.0, 120.0)])
+def test_logarithmic_time_begins_with_a_swing_or_two_to_three_decades_before_its_end(
+    repeats, begin
+):
+    times = np.linspace(0, 1200, 300)
+    ends = plot(window(times, times, repeats=repeats), log_time=True).ends
+    assert 10.0 ** np.array(ends) == pytest.approx([begin, 1200])
+
+
+def test_a_line_of_another_quantity_is_not_drawn():
+    data = window(TIMES, TIMES)
+    line = Line("theta_error", 5.0, "limit")
+    assert plot(data, line=line).picture == plot(data).picture
+
+
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
@@ -170,11 +197,35 @@ def test_lines_that_lie_on_each_other_have_no_cross_nor_has_a_pass_beside_a_clea
     assert len(set(crosses(plot(window(t, errors), places=[1, 2, 3], seconds=20)))) == 1
 
 
-@pytest.mark.parametrize(("columns", "half_swing", "crosses"), [(3, 0, 0), (4, 3, 1), (4, 4, 0)])
-def test_a_pass_lasts_for_a_25th_of_the_chart_and_half_a_swing(columns, half_swing, crosses):
-    later = np.where(np.arange(100) < 100 - columns, 5.0, 15.0)
+@pytest.mark.parametrize(
+    ("columns", "half_swing", "apart", "crosses"),
+    [
+        (3, 0, 5, 0),
+        (4, 3, 5, 1),
+        (4, 4, 5, 0),
+        (96, 3.5, 5, 1),  # half a swing before the first column is seen
+        (96, 3.6, 5, 0),
+        (50, 0, 0.5, 1),
+        (50, 0, 0.49, 0),
+    ],
+)
+def test_a_pass_lasts_for_a_25th_of_the_chart_and_half_a_swing(columns, half_swing, apart, crosses):
+    later = np.where(np.arange(100) < 100 - columns, 10.0 - apart, 10.0 + apart)
     heights = np.column_stack((np.full(100, 10.0), later))
-    assert len(_crossings(heights, np.arange(100.0), half_swing)) == crosses
+    assert len(_crossings(heights, np.arange(100.0) + 0.5, half_swing)) == crosses
+
+
+@pytest.mark.parametrize(("apart", "crosses"), [(2.5, [30, 60]), (2.4, [60])])
+def test_a_pass_is_marked_that_is_half_as_clear_as_the_clearest(apart, crosses):
+    moments = np.arange(100.0)
+    heights = [
+        np.full(100, 20.0),
+        np.where(moments < 60, 15.0, 25.0),
+        np.full(100, 90.0),
+        np.where(moments < 30, 90 - apart, 90 + apart),
+    ]
+    found = _crossings(np.column_stack(heights), moments, 0.0)
+    assert sorted(column for column, _ in found) == pytest.approx(crosses, abs=1)
 
 
 @given(st.lists(st.floats(-2, 25), max_size=8), st.integers(1, 20))

@@ -73,7 +73,8 @@ HOUR = 3600
         (log_axis(-5.3, 1.2, 9).labels, "1e-6 1e-4 1e-2 1"),
         (log_axis(1.0, 4.0, 3).labels, "1 1e3"),
         (log_x_axis(0.0, 0.0, 40).labels, "1 10"),
-        (log_x_axis(-3.2, 1.1, 40).labels, "1e-4 1e-2 1 100"),
+        (log_x_axis(-3.2, 1.1, 47).labels, "1e-4 1e-2 1 100"),
+        (log_x_axis(-3.2, 1.1, 48).labels, "1e-4 1e-3 1e-2 1e-1 1 10 100"),
         (linear_axis(-0.06, 4.3, 14).labels, "0 1 2 3 4"),
         (linear_axis(-0.13, 0.19, 13).labels, "-0.2 -0.1 0 0.1 0.2"),
         (linear_axis(2.0, 4.5, 8).labels, "1 2 3 4"),
@@ -87,6 +88,11 @@ HOUR = 3600
         (time_axis(0, 5 * HOUR, 60).labels, "0 1 2 3 4 5 h"),
         (log_time_axis(1.0, 86400.0, 60).labels, "1 s 5 s 1 min 5 min 1 h 5 h 1 d"),
         (log_time_axis(1.0, 86400.0, 61, " run").labels, "1 s 5 s 1 min 5 min 1 h 5 h 1 d run"),
+        (
+            log_time_axis(0.009, 1e8, 400).labels,
+            "0.01 s 0.1 s 1 s 2 s 5 s 10 s 20 s 1 min 2 min 5 min 10 min 20 min"
+            " 1 h 2 h 5 h 10 h 1 d 10 d 100 d 1000 d",
+        ),
         (theta_ticks(-3.2, 3.2, 5), "-pi -pi/2 0 pi/2 pi"),
         (theta_ticks(-0.6, 0.6, 4), "-0.5 0 0.5"),
         (theta_ticks(-1.0, 1.0, 4), "-pi/4 0 pi/4"),

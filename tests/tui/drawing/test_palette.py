@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.style import Style
 
 from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.scenes import SCENES
@@ -16,8 +17,10 @@ from pendu_tui.tui.drawing.picture import (
     QUIET,
     TEXT,
     WARN,
+    Picture,
     ink_of,
     inks,
+    lines_of,
     mark,
     mixed,
     palette,
@@ -126,4 +129,16 @@ def test_words_lines_and_trails_have_the_contrast_that_they_need(theme):
 def test_other_themes_get_the_palette_that_suits_their_name():
     for theme, name in {"textual-light": "light", "ansi-light": "ansi", "nord": "dark"}.items():
         assert palette(theme) is PALETTES[name]
-    assert [mixed("bright_red", "black", share) for share in (0.1, 0.3)] == ["bright_red", "red"]
+    assert [mixed("bright_red", "black", share) for share in (0.19, 0.2)] == ["bright_red", "red"]
+    dark = PALETTES["dark"]
+    assert dark.colour(1 + FAINT) == "#4D4D78"  # half of it, half of the background
+    assert dark.colour(12) == dark.methods[2]
+    assert len({*PALETTES["ansi"].methods}) == 10
+
+
+def test_lines_for_the_terminal_have_the_colours_of_a_palette_or_none_and_no_blanks_at_the_end():
+    picture = Picture([[("ab ", 1), ("c  ", Style(bold=True))]])
+    for colours, styles in ((PALETTES["dark"], [PALETTES["dark"].methods[1]]), (None, [])):
+        (line,) = lines_of(picture, colours)
+        assert line.plain == "ab c"
+        assert [each.style for each in line.spans] == [*styles, Style(bold=True)]

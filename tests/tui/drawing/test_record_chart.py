@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from pendu_tui.tui.drawing.plotted import ENERGY, MIN_COLUMNS, MIN_ROWS, record_chart
+from pendu_tui.tui.drawing.plotted import ENERGY, MIN_COLUMNS, MIN_ROWS, TREND, record_chart
 from tests.tui.drawn import look, places, size
 
 TIMES = np.linspace(0, 50, 4000)
 ERRORS = 1e-3 * np.sin(7 * TIMES) + 1e-4 * TIMES
 
 
-def chart(size=(80, 16), errors=ERRORS, slope=1e-4, deviation=7e-4):
+def chart(size=(80, 16), errors=ERRORS, slope=1e-4, deviation=7e-4, unit="ps"):
     return record_chart(
-        TIMES, errors, size, slope=slope, deviation=deviation, title="energy error", unit="ps"
+        TIMES, errors, size, slope=slope, deviation=deviation, title="energy error", unit=unit
     )
 
 
@@ -28,6 +28,8 @@ def test_energy_trend_and_axes_fill_the_size_given(snapshot):
     spike = ERRORS.copy()
     spike[2001] = 0.05
     assert rows_of(chart(errors=spike), ENERGY)[0] <= 2  # a column spans all errors in it
+    assert [bool(rows_of(chart(slope=slope), TREND)) for slope in (0.0, None)] == [True, False]
+    assert " 50 ─" in chart(unit="").text
 
 
 @pytest.mark.parametrize("room", [(20, 7), (21, 40), (200, 10), (10, 3)])
