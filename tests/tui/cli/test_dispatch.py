@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from pendu_tui.engine.methods import METHODS
+from pendu_tui.engine.models import NUMBERS
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
@@ -129,6 +130,19 @@ def test_help_and_version():
     assert [int(code) for code in re.findall(r"\d+", codes)] == [*Exit][:-1]  # a pipe sees no code
     assert "SI units" not in pendu("judge", "--help").out
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
+
+
+NEEDED = {"export": ["a"], "judge": ["a"], "replay": ["a"], "verify": ["a"]}
+
+
+def test_commands_and_their_defaults(snapshot):
+    texts = []
+    for name in COMMANDS:
+        parser = parser_of(name)
+        texts += [f"\n{name}: {parser.description}", parser.epilog]
+        given = vars(parser.parse_args(NEEDED.get(name, [])))
+        texts += [f"{name} {key} = {given[key]}" for key in sorted({*given} - {*NUMBERS})]
+    snapshot("commands.txt", "\n".join(texts) + "\n")
 
 
 def test_every_option_is_explained_and_the_parser_takes_the_examples():

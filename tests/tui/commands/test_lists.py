@@ -4,19 +4,10 @@ import pytest
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.loops import available
-from pendu_tui.engine.scenes import GROUPS, SCENES
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.commands.lists import MEASURED
 from pendu_tui.tui.words.cards import scene_card
 from tests.tui.command_line import pendu
-
-
-def test_scenes_are_listed_in_groups_with_what_to_watch():
-    out = pendu("scenes").out
-    names = [line.split("  ")[0].strip().casefold() for line in out.splitlines()]
-    for group, scenes in GROUPS.items():
-        at = names.index(group)
-        assert names[at + 1 : at + 1 + len(scenes)] == [scene.name for scene in scenes]
-        assert all(scene.watch in out for scene in scenes)
 
 
 def test_scenes_as_json_hold_everything_that_determines_a_run():

@@ -1,13 +1,11 @@
-"""What the commands print, word by word, and the defaults of their options."""
+"""What the commands print, and the help of their options, word by word."""
 
 import re
 import shlex
 
 import pytest
 
-from pendu_tui.engine.models import NUMBERS
-from pendu_tui.tui.cli.commands import COMMANDS
-from pendu_tui.tui.cli.dispatch import parser_of
+from pendu_tui.tui.commands.options import OPTIONS
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import pendu
@@ -15,6 +13,8 @@ from tests.tui.command_line import pendu
 QUICK = "--time 5 --h-values 0.2:0.01:4"
 FEW = "--steps 300 --z-values 0.1:3:12 --theta-values 0.5,2"
 PRINTED = """\
+--help
+scenes
 run --time 60
 run damped --time 20 --h 0.2 --fail-if 'rk4.verdict != bounded or any.theta_error > 1e-3'
 run stiff-slow --time 5
@@ -40,7 +40,6 @@ accuracy {QUICK} --csv
 stability {FEW} --csv
 export a
 """
-NEEDED = {"export": ["a"], "judge": ["a"], "replay": ["a"], "verify": ["a"]}
 
 
 @pytest.fixture
@@ -69,9 +68,10 @@ def test_outputs(snapshot, library):
     snapshot("outputs.txt", re.sub(r"computed .*", "computed X", text) + "\n")
 
 
-def test_defaults(snapshot):
+def test_options(snapshot):
     texts = []
-    for name in COMMANDS:
-        options = vars(parser_of(name).parse_args(NEEDED.get(name, [])))
-        texts += [f"{name} {key} = {options[key]}" for key in sorted({*options} - {*NUMBERS})]
-    snapshot("defaults.txt", "\n".join(texts) + "\n")
+    for name, each in OPTIONS.items():
+        choices = each.get("choices", ())
+        value = each.get("metavar") or "|".join(choices)
+        texts.append(f"{name} {value} ({each.get('default', '')}): {each['help'] % each}")
+    snapshot("options.txt", "\n".join(texts) + "\n")
