@@ -11,7 +11,6 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from signal import SIGINT, SIGTERM
-from types import SimpleNamespace
 
 import pytest
 
@@ -21,7 +20,6 @@ from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.cli.files import whole_file
 from pendu_tui.tui.cli.options import resolve
-from pendu_tui.tui.cli.watchdog import Watchdog
 from tests.tui.command_line import pendu
 
 WRITERS = {
@@ -106,19 +104,6 @@ def test_a_bundled_recording_comes_before_one_of_the_library(tmp_path, monkeypat
     (tmp_path / "drift.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
     assert resolve("drift") == GOLDEN / "drift.mcap"
     assert resolve("drift.mcap") == resolve("latest") == tmp_path / "drift.mcap"
-
-
-def test_a_lab_that_does_not_leave_when_it_is_asked_to_is_ended_after_five_seconds(monkeypatch):
-    ended = []
-    monkeypatch.setattr(signal, "signal", lambda *_: None)
-    dog = Watchdog()
-    monkeypatch.setattr(dog, "end", ended.append)
-    dog.guard(SimpleNamespace(call_soon_threadsafe=bool), bool, bool)
-    dog._look()
-    for ago, codes in ((4.8, []), (5.2, [130])):
-        dog._asked_at = time.monotonic() - ago
-        dog._look()
-        assert ended == codes
 
 
 def test_force_does_not_replace_a_folder(tmp_path):

@@ -1,0 +1,94 @@
+"""When the watchdog interrupts a step or ends the program, by clocks that the tests set."""
+
+import signal
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from pendu_tui.tui.cli import watchdog
+from pendu_tui.tui.cli.watchdog import ALARM, Watchdog
+
+
+class EnoughError(Exception):
+    pass
+
+
+@pytest.mark.parametrize(("steps", "happens"), [(0, [(3.0, ALARM), (3.6, 3)]), (1, [])])
+def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
+    steps, happens, monkeypatch
+):
+    now = 0.0
+    happened = []
+
+    def sleep(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+        watchdog.USER_CODE.count += steps
+        if now > 5.0:
+            raise EnoughError
+
+    def note(code: int, *_: object) -> None:
+        happened.append((round(now, 1), code))
+
+    dog = Watchdog()
+    monkeypatch.setattr(dog, "end", note)
+    monkeypatch.setattr(watchdog, "interrupt_main", note)
+    monkeypatch.setattr(watchdog.time, "sleep", sleep)
+    monkeypatch.setattr(watchdog, "USER_CODE", SimpleNamespace(depth=1, count=0))
+    with pytest.raises(EnoughError):
+        dog.run()
+    assert happened == happens
+
+
+def test_the_recording_is_closed_and_the_terminal_restored_before_the_end(monkeypatch):
+    done = []
+    dog = Watchdog()
+    dog.close = lambda: done.append("closed")
+    dog.tell = done.append
+    monkeypatch.setattr(watchdog.os, "_exit", done.append)
+    monkeypatch.setattr(watchdog.system, "restore_terminal", lambda _: done.append("restored"))
+    timer = SimpleNamespace(start=lambda: done.append("in 3 s"))
+    monkeypatch.setattr(watchdog, "Timer", lambda seconds, *_: seconds == 3.0 and timer)
+    dog.end(3, "why.")
+    assert done == ["in 3 s", "closed", "restored", "why.", 3]
+
+
+def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(monkeypatch):
+    ended = []
+    asked = []
+    handled = []
+    ignored = {watchdog.system.ENDING[0]: signal.SIG_IGN}  # as under nohup
+    monkeypatch.setattr(signal, "signal", lambda number, _: handled.append(number))
+    monkeypatch.setattr(signal, "getsignal", ignored.get)
+    dog = Watchdog()
+    monkeypatch.setattr(dog, "end", ended.append)
+    monkeypatch.setattr(watchdog.system, "is_gone", lambda: False)
+    loop = SimpleNamespace(call_soon_threadsafe=asked.append)
+    dog.guard(loop, leave := object(), bool)
+    assert handled == [*watchdog.system.ENDING[1:]]
+    dog._look()
+    assert not asked
+    monkeypatch.setattr(watchdog.system, "is_gone", lambda: True)
+    dog._look()
+    for ago, codes in ((4.8, []), (5.2, [130])):
+        dog._asked_at = time.monotonic() - ago
+        dog._look()
+        assert ended == codes
+    assert {*asked} == {leave}
+
+
+def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypatch):
+    second = 0
+    ended = []
+
+    def poll(_: float) -> bool:
+        nonlocal second
+        second += 1
+        return second == 5
+
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(watchdog.system, "is_stopped", lambda _: second in (7, 8))
+    monkeypatch.setattr(watchdog.system, "kill", lambda *given: ended.append((second, *given)))
+    watchdog._end_if_silent(SimpleNamespace(poll=poll, recv=bool), 123)
+    assert ended == [(5 + 2 + 5, 123, 3)]
