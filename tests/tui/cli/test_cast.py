@@ -9,6 +9,7 @@ import pytest
 
 from pendu_tui.engine.methods import METHODS, RK4, USUAL_CAST, Cast, named
 from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.scene import scene_of
 from tests.tui.command_line import PENDU, ROOT, pendu
@@ -27,7 +28,7 @@ SOURCE = STEP.format(name="kick_drift") + STEP.format(name="rk4")
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.py").write_text(SOURCE)
+    (tmp_path / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
     (tmp_path / "long.py").write_text(SOURCE + "#" * 30_000)
 
 
@@ -83,7 +84,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
         ("mine.py", 3, "mine.py has no function 'mine'; it has kick_drift, rk4"),
         ("mine.py:größer", 2, "cannot be a method's name"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),
-        ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
+        ("no:absent.py:kick_drift", 3, "no:absent.py cannot be read: No such file"),
         ("long.py:kick_drift", 3, "too long; use a file of at most 30,000 characters"),
     ],
 )
@@ -141,7 +142,7 @@ def test_more_than_six_run_but_fit_no_screen_and_no_recording():
         assert pendu(*command, *methods).refused(2, "7 methods are too many", "at most 6")
 
 
-def test_ones_own_method_has_null_claims_and_is_the_same_in_other_processes(mine):
+def test_ones_own_method_has_null_claims_and_is_the_same_in_other_processes(mine, monkeypatch):
     own = ("methods", "--method", "mine.py:kick_drift")
     *_, row = pendu(*own, "--json").json["methods"]
     assert (row["key"], row["label"]) == ("kick_drift", "Kick drift")
@@ -149,6 +150,9 @@ def test_ones_own_method_has_null_claims_and_is_the_same_in_other_processes(mine
     assert row["measured_order"] == pytest.approx(1, abs=0.05)
     assert row["measured_linear_limit"] == pytest.approx(2, abs=1e-8)
     assert (row["measured_symplectic"], row["measured_reversible"]) == (True, False)
+    watched = []
+    monkeypatch.setattr(watchdog, "watch_calls_in_c", lambda: watched.append("by a process"))
     values = ("--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
     one = pendu("stability", *values, *own[1:])
+    assert watched
     assert one.out == pendu("stability", *values, *own[1:], "--workers", "2").out

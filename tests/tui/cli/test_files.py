@@ -65,11 +65,11 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
 
 def test_the_program_itself_notices_interrupts_that_a_callback_swallows(monkeypatch):
     monkeypatch.setattr(sys, "unraisablehook", before := sys.unraisablehook)
-    monkeypatch.setattr(sys, "argv", ["pendu-tui", "--version"])
+    monkeypatch.setattr(sys, "argv", ["pendu-tui", "scenes"])
     monkeypatch.setattr(os, "_exit", id)  # called where pytest's timer is a thread
-    main()
-    gc.enable()
+    assert main() == 0
     assert sys.unraisablehook is not before
+    assert gc.isenabled()  # again, after the imports
 
 
 def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
@@ -97,6 +97,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
 def test_an_error_of_a_file_comes_with_advice(number, advice):
     found = explained(OSError(number, "why", "x.csv"))
     assert (found.code, str(found)) == (5, f"x.csv: why; {advice}.")
+    assert explained(MemoryError()).code == 3
 
 
 def test_a_bundled_recording_comes_before_one_of_the_library(tmp_path, monkeypatch):

@@ -5,57 +5,69 @@ import os
 import signal
 import sys
 import time
-from contextlib import nullcontext
+from pathlib import Path
 
 import pytest
 
+from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.tui.cli import workers
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.workers import received, started, workers_of
+from pendu_tui.tui.cli.workers import Work, received, started, work_of, workers_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 2)
 
 
-@pytest.fixture
-def small_parts(monkeypatch):
-    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
-
-
 def test_the_answer_is_the_same_to_the_bit_in_other_processes():
     assert pendu(*RUNS, "--csv", "--workers", 2).out == pendu(*RUNS, "--csv").out
 
 
-LOST = UserError("the workers are lost.", Exit.INPUT_UNREADABLE)
-ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
-
-
-@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (LOST, 3)], ids=str)
-@pytest.mark.parametrize(
-    ("command", "rows", "share"),
-    [(RUNS, 4, "17 % of the runs"), (STABILITY, 6, "6 % of the swings"), (ACCURACY, 1, "4 % of")],
-    ids=lambda value: value[0] if isinstance(value, tuple) else "",
-)
-def test_an_interrupt_and_lost_workers_keep_what_is_done(
-    monkeypatch, tmp_path, small_parts, command, rows, share, error, code
-):
-    def run(function, tasks):
-        yield function(next(iter(tasks)))
+def interrupted(error: BaseException, done: int, output: Path | None = None) -> Work:
+    options = argparse.Namespace(workers=1, dask=None, output=output)
+    with work_of(options, "runs", 3) as work:
+        work.step(done)
         raise error
+    return work
 
-    monkeypatch.setattr("pendu_tui.tui.cli.workers.workers_of", lambda _: nullcontext(run))
-    outcome = pendu(*command, "--csv")
-    assert (outcome.code, outcome.out.count("\n")) == (code, 1 + rows)
-    assert share in outcome.err
-    assert pendu(*command, "--json").json["interrupted"]
+
+@pytest.mark.parametrize(
+    ("error", "code"), [(KeyboardInterrupt(), 130), (OwnMethodError("mine fails."), 3)]
+)
+def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code, tmp_path, capsys):
+    assert interrupted(error, done=1).conclude() == code
+    assert capsys.readouterr().err.endswith(": 33 % of the runs are done and kept.\n")
+    with pytest.raises(type(error)):
+        interrupted(error, done=0)
     older = tmp_path / "older.csv"
-    older.write_text("precious", encoding="utf-8")
-    assert pendu(*command, "-o", older, "--force").refused(130, "stays as it was")
-    assert older.read_text(encoding="utf-8") == "precious"
+    older.touch()
+    with pytest.raises(UserError, match="stays as it was"):
+        interrupted(error, done=1, output=older)
+
+
+class Lost:
+    """A pool of processes that are lost."""
+
+    def __init__(self, count, *_):
+        self.count = count
+
+    def map(self, *_):
+        raise RuntimeError(f"the last of {self.count}.")
+
+    def shutdown(self, **_):
+        pass
+
+
+def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monkeypatch):
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", Lost)
+    monkeypatch.setattr(os, "cpu_count", lambda: 3)
+    outcome = pendu(*RUNS, "--workers", 1000)
+    assert outcome.refused(3, "the workers are lost (RuntimeError: the last of 12).")
 
 
 @pytest.mark.slow
-def test_so_it_is_on_a_dask_cluster(small_parts):
+def test_so_it_is_on_a_dask_cluster(monkeypatch):
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None

@@ -1,6 +1,8 @@
 """`pendu-tui accuracy`: a table, a recommendation, JSON and CSV with all digits."""
 
 import csv
+import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -19,7 +21,7 @@ def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tm
     assert [points[0]["valid"], points[-1]["valid"]] == [False, True]
     assert [point["method"] for point in points] == [m.key for m in USUAL_CAST] * 4
     advice = answer["recommendation"]
-    assert advice["method"] == "blanes_moan_4"
+    assert (advice["method"], answer["interrupted"]) == ("blanes_moan_4", False)
     assert len(advice["attempts"]) == len(GENERAL)
     study = Study(SCENES["drift"], 5.0)
     for row in advice["attempts"][:3]:
@@ -30,6 +32,14 @@ def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tm
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
     assert [float(row["theta_error"]) for row in rows] == [point["theta_error"] for point in points]
     assert list(rows[0]) == list(points[0])
+
+
+@pytest.mark.parametrize(("terminal", "chart"), [(60, 60), (200, 100)])
+def test_the_chart_is_as_wide_as_the_terminal_up_to_100_columns(terminal, chart, monkeypatch):
+    width = SimpleNamespace(width=terminal)
+    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.console", lambda _: width)
+    axis = next(line for line in pendu(*QUICK).out.splitlines() if "└" in line)
+    assert len(axis) == chart
 
 
 def test_a_target_that_no_method_reaches_is_reported():
@@ -49,6 +59,7 @@ def test_a_target_that_no_method_reaches_is_reported():
     [
         (["--h-values", "0.2:0.1"], ["not a list of up to 1000 step sizes", "0.2:0.001:10"]),
         (["--h-values", "1e9:0.1:3"], ["1e+09"]),
+        (["--h-values", "0.1:1e-12:3"], ["1e-12"]),
         (["--methods", "taylor_20"], ["--cost seconds"]),
         (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
         (["--target", "10", "--time", "1"], ["a target of 10", "less than 1"]),
@@ -71,10 +82,18 @@ def test_extreme_starts_print_numbers_and_no_nan(start):
 def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_the_fewest(
     monkeypatch,
 ):
-    monkeypatch.setattr("pendu_tui.engine.run.loops.compiled", PlainLoops)
+    timed = []
+
+    def compiled(method, model):
+        timed.append(method.key)
+        return PlainLoops(method, model)
+
+    monkeypatch.setattr("pendu_tui.engine.run.loops.compiled", compiled)
     monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
     seconds = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.05:2")
     asked = (*seconds, "--methods", "taylor_20,verlet,rk4", "--target", "1e-3")
+    assert re.search(r" in \d+(\.\d+)? [µm]s +\d", pendu(*asked[:-2]).out)
+    assert timed == ["taylor_20", "velocity_verlet", "rk4"] * 2
     answer = pendu(*asked, "--json").json
     series, _, rk4 = answer["points"][:3]
     assert (series["h"], series["force_evaluations"]) == (0.1, None)

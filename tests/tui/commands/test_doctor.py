@@ -1,4 +1,6 @@
 import re
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError
 from types import SimpleNamespace
 
 import pytest
@@ -22,12 +24,32 @@ def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_te
     assert findings()["encoding"] == {"what": "encoding", "found": "utf-8", "advice": ""}
 
 
-@pytest.mark.parametrize("folder", ["file", "file/below"])
+@pytest.mark.parametrize("folder", ["file", "file/below", "lost link"])
 def test_it_explains_a_folder_of_recordings_that_cannot_be_used(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").touch()
+    with suppress(OSError):
+        (tmp_path / "lost link").symlink_to("nowhere")
+    if folder == "lost link" and not (tmp_path / folder).is_symlink():
+        pytest.skip("needs symbolic links")
     monkeypatch.setenv("PENDU_RECORDINGS", folder)
-    assert "PENDU_RECORDINGS" in findings()["recordings"]["advice"]
+    found = findings()["recordings"]
+    assert found["found"].replace("\\", "/") == folder
+    assert "PENDU_RECORDINGS" in found["advice"]
+
+
+@pytest.mark.parametrize("missing", ["", "numba"])
+def test_it_tells_the_versions_and_to_install_numba(missing, monkeypatch):
+    def version(package: str) -> str:
+        if package == missing:
+            raise PackageNotFoundError
+        return f"{package}'s"
+
+    monkeypatch.setattr(doctor, "version", version)
+    found = findings()
+    assert "textual textual's" in found["versions"]["found"]
+    assert found["numba"]["found"] == ("not installed" if missing else "numba's")
+    assert ("[fast]" in found["numba"]["advice"]) == bool(missing)
 
 
 def test_a_folder_that_is_not_there_yet_is_fine_and_is_not_made(tmp_path, monkeypatch):
@@ -71,4 +93,5 @@ def test_a_terminal_may_be_as_small_as_the_lab(size, fine, monkeypatch):
     for name, value in zip(("COLUMNS", "LINES"), size.split("x"), strict=True):
         monkeypatch.setenv(name, value)
     found = findings()["size"]
-    assert (found["found"], not found["advice"]) == (size, fine)
+    assert found["found"] == size
+    assert found["advice"] == ("" if fine else "the lab needs 60x16; 120x40 shows all panes")

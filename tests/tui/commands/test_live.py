@@ -1,16 +1,21 @@
 """`pendu-tui live` before there is a screen."""
 
 import signal
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE
-from pendu_tui.recordings.files import DiskError, listing
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.files import DiskError, NameTakenError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
 from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 
@@ -35,18 +40,66 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     taken = ("already exists", "choose another name")
     assert pendu("live", "--plain", "--record", path).refused(5, *taken)
     assert path.read_bytes() == b"precious"
+    monkeypatch.setattr(lab, "check_terminal", lambda: None)
+    assert pendu("live", "--record", path).refused(5, *taken)  # before the screen
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
     assert pendu("live", "--plain").refused(5, str(path))
 
+    def refuse(path, force):
+        raise DiskError("choose another folder", str(path))
 
-def test_a_picture_has_the_name_of_its_scene(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.setattr(lab.files, "check_target", refuse)
+    advice = "with PENDU_RECORDINGS, or use --no-record"
+    assert pendu("live", "--plain").refused(5, f"choose another folder, {advice}")
+    assert advice not in pendu("live", "--plain", "--record", path).err
+
+
+def test_labs_that_begin_at_once_record_under_names_of_their_own(tmp_path, monkeypatch):
+    path = tmp_path / "library" / "now.mcap"
+    monkeypatch.setattr("pendu_tui.recordings.files.new_path", lambda _: path)
+    labs = [Live(DEFAULT_SCENE) for _ in range(2)]
+    for each in labs:
+        lab.start_recording(each)
+    with pytest.raises(NameTakenError):
+        lab.start_recording(Live(DEFAULT_SCENE), path)
+    for each in labs:
+        each.close()
+    assert sorted(each.name for each in path.parent.iterdir()) == ["now-2.mcap", "now.mcap"]
+
+
+def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path, monkeypatch):
+    async def still(*asked):
+        return str(asked)
+
+    monkeypatch.setattr(lab, "still", still)
     monkeypatch.chdir(tmp_path)
-    assert pendu("snapshot", "--scene", "spin", "--time", 0, "--size", "60x16").code == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["spin.svg"]
+    look = ("--theme", "light", "--pixels", "half")
+    picture = ("snapshot", "spin", "--time", 3, "--size", "60x16", *look)
+    assert pendu(*picture).code == 0
+    asked = (SCENES["spin"], 3.0, (60, 16), TerminalOptions("light", "half"))
+    assert Path("spin.svg").read_text(encoding="utf-8") == str(asked)
+    assert pendu(*picture).refused(5, "--force")
 
 
-def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
+async def test_a_picture_shows_its_time():
+    assert ">1.00" in await lab.still(DEFAULT_SCENE, 1.0, (60, 16))
+
+
+@pytest.fixture
+def asking(tmp_path):
+    path = tmp_path / "asking.toml"
+    shot = "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\n"
+    path.write_text(shot, encoding="utf-8")
+    return path
+
+
+def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     screens = []
+    methods = []
+    monkeypatch.setattr(lab, "own_methods", lambda options: options.method)
+    monkeypatch.setattr(lab, "remember", methods.append)
+    monkeypatch.setattr("pendu_tui.tui.cli.watchdog.watch_calls_in_c", bool)
     monkeypatch.setattr("pendu_tui.tui.commands.lab.check_terminal", lambda: None)
     monkeypatch.setattr(
         "pendu_tui.tui.commands.lab.show",
@@ -56,12 +109,15 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
     replay = ("replay", "drift", *looping)
     for command in (
         replay,
-        ("replay", "drift"),
+        ("replay", "drift", "--method", "mine.py"),
         ("live", "--equal-cost", "--no-record", "--speed", 3),
-        ("live",),
+        ("live", "--scene", asking, "--record", "new.mcap"),
     ):
         assert pendu(*command).code == 0
     assert ["record" in vars(screen) for screen in screens] == [False, True, False, True]
+    assert screens[-1].record.keywords == {"file": Path("new.mcap")}
+    assert [screen.guide is None for screen in screens] == [True, True, True, False]
+    assert methods == [[], ["mine.py"]]
     sources = [screen.source for screen in screens]
     given, usual, equal, live = sources
     assert (given.looping, given.playhead.paused, given.playhead.position) == (True, True, 3.0)
@@ -75,12 +131,64 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(monkeypatch):
         source.close()
 
 
-def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(tmp_path):
+def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
+    tmp_path, monkeypatch
+):
+    told = []
+
+    def tell(source, *_, lesson):
+        told.append((source.recorder is not None, lesson is not None))
+
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.setattr(lab, "tell", tell)
+    for command in ("live", "live --no-record", "tour --no-record"):
+        assert pendu(*command.split(), "--plain").code == 0
+    assert told == [(True, False), (False, False), (False, True)]
+    assert len(listing(tmp_path)) == 1
+
+
+class App(SimpleNamespace):
+    """An app that ends at once."""
+
+    return_code = 0
+
+    def run(self, mouse: bool):
+        return self.result
+
+    def finish(self):
+        self.finished = True
+
+
+def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_command(monkeypatch):
+    def shown(result: object = None, **environment: str) -> int:
+        nonlocal app
+        monkeypatch.setattr(lab, "environment", lambda: {"TERM": "xterm-256color"} | environment)
+        app = App(result=result)
+        return lab.show(LabScreen(Live(DEFAULT_SCENE)), options)
+
+    def made(screen: LabScreen, terminal: TerminalOptions) -> App:
+        app.theme = terminal.theme
+        return app
+
+    app = App()
+    options = parser_of("live").parse_args([])
+    monkeypatch.setattr(lab, "background", lambda: "light")
+    monkeypatch.setattr(lab, "PenduApp", made)
+    for environment, theme in (
+        ({}, "light"),
+        ({"COLORFGBG": "15;0"}, "dark"),
+        ({"NO_COLOR": "1"}, "ansi"),
+    ):
+        assert shown(**environment) == 0
+        assert (app.theme, app.finished) == (theme, True)
+    assert shown(130) == 130
+    with pytest.raises(ZeroDivisionError):
+        shown(ZeroDivisionError())
+
+
+def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(asking, tmp_path):
     plain = tmp_path / "plain.toml"
     plain.write_text("theta = 1\n", encoding="utf-8")
-    asking = tmp_path / "asking.toml"
-    shot = "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\n"
-    asking.write_text(shot, encoding="utf-8")
     assert lesson_of(plain) is None
     assert lesson_of(asking).page.shot.question == "Why?"
 

@@ -33,12 +33,7 @@ def whole(tmp_path):
 def test_show_shows_what_a_recording_contains(whole):
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (True, False)
-    assert (answer["samples"], answer["bytes"]) == (10, whole.stat().st_size)
-    first, second = answer["runs"]
-    assert (first["scene"]["theta"], first["scene"]["h"], first["steps"]) == (2.0, 0.1, 16)
-    assert (first["inputs"], first["seconds"]) == (5, 2.5)  # set_h, speed, pause, mark, resume
-    assert (second["steps"], second["seconds"], second["run"]) == (16, 1.25, 2)
-    assert (answer["seconds"], answer["reason"]) == (4.0, None)
+    assert (answer["reason"], answer["bytes"]) == (None, whole.stat().st_size)
     whole.write_bytes(whole.read_bytes()[:-40])
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)

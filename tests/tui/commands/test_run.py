@@ -10,10 +10,10 @@ from contextlib import nullcontext
 
 import pytest
 
-from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
+from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import PENDU, needs_signals, pendu
 
 
@@ -21,21 +21,18 @@ def rows_of(line: str) -> dict[str, dict]:
     return {row["method"]: row for row in pendu("run", *line.split(), "--json").json["methods"]}
 
 
-def test_json_has_the_numbers_of_the_engine():
-    answer = pendu("run", "--time", 10, "--json").json
-    assert (answer["time"], answer["steps"]) == (10.0, 200)
-    lockstep = Lockstep(DEFAULT_SCENE)
-    lockstep.advance(200)
-    for row, reading in zip(answer["methods"], lockstep.sample().readings, strict=True):
-        assert (row["theta"], row["max_energy_error"]) == (reading.theta, reading.max_energy_error)
-
-
-def test_the_progress_of_a_run_is_shown_to_its_end(monkeypatch):
+@pytest.mark.parametrize(
+    ("command", "count", "whole"),
+    [("run --time 2 --sample-every 10", 5, 40), ("export a", 10, 4.0)],
+)
+def test_the_progress_is_shown_to_the_end(command, count, whole, tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    record(tmp_path / "a.mcap", two_runs())
     shown = []
-    show = nullcontext(lambda done, steps: shown.append((done, steps)))
-    monkeypatch.setattr("pendu_tui.tui.commands.run.progress", lambda what: show)
-    assert pendu("run", "--time", 2, "--sample-every", 10).code == 0
-    assert shown == [(step, 40) for step in (0, 10, 20, 30, 40)]
+    show = nullcontext(lambda *done: shown.append(done))
+    monkeypatch.setattr(f"pendu_tui.tui.commands.{command.split()[0]}.progress", lambda _: show)
+    assert pendu(*command.split()).code == 0
+    assert (len(shown), shown[0], shown[-1]) == (count, (0, whole), (whole, whole))
 
 
 EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=4.5", "--theta=0"]

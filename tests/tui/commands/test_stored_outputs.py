@@ -1,5 +1,6 @@
 """What the commands print, and the help of their options, word by word."""
 
+import json
 import re
 import shlex
 
@@ -22,7 +23,7 @@ run halving --time 20 --methods halving_v,verlet
 run --theta 1e-150 --time 1500 --methods explicit_euler
 run --theta 0.5,1 --h 0.05,0.1 --time 9 --methods rk4,verlet --fail-if 'rk4.slope < -1e-5'
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
-accuracy {QUICK} --methods heun --error energy
+accuracy --all --error energy --time 2 --h-values 0.2:0.05:2
 stability {FEW}
 methods rk4 backward_euler heun
 scenes crossover
@@ -32,13 +33,21 @@ recordings show cut
 recordings recover cut -o {FOLDER}/saved.mcap
 verify {FOLDER}
 verify b cut
+run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
+run --time 2 --methods rk4,verlet --json
+accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
+stability {FEW} --methods rk4 --json
+methods rk4 --json
+recordings show cut --json
+verify b cut --json
 """
 HEADS = """\
 run --time 1 --csv
 run --theta 1,2 --time 1 --csv
 accuracy {QUICK} --csv
-stability {FEW} --csv
+stability --steps 50 --z-values 0.1:3:4 --theta-values 0.5,2 --csv
 export a
+export {FOLDER}/spring.mcap
 """
 
 
@@ -55,14 +64,19 @@ def library(tmp_path, monkeypatch):
 
 def test_outputs(snapshot, library):
     texts = []
-    for lines, most in ((PRINTED, None), (HEADS, 1)):
+    for lines, most in ((PRINTED, None), (HEADS, 33)):
         for line in lines.splitlines():
             filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library.as_posix())
             outcome = pendu(*shlex.split(filled))
             shown = outcome.out.splitlines()[:most]
             texts += ["", f"$ {line}", *shown, f"[{outcome.code}] {outcome.err.strip()}"]
     text = "\n".join(each.rstrip() for each in texts)
-    text = text.replace(str(library), "FOLDER").replace("FOLDER\\", "FOLDER/")
+    for folder in (json.dumps(str(library)).strip('"'), str(library)):
+        text = text.replace(folder, "FOLDER").replace("FOLDER\\\\", "FOLDER/")
+    text = text.replace("FOLDER\\", "FOLDER/")
+    text = re.sub(r'("(wall_seconds|bytes|compiled|computed)":) .*', r"\1 N", text)
+    digits = r"(?<!x)\b\d+\.\d{12,}(e[-+]\d+)?"  # of which the last depend on the machine
+    text = re.sub(digits, lambda found: f"{float(found[0]):.4g}", text)
     text = re.sub(r"in \d+\.\d+ s$", "in N s", text, flags=re.MULTILINE)
     text = re.sub(r"\d+\.\d kB", "N kB", text)  # of a version's name and a library that compresses
     snapshot("outputs.txt", re.sub(r"computed .*", "computed X", text) + "\n")

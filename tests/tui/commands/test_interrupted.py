@@ -1,0 +1,30 @@
+"""Studies that are interrupted give what they have."""
+
+from contextlib import nullcontext
+
+import pytest
+
+from tests.tui.command_line import pendu
+
+STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
+RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 2)
+ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
+
+
+@pytest.mark.parametrize(
+    ("command", "rows", "share"),
+    [(RUNS, 4, "17 % of the runs"), (STABILITY, 6, "6 % of the swings"), (ACCURACY, 1, "4 % of")],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share):
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
+
+    def run(function, tasks):
+        yield function(next(iter(tasks)))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.workers_of", lambda _: nullcontext(run))
+    outcome = pendu(*command, "--csv")
+    assert (outcome.code, outcome.out.count("\n")) == (130, 1 + rows)
+    assert share in outcome.err
+    assert pendu(*command, "--json").json["interrupted"]
