@@ -18,7 +18,6 @@ QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tmp_path):
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     points = answer["points"]
-    assert [points[0]["valid"], points[-1]["valid"]] == [False, True]
     assert [point["method"] for point in points] == [m.key for m in USUAL_CAST] * 4
     advice = answer["recommendation"]
     assert (advice["method"], answer["interrupted"]) == ("blanes_moan_4", False)
@@ -31,7 +30,6 @@ def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tm
     assert pendu(*QUICK, "-o", file, "--workers", "2").code == 0
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
     assert [float(row["theta_error"]) for row in rows] == [point["theta_error"] for point in points]
-    assert list(rows[0]) == list(points[0])
 
 
 @pytest.mark.parametrize(("terminal", "chart"), [(60, 60), (200, 100)])

@@ -39,10 +39,7 @@ def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_
     assert first_words(pendu("verify", "golden")) == [*["identical"] * count, str(count)]
 
 
-def test_an_incomplete_recording_fails_the_check_with_its_reason(cut):
-    (found,) = pendu("verify", cut, "--json").json["files"]
-    assert (found["complete"], found["identical"]) == (False, True)
-    # the leftover of a killed lab
+def test_the_leftover_of_a_killed_lab_may_be_incomplete(cut):
     outcome = pendu("verify", cut.rename(cut.with_name("a.mcap.part")))
     assert (outcome.code, first_words(outcome)) == (0, ["identical"])
 
