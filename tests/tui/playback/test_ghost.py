@@ -16,7 +16,8 @@ def test_its_pendulums_and_errors_are_where_a_lab_with_its_step_size_would_have_
         for method, reading in zip(OTHER_H.cast, readings, strict=True):
             # one step of 0.1 s
             assert found.rods(t)[method.key] == pytest.approx(reading.theta, abs=0.7)
-    assert found.rods(16.0) == found.rods(-1.0) == {}
+    assert found.rods(15.05)  # until its next step
+    assert found.rods(15.15) == found.rods(-1.0) == {}
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
     recent = found.window(10.0, seconds=2.0)
     assert recent.x.min() == pytest.approx(10.0 - 2.0 - recent.repeats, abs=0.1)
@@ -29,6 +30,7 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live = after(DEFAULT_SCENE, 4.0)
     old = live.history.window()
     live.change(live.stepping.next(up=True))
+    live.change(live.stepping.reversed())
     live.restart()
     left = live.run_state
     assert (live.scene.h, live.scene.name) == (0.1, "drift (altered)")
@@ -36,6 +38,7 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     largest = live.ghost.window(3.0).high["energy_error"].max()
     assert largest == old.cut(0, 3.0).high["energy_error"].max()
     live.restart()
+    assert live.ghost is None
     live.start(live.scene.altered(theta=2.0))
     assert (live.scene.name, live.ghost) == ("drift (altered)", None)
     live.return_to(left)

@@ -43,11 +43,11 @@ def sample(step, error=0.0, *, low=None, high=None, run=1):
     return Sample(run, step, 0.1 * step, (reading,) * 4)
 
 
-def filled(count, capacity=64):  # small, so that few samples reach many levels
-    """A history of so many samples; each one's error is its number."""
+def filled(count, capacity=64, sign=1):  # small, so that few samples reach many levels
+    """A history of so many samples; each one's error is its number, or less than 0."""
     history = History(DEFAULT_SCENE, RewindableRun(DEFAULT_SCENE).changes, capacity)
     for step in range(count):
-        history.add(sample(step, step))
+        history.add(sample(step, sign * step))
     return history
 
 
@@ -55,10 +55,11 @@ def errors(history: History) -> list[float]:
     return history.window().high["energy_error"][:, 0].tolist()
 
 
-@given(st.integers(1, 1000), st.sampled_from([64, 128]))
-def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
-    window = filled(count, capacity).window()
-    first, last = window.low["energy_error"][:, 0], window.high["energy_error"][:, 0]
+@given(st.integers(1, 1000), st.sampled_from([64, 128]), st.sampled_from([1, -1]))
+def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity, sign):
+    window = filled(count, capacity, sign).window()
+    extremes = window.low["energy_error"][:, 0], window.high["energy_error"][:, 0]
+    first, last = [sign * each for each in extremes[::sign]]
     assert first.tolist() == [0, *(last[:-1] + 1)]
     assert last[-1] == count - 1
     assert len(window.x) <= 2 * capacity
@@ -66,7 +67,9 @@ def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
 
 
 def test_recent_samples_are_kept_as_they_were_and_a_window_reaches_back_half_a_swing_more():
-    window = filled(2000).window(1.0)
+    history = filled(2000)
+    assert not np.isnan(history.window().low["shadow_error"][:, VERLET]).any()  # but of one sample
+    window = history.window(1.0)
     assert window.x[[0, -1]] == pytest.approx([199.9 - 1.0 - window.repeats, 199.9], abs=0.1)
     assert np.allclose(np.diff(window.x), 0.1)
 
@@ -124,6 +127,9 @@ def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_sample
         history.add(later)
     errors, _ = history.since(SteppingChange(3, 0.3, Stepping(0.1), 0.3))
     assert errors == [9] * 4
+    history.add(sample(6, -7))
+    errors, _ = history.since(SteppingChange(6, 0.6, Stepping(0.1), 0.65))
+    assert errors == [7] * 4
 
 
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
@@ -208,6 +214,14 @@ def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     history.add(back._replace(step=399, t=0.05, run=2))
     history.add(back._replace(step=450, t=0.1, run=2))
     assert history.returned is None
+
+
+def test_the_last_angles_before_a_row_are_known_without_numpy():
+    history = filled(6)
+    assert history.thetas(3)[0] == (3, 4, 5)
+    history.add(sample(2))
+    assert history.thetas(9)[0] == (0, 1, 2)
+    assert history._rows is None
 
 
 def test_what_came_since_a_change_begins_behind_the_sample_at_it() -> None:

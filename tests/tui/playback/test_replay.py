@@ -10,10 +10,12 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.events import Event, simulate
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.replay import Replay
+from tests.own_methods import load
 from tests.recordings.examples import samples_of
 from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
@@ -300,6 +302,14 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
     assert table.verdicts[table.replay.scene.cast.index(said.method)] == "chaotic"
+
+
+def test_no_lab_goes_on_without_the_users_own_method(tmp_path):
+    own = load("def mine(force, phase, h):\n    while True:\n        yield phase\n")
+    scene = DEFAULT_SCENE.with_cast((own,))
+    replay = Table(recorded(tmp_path / "lab.mcap", 1.0, scene=scene)).replay
+    with pytest.raises(RecordingError, match="--method"):
+        replay.live()
 
 
 def test_a_closed_replay_stands_still(table):
