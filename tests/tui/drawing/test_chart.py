@@ -67,6 +67,12 @@ def test_charts_as_they_are_stored(snapshot):
         plot(window(t, -grows, -grows / 2, turned=True), 72, 12, log=False, names=names),
         plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=names),
         plot(window(t, grows[:, 2]), 40, 5),
+        # no error is torn by zeros, and neither the first nor the smallest fortieth is on the axis
+        plot(window(t, np.sin(6 * t) ** 2, repeats=1.0), 60, 8, places=[0], seconds=20),
+        plot(window(np.arange(41), [0, 1e-12, 1e-8, *[0.1] * 38]), 51, 8, places=[0], seconds=41),
+        # logarithmic time begins with half a swing, or two to three decades before its end
+        *(plot(window(60 * t, grows, repeats=r), 60, 8, log_time=True) for r in (0.9, 500.0)),
+        plot(window(t, grows), 59, 8, line=Line("theta_error", 0.011, "of another quantity")),
         plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
     ]
     series = [
@@ -135,37 +141,6 @@ def test_any_points_make_a_loglog_chart(data, width, height):
     assert size(picture) == (width, height)
 
 
-def test_a_line_of_largest_errors_is_not_torn_by_zeros():
-    t = np.linspace(0, 18, 400)
-    chart = plot(window(t, np.sin(6 * t) ** 2, repeats=1.0), places=[0], seconds=20)
-    shown = {column for (_, column), (_, ink) in cells(chart.picture).items() if ink == 0}
-    assert shown == {*range(min(shown), max(shown) + 1)}
-
-
-def test_of_errors_neither_zeros_at_the_start_nor_the_smallest_fortieth_are_on_the_axis():
-    errors = np.full(41, 0.1)
-    errors[:3] = 0.0, 1e-12, 1e-8
-    chart = plot(window(np.arange(41), errors), places=[0], seconds=41, width=51)
-    assert chart.at(chart.left) is None
-    assert "1e-8" in chart.picture.text
-    assert "1e-12" not in chart.picture.text
-
-
-@pytest.mark.parametrize(("repeats", "begin"), [(1.1, 1.1), (0.9, 1.0), (500.0, 120.0)])
-def test_logarithmic_time_begins_with_a_swing_or_two_to_three_decades_before_its_end(
-    repeats, begin
-):
-    times = np.linspace(0, 1200, 300)
-    ends = plot(window(times, times, repeats=repeats), log_time=True).ends
-    assert 10.0 ** np.array(ends) == pytest.approx([begin, 1200])
-
-
-def test_a_line_of_another_quantity_is_not_drawn():
-    data = window(TIMES, TIMES)
-    line = Line("theta_error", 5.0, "limit")
-    assert plot(data, line=line).picture == plot(data).picture
-
-
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
@@ -185,16 +160,6 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross():
     assert crossing.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert crossing.at(crossing.left - 1) is None
     assert crossing.at(crossing.left).t < 0.5
-
-
-def test_lines_that_lie_on_each_other_have_no_cross_nor_has_a_pass_beside_a_clearer_one():
-    t = np.linspace(0, 20, 400)
-    near = 0.01 * (1 + 0.02 * np.sin(np.pi * t / 10))
-    clear = 10.0 ** (-5 + t / 3)
-    errors = np.stack([near, np.full(400, 0.01), clear, 0.01 * 10.0 ** ((10 - t) / 20)], axis=1)
-    assert not crosses(plot(window(t, errors), places=[0, 1], seconds=20))
-    assert len(crosses(plot(window(t, errors), places=[1, 3], seconds=20))) == 1
-    assert len(set(crosses(plot(window(t, errors), places=[1, 2, 3], seconds=20)))) == 1
 
 
 @pytest.mark.parametrize(
