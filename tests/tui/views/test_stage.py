@@ -1,7 +1,6 @@
 """One pendulum with a lane for each method, its letters, and a bob under the mouse."""
 
 import math
-from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -10,7 +9,6 @@ from hypothesis import strategies as st
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, lanes, stage_picture
-from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, size
 from tests.tui.harness import lab
 
@@ -59,18 +57,6 @@ def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pa
             x, y = found.point(found.radii[0], theta)
             assert found.bob - 1e-9 <= x <= 2 * pane[0] - found.bob + 1e-9
             assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
-
-
-@pytest.mark.parametrize(("trail", "joins"), [([-1.5, 0.0, 1.5], True), ([-0.4, -0.2, 0.0], False)])
-def test_nothing_is_drawn_between_samples_a_radian_apart_or_when_steps_are_long(trail, joins):
-    found = lanes(43, 22, 1, math.pi, rigid=True)
-    bob = Bob(math.pi, 0, "e", trail=trail)
-    drawn = dots(stage_picture(43, 22, [bob], Look(joins=joins)))
-    between = [(before + after) / 2 for before, after in pairwise(trail)]
-    for theta in trail + between:
-        x, y = found.point(found.radii[0], theta)
-        near = {(i, j) for i, j in drawn if math.hypot(i + 0.5 - x, j + 0.5 - y) < 2}
-        assert bool(near) == (theta in trail)
 
 
 @given(st.floats(-100, 100), st.floats(1e-6, 0.3), st.integers(2, 8))

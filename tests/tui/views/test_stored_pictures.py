@@ -51,6 +51,9 @@ def test_stages(snapshot):
     pictures = [stage_picture(*size, bobs, each) for size, each in product(sizes, looks[:2])]
     pictures += [stage_picture(*size, springs, looks[2]) for size in sizes[:2]]
     pictures.append(stage_picture(30, 13, bobs[:1], Look(exact=0.5, exact_length=0.5)))
+    # nothing between samples a radian apart, or when steps are long
+    for trail, joins in (([-1.5, -0.6, 0.5, 1.5], True), ([-0.4, -0.2, 0.0], False)):
+        pictures.append(stage_picture(30, 13, [Bob(3.0, 0, "e", trail=trail)], Look(joins=joins)))
     snapshot("stages.txt", "\n".join(map(look, pictures)))
 
 
