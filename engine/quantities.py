@@ -45,7 +45,7 @@ THETA = Quantity(
     recorded="always",
     in_gate=True,
     head=Head("theta", 11, "theta [rad]", 13),
-    sentence="angle from the downward vertical [rad], beyond a turn, too",
+    sentence="angle from the downward vertical [rad]; it may exceed a turn",
 )
 OMEGA = Quantity(
     "omega",
@@ -70,8 +70,7 @@ ENERGY_ERROR = Quantity(
     label="energy error",
     form="+.2e",
     head=Head("dE/E0", 8, "dE/E0", 8),
-    sentence="the energy error over the start's energy. The exact pendulum keeps its energy, so "
-    "this is all error",
+    sentence="the energy error relative to the initial energy; the exact pendulum keeps its energy",
     chart=Chart("energy error dE/E0", "|dE/E0|"),
 )
 LARGEST = Quantity(
@@ -114,7 +113,9 @@ TREND = Quantity(
 )
 SLOPE = Quantity("slope", "1/s", in_gate=True)
 BOUND = Quantity("bound", "1/s", about="|slope| is below it at 99 %", in_gate=True)
-SHARE = Quantity("share", about="of the slope over the run in the width of the band", in_gate=True)
+SHARE = Quantity(
+    "share", about="what the slope adds up to, over the width of the band", in_gate=True
+)
 EVALUATIONS = Quantity(
     "force_evaluations",
     in_gate=True,

@@ -100,7 +100,7 @@ def check_target(path: Path, force: bool | None = False) -> None:
     With `force` it may be taken; None: where --force is no option.  A device or a pipe is fine.
     """
     if str(path) == "-" or is_reserved(path.name):
-        raise DiskError("is no name for a file; choose another", path)
+        raise DiskError("is not a file name; choose another", path)
     if is_stream(path):
         return
     why = "already exists; choose another name"

@@ -97,7 +97,7 @@ class EnergyDrift(_Checks):
         if order.highest < at_least:
             pytest.fail(
                 f"the energy fluctuates as {order}, not as h^{at_least:g}: "
-                "the runs do not solve the same equation better with smaller steps"
+                "smaller steps do not improve the runs as they should"
             )
         return order
 

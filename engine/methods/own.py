@@ -170,7 +170,7 @@ def guarded(function: Phases, file: str) -> Phases:
     name = getattr(inner, "__name__", "it")
     code = getattr(inner, "__code__", None)
     if code is None or not code.co_flags & CO_GENERATOR:
-        what = f"{file}: {name} is no generator function"
+        what = f"{file}: {name} is not a generator function"
         raise OwnMethodError(f"{what}; make it one that takes (force, phase, h): {FORM}.")
     where = f"{file}, line {code.co_firstlineno}"
 

@@ -77,7 +77,7 @@ CONFORMAL_VERLET = Method(
     first_same_as_last=True,
     other_names=("conformally symplectic Verlet",),
     reference="Bhatt, Floyd & Moore, J. Sci. Comput. 66 (2016) 1234",
-    note="It shrinks area by exp(-gamma h), as the motion does, wherever it is.",
+    note="A step shrinks all areas by exp(-gamma h), as the motion does.",
     models=("damped",),
     takes="parts",
 )
@@ -135,8 +135,8 @@ RESPA = Method(
     reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
     used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, "
     "MTSIntegrator]",
-    note="Its kicks resonate if h is a multiple of the fast motion's period. Counted are "
-    "evaluations of its parts.",
+    note="Its kicks resonate if h is a multiple of the fast motion's period. Evaluating "
+    "either part counts as one.",
     models=("spring",),
     takes="parts",
 )
@@ -153,8 +153,8 @@ IMEX_EULER = Method(
     reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
     used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK "
     "Methods]",
-    note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then "
-    "out of the swing.",
+    note="Stable at any h; it takes energy out of the spring, faster at larger h, and then out of "
+    "the swing.",
     models=("spring",),
     takes="parts",
 )
@@ -172,7 +172,7 @@ MEAN_FIELD_SPLITTING = Method(
     reversible=True,
     other_names=("Strang splitting",),
     reference=f"{HAIRER}, II.5",
-    note="Counted are its kicks, each of which moves the two levels exactly over the whole step.",
+    note="Its kicks are counted; each moves the two levels exactly over a whole step.",
     models=("mean_field",),
     takes="parts",
     any_numbers=False,

@@ -115,8 +115,8 @@ RK4 = Method(
     letter="r",
     hue=3,
     phases=rk4,
-    formula="y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), the slopes k at the start, twice the middle, "
-    "the end",
+    formula="y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), with slopes k at the start, twice in the "
+    "middle, and at the end",
     order=4,
     force_evaluations=4,
     linear_limit=2 * math.sqrt(2),
@@ -132,8 +132,8 @@ HEUN = Method(
     label="Heun",
     letter="w",
     phases=heun,
-    formula="y' = y + h/2 (k1 + k2), the slopes k at the start and at the end of a step of "
-    "explicit Euler",
+    formula="y' = y + h/2 (k1 + k2), with slopes k at the start and the end of an "
+    "explicit Euler step",
     order=2,
     force_evaluations=2,
     linear_limit=0.0,
@@ -149,7 +149,7 @@ EXPLICIT_MIDPOINT = Method(
     label="Explicit midpoint",
     letter="q",
     phases=explicit_midpoint,
-    formula="y' = y + h k2, the slope k2 in the middle of a step of explicit Euler",
+    formula="y' = y + h k2, with slope k2 in the middle of an explicit Euler step",
     order=2,
     force_evaluations=2,
     linear_limit=0.0,

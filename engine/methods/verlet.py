@@ -196,7 +196,7 @@ VERLET_FLOAT32 = _verlet(
     letter="n",
     numbers="all numbers rounded to 32 bits",
     keeps_area=False,
-    note="Rounding is not symplectic: the modified energy walks, by 1e-5 in 10 000 steps.",
+    note="Rounding is not symplectic: the modified energy walks at random, 1e-5 in 10 000 steps.",
     epsilon=2.0**-24,
     used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions "
     "and Units]",
@@ -208,7 +208,7 @@ VERLET_COMPENSATED = _verlet(
     other_names=("Verlet with compensated sums",),
     label="Kahan Verlet",
     letter="k",
-    numbers="each sum keeps what it rounds off for the next",
+    numbers="each sum carries its rounding error to the next",
     keeps_area=True,
     note="Each sum takes three more additions.",
 )
@@ -251,12 +251,12 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
     return Method(
         **fields,
         phases=halving(richardson),
-        formula="a step of velocity Verlet, and two halves: if they differ by more than "
+        formula="a step of velocity Verlet and two half steps: if they differ by more than "
         f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
-        note="Its force evaluations, which equal cost uses, are the mean of a minute of the scene "
-        "halving. An undivided step takes six, and the order is that of undivided steps.",
+        note="Its force evaluations, which equal cost uses, are the mean over a minute of the "
+        "scene halving. An undivided step takes six; the order is that of such steps.",
         models=("pendulum", "linear"),
         any_numbers=False,
         varies=True,
@@ -269,7 +269,7 @@ HALVING_VERLET = _halving(
     letter="h",
     other_names=("adaptive Verlet",),
     richardson=False,
-    ends="the halves count",
+    ends="the half steps are kept",
     order=2,
     force_evaluations=8,
 )
@@ -280,7 +280,7 @@ HALVING_RICHARDSON = _halving(
     letter="a",
     other_names=("extrapolated Verlet",),
     richardson=True,
-    ends="they are extrapolated to h = 0",
+    ends="both extrapolate to h = 0",
     order=4,
     force_evaluations=7,
 )

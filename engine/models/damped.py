@@ -46,7 +46,7 @@ class DampedPendulum(Pendulum):
     conserves_energy = False
     error = ENERGY_RATIO
     caption = "curves of equal energy; damped motion crosses them inwards"
-    without_force = "Maps and studies are for a pendulum that keeps its energy; friction takes it."
+    without_force = "Maps and studies are for a pendulum with no friction, which keeps its energy."
     exact = Model.exact
 
     def rates(self, sin: Sine = math.sin) -> Rates:

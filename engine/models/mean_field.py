@@ -82,7 +82,7 @@ class MeanField(Model):
     caption = "a projection: angle and angular velocity, without the two levels"
     without_force = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
     without_ring = (
-        "A projection of five dimensions to two: no curves and no ring of neighbouring starts."
+        "A projection of five dimensions onto two: no curves and no ring of neighbouring starts."
     )
 
     @property

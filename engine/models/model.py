@@ -84,7 +84,7 @@ class EnergyReference(NamedTuple):
 ENERGY_RATIO = ENERGY_ERROR._replace(
     label="ln(E/E_true)",
     head=Head("ln E/Et", 8, "ln E/Et", 8),
-    sentence="the logarithm of the energy over that of the exact motion, which loses energy, too",
+    sentence="the logarithm of the energy over that of the exact motion, which also falls",
     chart=Chart("ln(E/E_true)", "|ln(E/E_true)|"),
 )
 """The energy error of a model that does not conserve its energy."""

@@ -30,16 +30,16 @@ RESTS = (0.75, 0.625, 0.5, 0.375, 0.25)  # shares up to the end in which it may 
 ENDS = (8, 16, 32)  # parts of the bins of which the last must be like the others
 
 FEW = "{need} samples are needed"
-OPEN = "a trend is not excluded; {longer}"
-WALKS = "it cannot be told from a walk over this record; a longer one may not help"
+OPEN = "a trend cannot be excluded; {longer}"
+WALKS = "it cannot be told from a random walk; a longer record may not help"
 UNLIKE_END = "its end is unlike the rest"
 WIDENS = "its band widens"
 TURNED = "it has turned back"
-RETURNS = "the energy of a symplectic method comes back, but it has not yet"
-BEATS = "with so few steps a turn the error beats with the steps"
-NEAR = "its band has left the start, by less than half its width"
+RETURNS = "the energy of a symplectic method comes back, but has not yet"
+BEATS = "with so few steps per turn the error shows beats"
+NEAR = "its band has left the start, but by less than half its width"
 SHORT = "a slow drift takes longer to show"
-LONGER = "about {factor:.2g} times as long would decide"
+LONGER = "a record {factor:.2g} times as long would decide"
 UNKNOWN = "a longer record may decide"
 
 # Only in a run.  z is h·w0 times the longest substep; errors are relative energy errors.

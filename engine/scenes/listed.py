@@ -70,7 +70,7 @@ _FIRST_LOOK = (
         theta=0.0,
         omega=8.0,
         h=0.02,
-        watch="A turn a second: symplectic Euler errs by half a kick, not in the angle.",
+        watch="One turn a second: symplectic Euler is half a kick off in omega, not in theta.",
         shot=Shot(front=("symplectic_euler", "velocity_verlet")),  # on one ray, errors far apart
     ),
 )
@@ -89,7 +89,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=1.98,
         speed=16.0,
-        watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
+        watch="Just below z = 2: every 11 steps Verlet loses and regains 98 % of its energy.",
         shot=Shot(
             log=False,
             seconds=60.0,
@@ -176,8 +176,8 @@ _STABILITY = (
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
         watch="4 steps a swing: Verlet's energy doubles and comes back. Press - to avoid this.",
-        often_said="h over the golden ratio avoids resonances because it is irrational. 5/8 of h "
-        "does, too: it is far from the resonance that counts.",
+        often_said="h over the golden ratio avoids resonances because that is irrational. So does "
+        "5/8 of h: it is far from the resonance that counts.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )
@@ -192,8 +192,8 @@ _STRUCTURE = (
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
         watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
-        often_said="RK4 is to be preferred where energy is lost. True from an accuracy of 0.1 % "
-        "on; at 1 % conformal Verlet costs half.",
+        often_said="RK4 is better where energy is lost. True for an accuracy of 0.1 % or better; "
+        "at 1 % conformal Verlet costs half.",
     ),
     Scene(
         "halving",
@@ -244,7 +244,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="One step per period of the spring: RESPA resonates, implicit midpoint holds.",
-        often_said="With impulses h follows the slow motion. But not where it comes near the "
+        often_said="With impulses only the slow motion limits h. But h must not come near the "
         "spring's period.",
     ),
 )
@@ -284,7 +284,7 @@ _LEARNING = (
         speed=8.0,
         watch="In 100 s field and map lose 60 % of the energy; H and SympNet err by under 1 %.",
         often_said="A learned Hamiltonian conserves energy. It conserves the learned one; the true "
-        "one errs by a percent.",
+        "one is off by a percent.",
         # the field lies on the map, H on SympNet
         shot=Shot(front=("learned_map", "learned_symplectic_map", "rk4")),
     ),

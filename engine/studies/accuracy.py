@@ -36,7 +36,7 @@ ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 Flaw = Literal["lost", "rounding"]
 REASONS: dict[Flaw, str] = {
     "lost": "no digit is right",
-    "rounding": "made of rounding: a smaller h no longer reduces it",
+    "rounding": "rounding error: a smaller h no longer reduces it",
 }
 Errors = Mapping[ErrorKind, float]
 """The largest errors in theta [rad] against the exact swing, and in energy, relative, of all steps;

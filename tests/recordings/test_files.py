@@ -128,7 +128,7 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypat
         (taken, None, "name$"),
         (tmp_path, True, "name$"),
         (tmp_path / "no" / "a.mcap", True, "does not exist"),
-        (files.Path("-"), True, "no name for a file"),
+        (files.Path("-"), True, "not a file name"),
     ):
         with pytest.raises(DiskError, match=why) as refused:
             files.check_target(path, force)
@@ -144,7 +144,7 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypat
 @pytest.mark.parametrize("name", ["con.mcap", "LPT1.csv", "nul .svg"])
 def test_a_name_that_windows_keeps_for_a_device_is_refused_there(tmp_path, monkeypatch, name):
     monkeypatch.setattr(sys, "platform", "win32")
-    with pytest.raises(DiskError, match="is no name for a file"):
+    with pytest.raises(DiskError, match="not a file name"):
         files.check_target(tmp_path / name)
     files.check_target(tmp_path / "console.mcap")
 

@@ -131,7 +131,7 @@ verdicts:
         more="""\
 FILE is a log or table from any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
 .npz, …, also compressed.  Without options its tables and columns are listed, and the energy is
-judged if it is certain which column it is.  Results have the units of the file's headers.
+judged if it is clear which column holds it.  Results have the units of the file's headers.
 The verdict failed means exit code 1.
 """,
     ),

@@ -52,7 +52,7 @@ class Parser(argparse.ArgumentParser):
     ) -> Any:
         """Parse the arguments; optional words, such as SCENE, may also come after options."""
         if any(each.endswith("=--") for each in arguments):  # of which Python 3.11 makes a list
-            self.error("-- is no value")
+            self.error("-- is not a value")
         is_mixed = any(each.nargs == "?" and not each.option_strings for each in self._actions)
         if is_mixed and not {"-h", "--help"} & {*arguments}:  # it would change the help's text
             return self.parse_intermixed_args(arguments, namespace)
@@ -169,7 +169,7 @@ def scale(text: str) -> tuple[float | str | None, str | None]:
         return positive(text), None
     except ValueError:
         raise ValueError(
-            f"{text[:40]!r} is none of first, std, kinetic:COLUMN and a positive number"
+            f"{text[:40]!r} is not first, std, kinetic:COLUMN or a positive number"
         ) from None
 
 

@@ -137,7 +137,7 @@ def read_scenes(path: Path) -> dict[str, Scene]:
         isinstance(tables, list)
         and all(isinstance(each, dict) and (each or given) for each in tables)
     ):
-        why = f"{path} describes no scene; give fields of scenes --json, each below [[scene]]."
+        why = f"{path} describes no scene; use [[scene]], then fields as in scenes --json."
         raise UserError(why, Exit.INPUT_UNREADABLE)
     heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
     heads += [0] * len(tables)

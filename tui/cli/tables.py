@@ -25,7 +25,7 @@ LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
 MIXED = (
-    "most of its rows have another number of columns than its head, or no later time than those "
+    "most of its rows differ from its head in the number of columns, or are not later than those "
     "before; name the column of times with --time, or keep one table and one method, for example "
     "with grep."
 )
@@ -377,7 +377,7 @@ class Series:
             why = f"it has times from {whole[0]:g} to {whole[-1]:g} {self.units[0]}".rstrip()
             why += f", none from {begin:g} to {last:g}."
             if self.diverged_at is not None:
-                why = f"at {self.diverged_at:g} its energy is nan, infinite or too large already; "
+                why = f"at {self.diverged_at:g} its energy is already nan, infinite or too large; "
                 why += "begin later with --from, or repeat it with smaller steps."
             raise unreadable(why)
         self.times = times[used]

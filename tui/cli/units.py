@@ -131,7 +131,7 @@ def quantity(text: str) -> Moment:
 def _unit_of_time(unit: str) -> str:
     """Return a unit of time.  Raises ValueError if it is not known."""
     if not plain("time", unit):
-        raise ValueError(f"{unit!r} is no known unit of time; use for example fs, ps or ns")
+        raise ValueError(f"{unit!r} is not a known unit of time; use for example fs, ps or ns")
     return unit
 
 
@@ -144,5 +144,7 @@ def assignments(text: str) -> dict[str, str]:
     if "time" in found:
         _unit_of_time(found["time"])
     if is_of_another_kind(found.get("energy", "")):
-        raise ValueError(f"{found['energy']!r} is no unit of energy; use for example eV or kJ/mol")
+        raise ValueError(
+            f"{found['energy']!r} is not a unit of energy; use for example eV or kJ/mol"
+        )
     return found

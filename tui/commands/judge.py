@@ -80,10 +80,10 @@ def _check(options: argparse.Namespace) -> None:
     are_fit = len(set(steps)) > 1 and len(steps) == len(options.files)
     if (steps or len(options.files) > 1) and not are_fit:
         raise UserError(
-            "several files take --steps, one for each and not all the same, such as --steps 1,2."
+            "several files need --steps, one for each and not all the same, such as --steps 1,2."
         )
     if "time" in options.units and (options.step or ("", ""))[1]:
-        raise UserError("--step has the unit of time already; leave out time= of --units.")
+        raise UserError("--step already gives the unit of time; leave time= out of --units.")
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
 
@@ -131,7 +131,7 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
         why = f"{error.strerror or error}; give a log or a table, or - for stdin."
         raise unreadable(why) from None
     if not found:
-        raise unreadable("no row of numbers is in it.")
+        raise unreadable("it has no row of numbers.")
     return found
 
 

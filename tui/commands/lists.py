@@ -25,9 +25,9 @@ MEASURED = (
     "measured_force_evaluations",
 )
 NOTE = """
-order: of the theta error over half a period, as measured; claimed: by whoever wrote the method.
+order: of the theta error over half a period, as measured; claimed: by its author.
 evals: force evaluations per step, on average if they vary.
-z limit: for the linear oscillator, z = h·w0; pendu-tui stability has those of the pendulum."""
+z limit: for the linear oscillator, z = h·w0; pendu-tui stability finds those of the pendulum."""
 
 Row = dict[str, Any]
 

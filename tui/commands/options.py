@@ -152,7 +152,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--speed": option("X", "multiple of real time (default: the scene's; replay: 1)", positive),
     "--equal-cost": flag(
-        "give all methods equally many force evaluations: cheaper ones take smaller steps"
+        "give all methods the same number of force evaluations: cheaper ones take smaller steps"
     ),
     "--start-at": option(
         "S", "start S seconds into the recording (%(default)g)", number, default=0.0
@@ -192,13 +192,13 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--error": option(
         None,
-        "largest angle error [rad], largest energy error or last angle error (%(default)s)",
+        "largest angle error [rad], largest energy error or final angle error (%(default)s)",
         choices=("theta", "energy", "final"),
         default="theta",
     ),
     "--cost": option(
         None,
-        "what counts as cost (%(default)s); seconds without Numba if a method is your own",
+        "what counts as cost (%(default)s); a method of your own is timed without Numba",
         choices=("evaluations", "seconds"),
         default="evaluations",
     ),
@@ -209,12 +209,12 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--theta-values": option(
         "LIST",
-        f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; for a map 100)",
+        f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; 100 for a map)",
         values(above_zero(angle, math.pi)),
     ),
     "--z-values": option(
         "LIST",
-        f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 in steps of 1 %%; for a map 200 up to 3)",
+        f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 in steps of 1 %%; 200 up to 3 for a map)",
         values(above_zero(number, Z_LIMITS[1])),
     ),
     # gates

@@ -121,7 +121,7 @@ def _recover(options: argparse.Namespace) -> Report:
     saved = counted(result["samples_kept"], "sample")
     lost = f"{result['entries_lost']} samples and events, and {counted(result['runs_lost'], 'run')}"
     why = result["reason"] or "it was complete"
-    notes = [f"{result['out']}: {saved} saved; {lost} lost between them: {why}."]
+    notes = [f"{result['out']}: {saved} saved; {lost} lost: {why}."]
     return Report(name="recordings-recover", fields=result, notes=notes)
 
 

@@ -146,10 +146,10 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    yield "\nPendulum: the z from which a swing is lost within so many steps; more steps lower it."
+    yield "\nPendulum: the smallest z that loses a swing within so many steps; more steps lower it."
     yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
-    yield "The scene's own amplitude is among them, if it swings."
+    yield "The amplitudes include the scene's own, if it swings."
 
 
 def _columns(scene: Scene, steps: int) -> list[Column]:

@@ -227,7 +227,7 @@ class CastForm(Form[Scene]):
     def compose(self) -> ComposeResult:
         listed = Choices(*map(self._line, self._methods), id="cast")
         listed.border_title = f"Methods for the model {self._scene.model}, 1 to {MAX_METHODS}"
-        listed.border_subtitle = "Space takes or leaves one, Enter starts, Esc cancels"
+        listed.border_subtitle = "Space adds or removes one, Enter starts, Esc cancels"
         yield listed
 
     def _line(self, method: Method) -> Text:
@@ -258,7 +258,7 @@ class CastForm(Form[Scene]):
         if self.cast:
             self.dismiss(self._scene.with_cast(self.cast))
         else:
-            self.notify("Take at least one method.")
+            self.notify("Choose at least one method.")
 
 
 class StartForm(Form[Scene]):

@@ -236,7 +236,7 @@ class Pane(CellWidget):
         """Show why a computation failed; the lab goes on."""
         error = event.worker.error
         if error is not None and event.state is WorkerState.ERROR:
-            self.failure = f"{computing_failed(error)} Show this view again, and it tries again."
+            self.failure = f"{computing_failed(error)} Open this view again to retry."
 
     def retry(self) -> None:
         """Compute again what failed."""

@@ -15,17 +15,16 @@ WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
-    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z "
-    "of their own",
+    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Beyond its limit in z a method is "
+    "unstable",
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
-    "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns "
-    "(rotation)",
+    "E/Es": "the energy over that of the separatrix: libration (swings) below 1, rotation above",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
-    "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its "
-    "place and its key",
+    "colours": "each method keeps its colour and its letter everywhere; its digit is its place, "
+    "and the key that hides it",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
-    "dim": "the run before r, with its own step",
+    "dim": "the run before the restart (r), with its own step",
 }
 HEADS = {
     **GLOSSARY,
@@ -59,9 +58,9 @@ def method_card(method: Method) -> str:
         stable = "at any h (small swings)"
     elif limit:
         stable = f"up to z = h w0 = {limit:.4g} (small swings)"
-    order = "none: the error does not fall with h, it solves another equation"
+    order = "none: the error does not fall with h; the method solves the wrong equation"
     if method.order:
-        order = f"{method.order}: as a rule, over one swing half of h divides the error by "
+        order = f"{method.order}: as a rule, halving h divides a swing's error by "
         order += f"{2**method.order}"
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
     if method.varies:
@@ -92,7 +91,7 @@ def scene_card(scene: Scene) -> str:
     reference = None
     if exact.accuracy and scene == SCENES.get(scene.name):
         accuracy = f"theta right to {exact.accuracy:g} rad for a minute"
-        reference = f"no closed form: Kahan & Li's method of order 8, {accuracy}"
+        reference = f"Kahan & Li's method of order 8, {accuracy}; no closed form"
     lines = {
         "watch": scene.watch,
         "often said": scene.often_said,

@@ -93,7 +93,7 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str]) -> Insight:
             miss = FAILED
         if method.key not in hidden:
             misses.append(f"{method.letter} {miss}")
-    text = f"Back at t = 0; off in angle and speed [rad]: {', '.join(misses)}."
+    text = f"Back at t = 0; distance from the start [rad]: {', '.join(misses)}."
     return Insight("returned", text)
 
 
@@ -158,7 +158,7 @@ def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
     name = short_name(milestone.method)
     at = seconds(milestone.t)
-    text = f"{name} failed at {at}: its energy error is no longer finite."
+    text = f"{name} failed at {at}: its numbers have broken down."
     if milestone.other:
         other = short_name(milestone.other)
         text = f"{name}'s error passed {other}'s at {at}: smaller at first, it kept growing."

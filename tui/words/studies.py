@@ -76,7 +76,7 @@ def orbit_words(method: Method, kind: OrbitKind) -> str:
     if not kind.rotation or kind.fraction is None:
         if shape.startswith("It"):
             return f"{shape}: no rotation number, since that changes on the way."
-        return f"Undecided in {kind.steps} steps: regular so far, but without one rotation number."
+        return f"Undecided in {kind.steps} steps: regular so far, but with no definite rotation."
     over = " over the top" if kind.spins else ""
     turns, steps = kind.fraction.as_integer_ratio()
     if kind.island:

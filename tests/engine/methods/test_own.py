@@ -111,7 +111,7 @@ def test_it_is_never_compiled():
 WRONG = {
     "a step instead of a generator": (
         f"def mine(force, phase, h):\n    theta, omega = phase\n    {EULER}\n    return theta, omega",
-        "mine is no generator function; make it one that takes (force, phase, h)",
+        "mine is not a generator function; make it one that takes (force, phase, h)",
     ),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
     "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run"),

@@ -57,7 +57,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("run --time --h 0.1", 2, "--time: expected one argument"),
         ("run --time 1 drift more", 2, "unrecognized arguments: more"),
         ("--h 0.1 run", 2, "there is no scene 'run'"),
-        ("--theta=--", 2, "-- is no value"),
+        ("--theta=--", 2, "-- is not a"),
         *((f"{name} x --json", 2, new) for name, new in DROPPED.items()),
     ],
 )

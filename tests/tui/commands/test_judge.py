@@ -119,7 +119,7 @@ def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
     assert guess(text, "--atoms", 10).refused(2, "--step 0.5fs")
     assert guess(text, "--temperature", 5).refused(2, "belongs to --atoms")
     twice = ("--step", "0.5fs", "--units", "time=ps,energy=eV")
-    assert guess(text, *twice).refused(2, "--step has the unit", "leave out time=")
+    assert guess(text, *twice).refused(2, "--step already gives", "leave time= out")
     assert guess(text, "--step", 2, "--units", "time=ps", "--json").json["time_unit"] == "ps"
     for option in (("--step", "0"), ("--step", "fs")):
         assert guess(text, *option).refused(2, option[0])
@@ -240,12 +240,12 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         (TABLE, "t E+Energy", 2, "there is no column 'Energy'; choose from t, E"),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
         ("1 2\n", "1 2+", 2, "there is no column ''"),
-        (WIDER, "1 2", 3, "another number of columns"),
+        (WIDER, "1 2", 3, "the number of columns"),
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
         ("1 2\n", "t E", 2, "choose from 1, 2"),
         (TABLE, "t E+t", 2, "t is both the time and an energy"),
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
-        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is nan, inf"),
+        ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is already nan"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
