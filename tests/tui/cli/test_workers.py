@@ -90,10 +90,6 @@ def test_workers_that_die_are_lost():
     assert lost.value.code == Exit.INPUT_UNREADABLE
 
 
-def test_there_are_workers_or_a_cluster():
-    assert pendu(*RUNS, "--workers", "2", "--dask", "tcp://x:1").refused(2, "not allowed")
-
-
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert pendu(*RUNS, "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")

@@ -54,6 +54,8 @@ def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path):
     passed = pendu(*own, "order < 0 or symplectic != yes or force_evaluations > 2")
     assert (passed.code, passed.err) == (0, "")
     assert "does not fall with h" in passed.out
+    (line,) = (line for line in passed.out.splitlines() if line.startswith("broken "))
+    assert line.split() == ["broken", "-", "0.008", "2", "yes", "no", "2.000"]
 
 
 def test_the_gate_of_a_right_method_passes():

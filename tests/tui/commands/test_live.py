@@ -42,6 +42,7 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert path.read_bytes() == b"precious"
     monkeypatch.setattr(lab, "check_terminal", lambda: None)
     assert pendu("live", "--record", path).refused(5, *taken)  # before the screen
+    assert pendu("live", "--record", path, "--no-record").refused(2, "not allowed with")
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
     assert pendu("live", "--plain").refused(5, str(path))
 
@@ -74,10 +75,10 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path,
 
     monkeypatch.setattr(lab, "still", still)
     monkeypatch.chdir(tmp_path)
-    look = ("--theme", "light", "--pixels", "half")
-    picture = ("snapshot", "spin", "--time", 3, "--size", "60x16", *look)
+    monkeypatch.setenv("COLORFGBG", "0;15")  # which is light
+    picture = ("snapshot", "spin", "--time", 3, "--size", "60x16", "--pixels", "half")
     assert pendu(*picture).code == 0
-    asked = (SCENES["spin"], 3.0, (60, 16), TerminalOptions("light", "half"))
+    asked = (SCENES["spin"], 3.0, (60, 16), TerminalOptions("dark", "half"))
     assert Path("spin.svg").read_text(encoding="utf-8") == str(asked)
     assert pendu(*picture).refused(5, "--force")
 

@@ -55,7 +55,9 @@ def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path, monkeypatc
         assert len(pendu("recordings", "show", path, "--json").json["runs"]) == runs
 
 
-def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whole, tmp_path):
+def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
+    whole, tmp_path, monkeypatch
+):
     out = tmp_path / "saved.mcap"
     recover = ("recordings", "recover", whole, "-o", out)
     whole.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
@@ -68,7 +70,10 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(whol
     again = pendu("recordings", "recover", out, "-o", tmp_path / "again.mcap")
     assert "it was complete" in again.out
     saved = out.read_bytes()
-    assert pendu("recordings", "recover", out, "-o", out, "--force").refused(2, "another name")
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    itself = ("recordings", "recover", "saved", "-o", "saved.mcap", "--force")
+    assert pendu(*itself).refused(2, "another name")
     assert out.read_bytes() == saved
 
 
@@ -131,8 +136,9 @@ def test_of_many_scenes_the_first_is_named(library):
 
 
 def test_export_to_stdout_is_the_file(tmp_path):
-    pendu("export", "drift", "-o", tmp_path / "a.csv")
-    assert pendu("export", "drift").out == (tmp_path / "a.csv").read_text()
+    pendu("export", "drift", "-o", tmp_path / "a.CSV")
+    assert pendu("export", "drift").out == (tmp_path / "a.CSV").read_text()
+    assert pendu("export", "drift", "-o", os.devnull).code == 0
     assert pendu("export", "drift", "-o", tmp_path / "a.parquet").refused(2, "a.csv")
 
 

@@ -25,7 +25,7 @@ run --theta 0.5,1 --h 0.05,0.1 --time 9 --methods rk4,verlet --fail-if 'rk4.slop
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
 accuracy --all --error energy --time 2 --h-values 0.2:0.05:2
 stability {FEW}
-methods rk4 backward_euler heun
+methods explicit_e symplectic rk4 heun forest_ruth backward_euler halving_verlet
 scenes crossover
 recordings
 recordings show a
