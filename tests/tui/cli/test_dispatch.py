@@ -16,7 +16,6 @@ from pendu_tui.engine.models import NUMBERS
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
-from pendu_tui.tui.commands import options
 from tests.tui.command_line import PENDU, pendu
 
 
@@ -151,18 +150,6 @@ def test_every_option_is_explained_and_the_parser_takes_the_examples():
         for example in examples:
             word, words = split(shlex.split(example.split("|")[0])[1:])
             parser_of(word).parse_args(words)
-
-
-def test_every_row_of_the_table_belongs_to_a_command():
-    asked = set()
-    for name in COMMANDS:
-        names = COMMANDS[name].options.split()
-        for each in names:
-            key = f"{name} {each}"
-            asked |= {key, each}
-            group = options.GROUPS.get(key) or options.GROUPS.get(each) or ((),)
-            names += group[-1]
-    assert {*options.OPTIONS, *options.GROUPS} <= asked
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -34,25 +34,22 @@ def test_show_shows_what_a_recording_contains(whole):
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (True, False)
     assert (answer["reason"], answer["bytes"]) == (None, whole.stat().st_size)
-    whole.write_bytes(whole.read_bytes()[:-40])
+    data = bytearray(whole.read_bytes())
+    whole.write_bytes(data[:-40])
     answer = pendu("recordings", "show", whole, "--json").json
     assert (answer["complete"], answer["damaged"]) == (False, False)
-    data = bytearray(whole.read_bytes())
-    data[0] ^= 1
+    data[20] ^= 1
     whole.write_bytes(data)
-    assert pendu("recordings", "show", whole, "--json").json["damaged"]
+    damaged = f"{whole}: damaged: its checksum is wrong\n"
+    assert pendu("recordings", "show", whole).out.startswith(damaged)
 
 
-def test_show_tabulates_the_first_500_runs_and_json_has_all(tmp_path, monkeypatch):
-    for runs, more in ((500, ""), (503, "and 3 runs more")):
-        monkeypatch.setattr(hostile, "MANY", runs + 1)
-        path = tmp_path / f"{runs}.mcap"
-        hostile.write(path, hostile.runs())
-        out = pendu("recordings", "show", path).out
-        assert more in out
-        assert ("runs more" in out) == (runs > 500)
-        assert (hostile.unlike(500)[:8] in out, hostile.unlike(501)[:8] in out) == (True, False)
-        assert len(pendu("recordings", "show", path, "--json").json["runs"]) == runs
+@pytest.mark.parametrize(("most", "more"), [(1, 1), (2, 0)])
+def test_show_tabulates_so_many_runs_at_most(most, more, whole, monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.commands.recordings.MAX_RUNS", most)
+    out = pendu("recordings", "show", whole).out
+    assert out.count("\n  1  test ") + out.count("\n  2  test ") == most
+    assert (f"\nand {more} runs more; --json" in out) == bool(more)
 
 
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
@@ -74,6 +71,10 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
     monkeypatch.chdir(tmp_path)
     itself = ("recordings", "recover", "saved", "-o", "saved.mcap", "--force")
     assert pendu(*itself).refused(2, "another name")
+    lost = {"samples_kept": 1, "entries_lost": 3, "runs_lost": 1, "reason": None, "out": "new"}
+    monkeypatch.setattr("pendu_tui.tui.commands.recordings.recover", lambda *_: lost)
+    told = "new: 1 sample saved; 3 samples and events, and 1 run lost: it was complete."
+    assert pendu(*itself[:-2], "new").out == f"{told}\n"
     assert out.read_bytes() == saved
 
 
@@ -113,12 +114,13 @@ def test_a_recording_that_cannot_be_read_is_listed_with_what_is_wrong(library):
     reasons = {Path(row["file"]).name: row["reason"] for row in rows}
     assert "its end is missing" in reasons["a.mcap"]
     assert "this version reads 3" in reasons["b.mcap"]
+    assert {row["seconds"] for row in rows} == {4.0, None}
     assert "its end is missing" in pendu("recordings").out
 
 
 def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "nothing"))
-    assert "0 recordings in" in pendu("recordings").out
+    assert pendu("recordings").out == f"0 recordings in {tmp_path / 'nothing'}\n"
     assert not (tmp_path / "nothing").exists()
 
 

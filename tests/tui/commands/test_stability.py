@@ -10,15 +10,6 @@ def line_of(out, *words):
     return line.split()
 
 
-def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
-    few = ("stability", "--steps", 5, "--z-values", "0.01,0.02", "--theta-values", 1, "--h", 0.005)
-    answer = pendu(*few, "--json").json
-    assert (answer["steps"], answer["interrupted"]) == (5, False)
-    rows = answer["pendulum"]
-    assert {row["first_failure_z"] for row in rows} == {None}
-    assert pendu(*few).out.splitlines()[-1].split()[2:] == [*"----"]
-
-
 def test_a_file_of_csv_holds_what_csv_prints(tmp_path):
     file = tmp_path / "map.csv"
     small = ("stability", "--steps", 30, "--z-values", "0.5,2.5", "--theta-values", "0.5,2")
