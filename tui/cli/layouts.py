@@ -153,17 +153,18 @@ LAYOUTS = (
 """The layouts, in the order in which they are tried on a line."""
 
 ROLES = (
-    ("time", r"time|t"),
     ("time", r"sim(ulat(ion|ed))?time|mdtime|currenttime"),
+    ("time", r"time|t"),  # of the wall clock, beside these
     ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle|row"),
     ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
     ("conserved", r"conserved(en(ergy)?)?"),
     ("conserved", r"econs"),
     (
         "total",
-        r"e?tote?|e?total(e|ene|energy)?|e(nergy)?tot(al)?|tote(ng|ner|nergy)|etot(al)?(n|peratom)",
+        r"e?tote|etot|etotal|e?total(e|ene|energy)|energytot(al)?|tote(ng|ner|nergy)"
+        r"|etot(al)?(n|peratom)",
     ),
-    ("total", r"e|ener(gy)?"),
+    ("energy", r"e|ener(gy)?|tot(al)?|mechanical(energy)?"),  # or another quantity
     (
         "kinetic",
         r"(tot|md|current)?(ke|e?k|e?kin|kineng|e?kinetic(e|en|ene|energy)?|energykinetic|ektot)",
@@ -196,4 +197,4 @@ def role(name: str) -> tuple[str, int]:
 
 
 def is_energy(name: str) -> bool:
-    return role(name)[0] in ("conserved", "total", "kinetic", "potential")
+    return role(name)[0] in ("conserved", "total", "energy", "kinetic", "potential")

@@ -17,8 +17,16 @@ import numpy as np
 
 from pendu_tui.engine.run.verdicts import TOO_LARGE
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.layouts import role
-from pendu_tui.tui.cli.units import Moment, is_of_another_kind, plain, shown, size, split_unit
+from pendu_tui.tui.cli.layouts import key, role
+from pendu_tui.tui.cli.units import (
+    Moment,
+    is_of_another_kind,
+    is_same,
+    plain,
+    shown,
+    size,
+    split_unit,
+)
 
 ROUNDING = 2e-15  # relative, of a converted time
 LATEST = 1e300  # of times; squares and differences of later ones overflow
@@ -30,6 +38,9 @@ MIXED = (
     "with grep."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
+CLEARLY = 2  # times smaller is the standard deviation of what is steadier
+OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N"}}
+"""Columns that are no counts, beside which it is an eccentricity, or East."""
 Group = tuple[int, ...]
 """Columns to add up."""
 
@@ -76,7 +87,7 @@ def choose(
     if not wanted.time:
         time = _time(names, samples, excluded=energy or ())
     if not wanted.energy:
-        energy = _energy(names, units, excluded=time or ())
+        energy = _energy(names, units, samples, excluded=time or ())
     guessed = {"the time": time, "the total energy": energy}
     doubt = " and ".join(what for what, group in guessed.items() if group is None)
     return Choice(time or (), energy or (), kinetic or (), doubt)
@@ -140,20 +151,58 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
     return _only(rising) if is_even or not names[rising[0]] else None
 
 
-def _energy(names: Sequence[str], units: Sequence[str], excluded: Group) -> Group | None:
+def _energy(
+    names: Sequence[str], units: Sequence[str], samples: Sequence[Any], excluded: Group
+) -> Group | None:
     """Return the columns whose sum is the conserved energy, None if that is not certain."""
     places = [place for place in range(len(names)) if place not in excluded]
     if not any(names[place] for place in places):
         return _only(places)
-    fit = (place for place in places if not is_of_another_kind(units[place]))
-    best = _by_role(names, fit)
+    best = _by_role(names, [place for place in places if not is_of_another_kind(units[place])])
     for kind in ("conserved", "total"):
         if kind in best:
             return _only(best[kind])
-    parts = best.get("kinetic", ()) + best.get("potential", ())
-    if len(best.get("kinetic", ())) == 1 and len(parts) == 2:
-        return parts if units[parts[0]] == units[parts[1]] else None
+    kinetic = best.get("kinetic", ())
+    parts = kinetic + best.get("potential", ())
+    has_parts = len(kinetic) == 1 and len(parts) == 2
+    if found := best.get("energy"):
+        bare = [split_unit(name)[0] for name in names]
+        others = {bare[n] for n, sample in enumerate(samples) if np.mod(sample, 1).any()}
+        is_other = others & OTHER_E.get(bare[found[0]], set())
+        is_sum = not has_parts or _is_sum(samples, found + parts)
+        is_certain = is_sum and not is_other and not _lacks(samples, found, kinetic)
+        return _only(found) if is_certain else None
+    if has_parts:
+        further = best.get("", ())
+        is_whole = is_same(*(units[place] for place in parts))
+        if any("energ" in key(names[place]) for place in further):
+            is_whole &= _lacks(samples, kinetic, parts[1:])  # they balance
+        return parts if is_whole and not _lacks(samples, parts, further) else None
     return _only(best.get("error", ()))
+
+
+def _is_sum(samples: Sequence[Any], places: Group) -> bool:
+    """Return whether a total is the sum of two columns, or steadier, but no constant."""
+    total, *parts = _first(samples, places)
+    error = np.abs(total - sum(parts)).max(initial=0)
+    is_near = error <= 0.01 * np.abs(parts).max(initial=0)
+    return bool(is_near or 0 < np.ptp(total) < np.ptp(sum(parts)))
+
+
+def _lacks(samples: Sequence[Any], places: Group, others: Group) -> bool:
+    """Return whether one of the other columns makes the sum of these clearly steadier."""
+    for other in others:
+        *_, before, after = _first(samples, (*places, other)).cumsum(axis=0)
+        if len(after) > 2 and CLEARLY * np.std(after) < np.std(before):
+            return True
+    return False
+
+
+def _first(samples: Sequence[Any], places: Group) -> Any:
+    """Return the first finite values of some columns."""
+    rows = min(len(samples[place]) for place in places)
+    values = np.array([samples[place][:rows] for place in places])
+    return values[:, np.isfinite(values).all(axis=0)]
 
 
 def _only(places: Sequence[int]) -> Group | None:

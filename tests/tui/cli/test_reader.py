@@ -69,8 +69,23 @@ def columns(series: Series) -> str | None:
         ("t, E, h", "{t}, {e}, {k}", "t, E"),  # h is no hour
         ("x,E", "{t},{e}", "x, E"),  # evenly
         ("x,E", "{k},{e}", "row, E"),  # no column increases
-        ("t,total,Total Energy", "{t},{k},{e}", None),
+        ("t,E,total", "{t},{k},{e}", None),
+        ("t,total,Total Energy", "{t},{k},{e}", "t, Total Energy"),
+        ("time,sim_time,energy", "{s},{t},{e}", "sim_time, energy"),  # of the wall clock
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
+        ("t,KE (kJ/mol),PE (kJ/mole)", "{t},{k},{p}", "t, KE+PE kJ/mol"),
+        ("t,x,KE,PE,Temp", "{t},{k},{k},{p},{k}", "t, KE+PE"),
+        ("t,KE,PE,pair energy", "{t},{k},{p},{k}", "t, KE+PE"),
+        ("t,KE,PE,internal energy", "{t},{k},-9,{e}", None),  # KE and PE do not balance
+        ("t,KE,PE,spring", "{t},{k},-9,{p}", None),  # which belongs to the sum
+        ("t,KE,PE,spring,total", "{t},{k},-9,{p},{e}", "t, total"),
+        ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
+        ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
+        ("t,KE,energy", "{t},{k},{p}", None),  # it is the potential one
+        ("t,a,e,inc", "{t},1.5,{e},0.1", None),  # eccentricity
+        ("t,a,E", "{t},{k},{e}", "t, E"),  # acceleration
+        ("t,N,E", "{t},{k},{e}", None),  # North and East
+        ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,E1,E2", "{t},{k},{e}", None),
         ("t,energy (ps)", "{t},{e}", None),
         ("t,E (V/m)", "{t},{e}", None),
