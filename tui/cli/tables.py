@@ -32,10 +32,8 @@ ROUNDING = 2e-15  # relative, of a converted time
 LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
-MIXED = (
-    "most of its rows differ from its head in the number of columns, or are not later than those "
-    "before; name the column of times with --time, or keep one table and one method, for example "
-    "with grep."
+NOT_LATER = (
+    "most of its rows are not later than those before; name the column of times with --time."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
@@ -233,8 +231,9 @@ class Sheet:
         self.heads: list[int] = []  # lines of its head, where it is repeated
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
+        self.mixed: dict[int, str] = {}  # columns printed in two units, and where
         self._is_printed = is_printed
-        self._once: dict[str, tuple[int, float]] = {}  # what was printed only once
+        self._once: dict[str, tuple[str, int, float]] = {}  # what was printed only once
         self._lines: list[array[int]] = []  # of the values of each column
         self._values: list[array[float]] = []
 
@@ -268,13 +267,18 @@ class Sheet:
         """Add a value that is printed with its name.  Once is not repeatedly."""
         if name not in self.places and name in self._once:
             self.places[name] = len(self.names)
-            self.add_column(name, unit)
-            first, before = self._once[name]
-            self.put([first], (self.places[name],), [[before]])
+            first = self._once[name]
+            self.add_column(name, first[0] or unit)
+            self.print(name, *first)
         if name in self.places:
-            self.put([line], (self.places[name],), [[value]])
+            place = self.places[name]
+            self.put([line], (place,), [[value]])
+            own = self.units[place]
+            if unit and not is_same(unit, own or unit):
+                where = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
+                self.mixed.setdefault(place, where)
         elif len(self._once) < MAX_NAMES:
-            self._once[name] = (line, value)
+            self._once[name] = (unit, line, value)
 
     def _column(self, place: int) -> tuple[Any, Any]:
         """Return the lines and values of a column, in the order of the lines."""
@@ -311,8 +315,11 @@ class Sheet:
         skipped = self.skipped + seen - rows
         times[~(np.abs(times) < LATEST)] = np.nan
         runs = list(islice(_runs(times, self._again(lines[here], times)), MAX_SERIES))
-        if self.skipped > rows or (rows > 1 and len(runs) in (rows, MAX_SERIES)):
-            raise unreadable(MIXED)
+        if self.skipped > rows:
+            why = "most of its rows differ from its head in the number of columns; keep one table."
+            raise unreadable(why)
+        if rows > 1 and len(runs) in (rows, MAX_SERIES):
+            raise unreadable(NOT_LATER)
         for run in runs:
             found = np.flatnonzero(np.isfinite(times[run]))
             lost = (~(np.abs(energies[run][found[-1] + 1 :]) < TOO_LARGE)).sum()
@@ -410,8 +417,14 @@ class Series:
         times = self.times * step
         is_later = times > np.fmax.accumulate(np.append(-np.inf, times[:-1]))
         skipped = len(times) - int(is_later.sum())
+        in_turn = ((np.diff(times) == 0) & (np.abs(np.diff(self.energies)) > 0)).sum()
+        if in_turn > len(times) / 3:
+            raise unreadable(
+                f"{in_turn} of {len(times)} rows have the time of the row before, but another "
+                "energy; keep one body or method, for example with grep, or print more digits."
+            )
         if skipped > len(times) / 2 and not (self.has_ended and np.isnan(times[~is_later]).all()):
-            raise unreadable(MIXED)
+            raise unreadable(NOT_LATER)
         self.skipped += skipped
         used = np.flatnonzero(is_later & (times >= begin) & (times <= last))
         sizes = np.abs(self.energies) + np.abs(self.kinetic)
@@ -440,6 +453,9 @@ class Series:
         """
         wanted = self.sheet.wanted
         time, energy, kinetic, _ = self.choice
+        for place in self.choice.columns:
+            if place in self.sheet.mixed:
+                raise unreadable(self.sheet.mixed[place])
         if {*time} & {*energy}:
             raise UserError(
                 f"{self.named(time)} is both the time and an energy; name another column."

@@ -383,6 +383,7 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (runs(*CP2K, 39), [90]),
         (rows("{e}", 0, 70) + "-1.0-1.0\n1\n1 2\n" + rows("{e}", 70), [71, 1, 20]),
         ("t,E\n" + rows("{t},{e}", 0, 40) + rows("{t},{e}"), [40, 90]),
+        ("t,E\n" + rows("{t},{e}\n{t},{e}"), [1, 90]),
         (f"Step A B E\n{rows('{s} 1 2 {e}')}Step E\n1 2 3 4\nStep E\n{rows('{s} {e}')}", [90, 90]),
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
@@ -438,6 +439,15 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
     assert (series.units, series.skipped) == (("ps", "kJ/mol"), 1)
     assert [each.units for each in tables(text, energy="Temperature")] == [("ps", "")]
     assert [each.units for each in tables(text.replace("K", "eV"))] == [("ps", "")]
+
+
+def test_a_unit_that_changes_is_refused_where_it_matters():
+    text = "t = {t}, wall = {n} [one], E = {e} [two]"
+    first = rows(text.replace("[one]", "fs").replace("[two]", "J"), 0, 40)
+    (series,) = tables(first + rows(text.replace("[one]", "ps").replace("[two]", "J"), 40))
+    assert (list(series.energies), series.units) == (ENERGIES, ("", "J"))
+    with pytest.raises(UserError, match="E is in J, but in eV in line 41;"):
+        tables(first + rows(text.replace("[one]", "fs").replace("[two]", "eV"), 40))
 
 
 def test_steps_and_units_of_the_owner_are_applied():

@@ -247,7 +247,7 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
         ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is already nan"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
-        ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "123"), "t E", 3, "grep"),
+        ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "12"), "t E", 3, "grep"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
         (b"\x89MCAP0\r\n\0", "1 2", 3, "not text"),
         (b"x" * (1 << 21), "1 2", 3, "longer than 1 MB"),
