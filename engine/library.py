@@ -290,9 +290,9 @@ def limits(
 ) -> ByMethod[Limit]:
     """Return where each method, by default every general one, loses the swing of a scene.
 
-    Steps h are tried on a ladder with a rung every 1 %, with so many `steps` each: `pendu-tui
-    stability --steps 1000` finds the same limits; more steps find lower ones.  Its help, which is
-    engine.studies.LOST, says when a swing is lost.  `numbers` are those of `simulate`.
+    Step sizes are tried in increments of 1 %, with `steps` steps each: `pendu-tui stability --steps
+    1000` finds the same limits; more steps find lower ones.  `pendu_tui.engine.studies.LOST` says
+    when a swing is lost.  `numbers` are those of `simulate`.
     """
     from pendu_tui.engine.studies.stability import amplitude, ladder_of, table
 

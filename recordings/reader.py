@@ -199,7 +199,7 @@ def _records(data: bytes) -> tuple[list[Channel], list[Group]]:
         end = at + _RECORD.size + length
         if opcode == message:
             if not latest <= log_time <= MAX_TIME:
-                raise ValueError("time runs back, or is too late")
+                raise ValueError("time runs backwards, or is too late")
             if sequence != current:
                 latest = log_time
                 current = sequence

@@ -8,4 +8,4 @@ LOST = f"""\
 A swing is lost if it goes over the top, if it is chaotic and 10 % wider than on the linear
 oscillator, or, unless the method is symplectic, if its energy leaves the oscillator's band by
 {100 * BAND:.0f} %. Above its linear limit a symplectic method may keep a small swing around two
-other points, with up to many times its energy; that is not a loss."""
+other points, with many times its energy; that is not a loss."""

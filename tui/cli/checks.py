@@ -138,7 +138,7 @@ class _Grammar:
         if not self.fields:
             word = f"any.{word}"
         return InputError(
-            f"{_quoted(text)} is not a comparison; use for example "
+            f"{_quoted(text)} is not understood; use for example "
             f"'{number} > 1e-2 or {word} != {right}'."
         )
 

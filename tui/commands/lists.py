@@ -25,7 +25,7 @@ MEASURED = (
     "measured_force_evaluations",
 )
 NOTE = """
-order: of the theta error over half a period, as measured; claimed: by its author.
+order: of the theta error over half a period, as measured; claimed: what its author states.
 evals: force evaluations per step, on average if they vary.
 z limit: for the linear oscillator, z = h·w0; pendu-tui stability finds those of the pendulum."""
 

@@ -213,5 +213,5 @@ class History:
         from pendu_tui.tui.playback.rows import Ghost
 
         steps = dict.fromkeys(f"{abs(change.stepping.h):.4g}" for change in self.changes)
-        label = f"dim: before, h {', '.join(steps)} s"
+        label = f"dim: run before, h {', '.join(steps)} s"
         return Ghost(self.scene, label, self.window(), self.rows)

@@ -90,9 +90,9 @@ KEYS: list[BindingType] = [
     _key("P,shift+p", "find('scene ')", "choose a scene"),
     _key("E,shift+e", "events", "list all events"),
     _key("m", "mark", "mark this moment"),
-    _key("d", "describe", "describe it in words"),
+    _key("d", "describe", "describe in words"),
     _key("s", "screenshot", "save a screenshot"),
-    _key("S,shift+s", "save_scene", "save it as a scene file"),
+    _key("S,shift+s", "save_scene", "save as a scene file"),
     Binding("enter", "turn('forward')"),  # the lesson's panel shows these two
     Binding("backspace", "turn('back')"),
 ]

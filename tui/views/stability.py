@@ -224,7 +224,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     """
 
     BINDING_GROUP_TITLE = "Stability"
-    HELP = "A click starts with that h and amplitude."
+    HELP = "A click starts a run with that h and amplitude."
 
     def __init__(self) -> None:
         super().__init__()

@@ -20,8 +20,8 @@ GLOSSARY = {
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
     "E/Es": "the energy over that of the separatrix: libration (swings) below 1, rotation above",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
-    "colours": "each method keeps its colour and its letter everywhere; its digit is its place, "
-    "and the key that hides it",
+    "colours": "each method keeps its colour and letter everywhere; its digit is its place, "
+    "and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
     "dim": "the run before the restart (r), with its own step",
@@ -60,8 +60,7 @@ def method_card(method: Method) -> str:
         stable = f"up to z = h w0 = {limit:.4g} (small swings)"
     order = "none: the error does not fall with h; the method solves the wrong equation"
     if method.order:
-        order = f"{method.order}: as a rule, halving h divides a swing's error by "
-        order += f"{2**method.order}"
+        order = f"{method.order}: as a rule, halving h divides a swing's error by {2**method.order}"
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
     if method.varies:
         costs = f"about {costs}"

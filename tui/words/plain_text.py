@@ -27,7 +27,7 @@ def description(source: Source, stands_still: bool = False) -> list[str]:
     if source.playhead.paused or stands_still:
         state = "is paused"
     at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
-    began = start(scene.theta, scene.omega)
+    began = start(scene.theta, scene.omega).replace("°", "°,")
     if source.exact.period is not None:
         cycle = "turn" if source.exact.regime == "rotation" else "swing"
         began += f"; one {cycle} takes {about(source.exact.period)}"
@@ -45,7 +45,7 @@ def description(source: Source, stands_still: bool = False) -> list[str]:
     if source.failure:
         lines.append(f"It stands still: {source.failure}")
     if source.ghost:
-        lines.append(f"Under it, {source.ghost.label}.")
+        lines.append(f"{source.ghost.label.capitalize()}.")
     methods = [method_sentence(source, index) for index in range(len(scene.cast))]
     return [*lines, *methods, _recording(source)]
 

@@ -217,7 +217,7 @@ def test_a_gate_gives_the_values():
     outcome = judge(TABLE, "--fail-if", gate)
     assert outcome.code == 1
     assert "(max_energy_error is 0.01, verdict is bounded)" in outcome.err
-    assert judge(TABLE, "--fail-if", "rk4.verdict == grows").refused(2, "is not a comparison")
+    assert judge(TABLE, "--fail-if", "rk4.verdict == grows").refused(2, "is not understood")
     assert judge(TABLE, "--fail-if", "theta_error > 1").refused(2, "no field 'theta_error'")
 
 

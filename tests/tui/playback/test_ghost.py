@@ -34,7 +34,7 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live.restart()
     left = live.run_state
     assert (live.scene.h, live.scene.name) == (0.1, "drift (altered)")
-    assert live.ghost.label == "dim: before, h 0.05, 0.1 s"
+    assert live.ghost.label == "dim: run before, h 0.05, 0.1 s"
     largest = live.ghost.window(3.0).high["energy_error"].max()
     assert largest == old.cut(0, 3.0).high["energy_error"].max()
     live.restart()

@@ -35,7 +35,7 @@ async def test_a_view_whose_process_is_killed_says_so_and_computes_when_it_is_sh
         pane = theatre.stage.query_one(f"#{VIEW}").pane
         await until(theatre.pilot, lambda: pane.failure)
         await theatre.run(1)
-        assert "was ended. Show this view again" in pane.text
+        assert "was ended. Open this view again" in pane.text
         assert theatre.source.sample.t > 0.9
         await theatre.press("f2", key_of(VIEW))
         await until(theatre.pilot, lambda: pane.is_computing)
