@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from pendu_tui.engine.run.loops import PlainLoops
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import own_method, pendu
 
@@ -49,6 +50,8 @@ def folder(tmp_path, monkeypatch):
     prepare(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PENDU_RECORDINGS", "library")
+    monkeypatch.setattr("pendu_tui.engine.run.loops.compiled", PlainLoops)  # that takes seconds
+    monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
 
 
 def prepare(folder: Path) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from pendu_tui.engine.methods import GENERAL, Cast, Method
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.loops import LoopsOf, compiled
 from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
@@ -101,9 +101,10 @@ def contradictions(share: float) -> Iterator[tuple[Any, ...]]:
                 yield scene.name, scene.numbers, method.key, *words
 
 
-def judgements(scene: Scene, seconds: float) -> Iterator[tuple[Method, Judgement, Judgement]]:
+def judgements(
+    scene: Scene, seconds: float, loops: LoopsOf = compiled
+) -> Iterator[tuple[Method, Judgement, Judgement]]:
     """Yield each method with the judgements of its run and of the run's energies alone."""
-    loops = compiled if available() else PlainLoops
     lockstep = Lockstep(scene, loops=loops, judged=True)
     steps = round(seconds / scene.h)
     every = max(1, steps // SAMPLES)

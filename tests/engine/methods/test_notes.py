@@ -42,7 +42,7 @@ from pendu_tui.engine.methods.verlet import (
 from pendu_tui.engine.models import LinearOscillator, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.spring import Spring
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled, count_evaluations
+from pendu_tui.engine.run.loops import PlainLoops, compiled, count_evaluations
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene
 from tests.bench import learn
@@ -140,7 +140,6 @@ def test_taylors_series_follows_a_swing_of_20_s_in_few_steps(scene, steps, most)
     assert most / 1e5 < largest < most
 
 
-@pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_taylors_series_has_the_same_bits_when_compiled():
     ends = [
         loops(TAYLOR_20, PENDULUM).propagate((2.0, 0.5), 0.1, 20)

@@ -104,7 +104,6 @@ def test_it_has_the_same_bits_in_another_process():
 
 
 def test_it_is_never_compiled():
-    pytest.importorskip("numba")
     assert isinstance(compiled(load(VERLET), Pendulum(9.81)), PlainLoops)
 
 

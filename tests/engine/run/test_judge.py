@@ -16,7 +16,7 @@ from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
 from pendu_tui.engine.run import levels
 from pendu_tui.engine.run.judge import Judge, LookPoint
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.loops import PlainLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
@@ -27,21 +27,20 @@ from tests.truths import is_true, scene_at, truths, verdicts
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 W0 = Scene().w0
-LOOPS = compiled if available() else PlainLoops  # the same bits
 CELLS = list(truths())[::47]  # 47 and the 36 steps of a line have no divisor in common
 BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
 RESONANCES = [(1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757)]  # theta, h
 
 
 def course(method, scene, steps):
-    return [verdict for verdict, *_ in verdicts(method, scene, LOOPS, steps)]
+    return [verdict for verdict, *_ in verdicts(method, scene, PlainLoops, steps)]
 
 
 def words(lockstep):
     return [judgement.verdict for judgement in lockstep.judgements]
 
 
-def moved(scene, gaps, loops=LOOPS):
+def moved(scene, gaps, loops=PlainLoops):  # compiling takes longer than these runs
     lockstep = Lockstep(scene, loops=loops, judged=True)
     for gap in gaps:
         lockstep.advance(gap)
@@ -60,7 +59,7 @@ def test_verdicts_wait_for_nine_periods_as_a_rule():
         scene = scene_at(start, z)
         period = scene.exact().period or math.inf
         if 0.03 <= z <= 0.9 and period >= 8 * scene.h:
-            given = verdicts(method, scene, LOOPS, round(60 * period / scene.h))
+            given = verdicts(method, scene, PlainLoops, round(60 * period / scene.h))
             assert is_true(letter, given), (method.key, start, z, letter, given)
             waits += [given[0][2]] if given else [60.0]
     waits.sort()
@@ -109,7 +108,7 @@ def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict():
 def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
     judged = set()
-    for steps in (5, 13, 29, 47):
+    for steps in (5, 29):
         lockstep = moved(SCENES["large-swing"], [steps])
         lockstep.set_stepping(Stepping(h))
         lockstep.advance(round(120 / abs(h)))
@@ -179,7 +178,7 @@ def told(errors):
     return judgement.verdict, judgement.rests
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_random_walk_of_roundings_is_no_trend(seed):
     walk = np.random.default_rng(seed).normal(0, 1e-15, 20_000)
     assert told([0.0, *walk.cumsum()])[0] in ("undecided", "bounded")
@@ -334,7 +333,7 @@ RESTING = Scene(theta=1.37437563948, h=1.15018130605433 / W0, cast=(E,))  # at o
     ids=lambda scene: scene.name,
 )
 def test_a_run_and_its_energies_alone_do_not_exclude_each_other(scene):
-    found = list(judgements(scene, 60.0))
+    found = list(judgements(scene, 60.0, PlainLoops))
     assert not [method.key for method, of_run, alone in found if exclude(of_run, alone)]
     assert all(of_run.slope is not None or of_run.verdict == "failed" for _, of_run, _ in found)
 
@@ -411,14 +410,15 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name):
     whole = moved(scene, [steps])
     assert whole.milestones
     gaps = [uneven.randint(1, 400) for _ in range(steps // 400)]
-    cut = moved(scene, [*gaps, steps - sum(gaps)], PlainLoops)
+    loops = compiled if name == "drift" else PlainLoops
+    cut = moved(scene, [*gaps, steps - sum(gaps)], loops)
     assert (cut.milestones, cut.judgements) == (whole.milestones, whole.judgements)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4)
 @given(back=st.integers(0, 1500), at=st.integers(0, 1500))
 def test_after_a_way_back_verdicts_are_those_of_their_step(back, at):
-    run = RewindableRun(DRIFT, loops=LOOPS)
+    run = RewindableRun(DRIFT)
     run.forward(1500)
     run.go_to(back)
     run.forward(max(0, at - back))
@@ -435,5 +435,5 @@ def test_nothing_is_simulated_for_the_judge():
         return V.phases(lambda theta: calls.append(theta) or force(theta), phase, h)
 
     scene = DRIFT.with_cast((replace(V, phases=counting),))
-    moved(scene, [600], PlainLoops)
+    moved(scene, [600])
     assert sum(type(theta) is float for theta in calls) == 601  # tangent maps take complex numbers

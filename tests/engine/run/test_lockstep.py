@@ -12,7 +12,7 @@ from pendu_tui.engine.methods import METHODS, USUAL_CAST, method_of
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings.format import without_extremes
@@ -62,7 +62,7 @@ def test_a_long_rotation_stays_in_the_band_of_its_first_turns():
     """Rounding of theta would grow with it, and carry the energy ten bands away by 5e5 steps."""
     cast = (method_of("blanes_moan_6"),)
     scene = Scene(theta=-0.538, omega=6.554, h=0.318 / Scene().w0, cast=cast)
-    lockstep, bands = Lockstep(scene, loops=compiled if available() else PlainLoops), []
+    lockstep, bands = Lockstep(scene, loops=compiled), []
     for _ in range(2):
         lockstep.advance(250_000)
         (reading,) = lockstep.sample().readings

@@ -22,7 +22,6 @@ from pendu_tui.engine.run.loops import (
 )
 from tests.models import EQUATIONS, EXAMPLES
 
-needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
     "model",
@@ -111,7 +110,6 @@ def test_the_evaluations_of_each_counted_part_are_added_up(key, evaluations):
     assert count_evaluations(method_of(key), spring, start, 0.01, 30) == evaluations
 
 
-@needs_numba
 @each_method
 def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
     fast = compiled(method, PENDULUM)
@@ -132,7 +130,6 @@ def test_compiled_steps_have_the_same_bits_and_free_their_memory(method):
     assert faults(20_000) < 200  # pages; a list of BM4's in each run would fill 1000
 
 
-@needs_numba
 @each_model
 @pytest.mark.parametrize("method", [VELOCITY_VERLET, RK4, OVERFLOWING], ids=lambda each: each.key)
 @pytest.mark.parametrize("h", [0.001, -0.02, 3.0])
@@ -146,7 +143,6 @@ def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
         assert fast.propagate(*start) == slow.propagate(*start)
 
 
-@needs_numba
 @pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [2, 4]), (3, [1, 2, 4])])
 def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     ahead, compiled_steps, monkeypatch
@@ -172,7 +168,6 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     assert used == compiled_steps
 
 
-@needs_numba
 def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
     class OtherSine:
         """Numba where one sine in two thousand is a bit off."""

@@ -3,6 +3,7 @@
 import itertools
 import math
 from contextlib import suppress
+from functools import partial
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,17 +11,19 @@ from hypothesis import strategies as st
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE
 
+SCENE = DEFAULT_SCENE.with_cast(DEFAULT_SCENE.cast[-2:])
+stepping = partial(Stepping, cast=SCENE.cast)
 H_VALUES = st.sampled_from([0.1, 0.02, -0.05, 0.05])
 
 
 def straight(step, changes):
     """The sample of a lockstep that went to `step` without turning."""
-    lockstep = Lockstep(DEFAULT_SCENE)
+    lockstep = Lockstep(SCENE)
     for at in sorted(at for at in changes if at < step):
         lockstep.advance(at - lockstep.step)
-        lockstep.set_stepping(Stepping(changes[at]))
+        lockstep.set_stepping(stepping(changes[at]))
     lockstep.advance(step - lockstep.step)
     return lockstep.sample()
 
@@ -39,9 +42,9 @@ def move(course, n):
 @settings(max_examples=6)
 @given(st.lists(st.integers(-1500, 2500), min_size=1, max_size=6), H_VALUES)
 def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
-    course = RewindableRun(DEFAULT_SCENE, 1)
+    course = RewindableRun(SCENE, 1)
     course.forward(700)
-    course.change(Stepping(h))
+    course.change(stepping(h))
     course.forward(1900)
     course.sample()
     for n in moves:
@@ -52,11 +55,11 @@ def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
 
 
 def test_the_way_home_is_of_whole_steps_that_lie_ahead():
-    course = RewindableRun(DEFAULT_SCENE)
+    course = RewindableRun(SCENE)
     assert course.home == math.inf  # it is there
     course.forward(10)
     assert course.home == math.inf
-    course.change(Stepping(-DEFAULT_SCENE.h))
+    course.change(stepping(-SCENE.h))
     course.forward(4)
     assert course.home == 20
     course.forward(5)
@@ -64,26 +67,26 @@ def test_the_way_home_is_of_whole_steps_that_lie_ahead():
     course.forward(1)
     assert course.home == math.inf
     course.go_to(14)
-    course.change(Stepping(-0.04))  # it would pass 0 between two steps
+    course.change(stepping(-0.04))  # it would pass 0 between two steps
     assert course.home == math.inf
 
 
 def test_a_change_at_the_step_gone_back_to_is_still_ahead():
-    course = RewindableRun(DEFAULT_SCENE)
+    course = RewindableRun(SCENE)
     course.forward(10)
-    course.change(Stepping(0.1))
+    course.change(stepping(0.1))
     course.forward(5)
     course.sample()
     course.go_to(10)
-    assert course.lockstep.stepping.h == DEFAULT_SCENE.h
+    assert course.lockstep.stepping.h == SCENE.h
     course.forward(1)
     assert course.lockstep.stepping.h == 0.1
 
 
 def test_a_branch_shares_the_past_and_forgets_the_future():
-    course = RewindableRun(DEFAULT_SCENE)
+    course = RewindableRun(SCENE)
     course.forward(100)
-    course.change(Stepping(0.1))
+    course.change(stepping(0.1))
     for _ in range(5):
         course.forward(1000)  # each of which leaves a copy
     course.sample()
@@ -92,7 +95,7 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
     assert course.in_past
     course.branch(2)
     assert not course.in_past
-    course.change(Stepping(0.02))
+    course.change(stepping(0.02))
     course.forward(3000)
     sample = course.sample()
     assert sample.run == 2
@@ -105,7 +108,7 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
 
 
 def test_an_error_on_the_way_leaves_the_run_where_it_was():
-    course = RewindableRun(DEFAULT_SCENE)
+    course = RewindableRun(SCENE)
     course.forward(7)
     with suppress(KeyboardInterrupt), course.unchanged_by_errors():
         course.forward(5)
@@ -115,7 +118,7 @@ def test_an_error_on_the_way_leaves_the_run_where_it_was():
 
 
 def test_extremes_after_going_back_count_from_the_furthest_step():
-    ahead, returning = RewindableRun(DEFAULT_SCENE), RewindableRun(DEFAULT_SCENE)
+    ahead, returning = RewindableRun(SCENE), RewindableRun(SCENE)
     for course in (ahead, returning):
         course.forward(500)
         course.sample()
@@ -127,7 +130,7 @@ def test_extremes_after_going_back_count_from_the_furthest_step():
 
 
 def test_copies_are_few_and_closer_the_more_recent_they_are():
-    course = RewindableRun(SCENES["gentle"], 1)
+    course = RewindableRun(SCENE, 1)
     for _ in range(80):
         course.forward(1000)
     steps = [place.lockstep.step for place in course._copies]
@@ -137,10 +140,10 @@ def test_copies_are_few_and_closer_the_more_recent_they_are():
 
 
 def test_each_step_is_found_by_its_time_which_goes_up_even_while_time_runs_backwards():
-    course = RewindableRun(DEFAULT_SCENE)
+    course = RewindableRun(SCENE)
     course.forward(7)
     for h in (0.1, -0.03):
-        course.change(Stepping(h))
+        course.change(stepping(h))
         course.forward(300)
     assert math.isclose(course.t, 21.35)
     assert math.isclose(course.x, 39.35)

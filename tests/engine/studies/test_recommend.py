@@ -8,18 +8,17 @@ import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops, available, compiled
+from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.scenes import SCENES, Z_LIMITS
 from pendu_tui.engine.studies.accuracy import Study
 from pendu_tui.engine.studies.recommend import least_cost, reach
 
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
-LOOPS = compiled if available() else PlainLoops  # the same bits
 
 
 def recommended(scene, time, kind, target):
-    best = least_cost(Study(scene, time, LOOPS), kind, target)[0]
+    best = least_cost(Study(scene, time, compiled), kind, target)[0]
     assert best.succeeded
     return best.point
 
@@ -62,7 +61,7 @@ def test_a_target_near_the_rounding_floor_is_reached():
 
 
 def test_a_method_far_dearer_than_another_is_given_up():
-    attempts = list(reach(Study(replace(DRIFT, cast=(E, R)), 10.0, LOOPS), "theta", 3e-4))
+    attempts = list(reach(Study(replace(DRIFT, cast=(E, R)), 10.0, compiled), "theta", 3e-4))
     assert [attempt.method for attempt in attempts] == [R, E]  # the higher order first
     cheapest, dear = attempts
     assert cheapest.succeeded
@@ -73,7 +72,7 @@ def test_a_method_far_dearer_than_another_is_given_up():
 
 
 def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
-    study = Study(replace(DRIFT, cast=(V, R)), 10.0, LOOPS)
+    study = Study(replace(DRIFT, cast=(V, R)), 10.0, compiled)
     shares = []
     best, other = least_cost(study, "energy", 1e-2, shares.append)
     assert (best.method, best.times, other.method) == (V, 1.0, R)
@@ -85,7 +84,7 @@ def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
 
 
 def test_if_no_method_reaches_the_target_each_has_its_reason():
-    study = Study(replace(DRIFT, cast=(V, R)), 2.0, LOOPS)
+    study = Study(replace(DRIFT, cast=(V, R)), 2.0, compiled)
     reasons = {each.method: each.why_not for each in reach(study, "theta", 1e-17, 400_000)}
     assert reasons[R].startswith("rounding stops it at ")
     assert reasons[V] == "not within 400000 evaluations"
@@ -97,7 +96,7 @@ def test_a_method_is_given_up_only_if_its_order_predicts_twice_the_limit():
     scene = replace(DRIFT, cast=(V,))
     needed = recommended(scene, 2.0, "theta", 1e-9).force_evaluations
     for share, reached in ((0.7, False), (0.45, False), (1.05, True)):
-        (attempt,) = reach(Study(scene, 2.0, LOOPS), "theta", 1e-9, round(share * needed))
+        (attempt,) = reach(Study(scene, 2.0, compiled), "theta", 1e-9, round(share * needed))
         assert attempt.succeeded == reached
         tried = attempt.point.force_evaluations / needed
         assert tried == pytest.approx(share, rel=0.1) if share > 0.5 else tried < 0.1
@@ -126,7 +125,7 @@ def test_steps_are_doubled_where_rounding_hides_the_order():
             tried.append(steps)
             return super().run(method, steps, comparisons)
 
-    study = Watched(replace(DRIFT, cast=(R,)), 2.0, LOOPS)
+    study = Watched(replace(DRIFT, cast=(R,)), 2.0, compiled)
     (attempt,) = reach(study, "theta", 1e-17)
     assert attempt.why_not.startswith("rounding")
     assert tried[-2:] == [2 * attempt.point.steps, 4 * attempt.point.steps]
@@ -145,6 +144,6 @@ def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
 def test_no_recommended_step_is_longer_than_half_a_swing_or_turn(theta, omega, kind, target):
     cast = (V, R, method_of("implicit_midpoint"))
     scene = replace(DRIFT, theta=theta, omega=omega, cast=cast)
-    for attempt in least_cost(Study(scene, 20.0, LOOPS), kind, target):
+    for attempt in least_cost(Study(scene, 20.0, compiled), kind, target):
         assert attempt.succeeded
         assert attempt.point.h * max(scene.w0, omega) <= math.pi

@@ -30,6 +30,7 @@ def mine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
     (tmp_path / "long.py").write_text(SOURCE + "#" * 30_000)
+    (tmp_path / "once.py").write_text("def once(force, phase, h):\n    yield phase")
 
 
 def cast_from(*arguments: str) -> Cast:
@@ -78,6 +79,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert last.letter not in {method.letter for method in METHODS}
 
 
+@pytest.mark.other_process
 @pytest.mark.parametrize(
     ("text", "code", "words"),
     [
@@ -85,6 +87,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
         ("mine.py:größer", 2, "cannot be a method's name"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),
         ("no:absent.py:kick_drift", 3, "no:absent.py cannot be read: No such file"),
+        ("once.py", 3, "once ends while the run goes on"),
         ("long.py:kick_drift", 3, "too long; use a file of at most 30,000 characters"),
     ],
 )
@@ -93,6 +96,7 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
 
 
 @pytest.mark.slow
+@pytest.mark.other_process
 @pytest.mark.parametrize(
     ("work", "seconds", "why"),
     [
@@ -142,17 +146,13 @@ def test_more_than_six_run_but_fit_no_screen_and_no_recording():
         assert pendu(*command, *methods).refused(2, "7 methods are too many", "at most 6")
 
 
-def test_ones_own_method_has_null_claims_and_is_the_same_in_other_processes(mine, monkeypatch):
-    own = ("methods", "--method", "mine.py:kick_drift")
-    *_, row = pendu(*own, "--json").json["methods"]
+def test_ones_own_method_has_null_claims_and_a_process_that_watches(mine, monkeypatch):
+    watched = []
+    monkeypatch.setattr(watchdog, "watch_calls_in_c", lambda: watched.append("by a process"))
+    *_, row = pendu("methods", "--method", "mine.py:kick_drift", "--json").json["methods"]
+    assert watched
     assert (row["key"], row["label"]) == ("kick_drift", "Kick drift")
     assert {row[claim] for claim in ("order", "symplectic", "linear_limit", "used")} == {None}
     assert row["measured_order"] == pytest.approx(1, abs=0.05)
     assert row["measured_linear_limit"] == pytest.approx(2, abs=1e-8)
     assert (row["measured_symplectic"], row["measured_reversible"]) == (True, False)
-    watched = []
-    monkeypatch.setattr(watchdog, "watch_calls_in_c", lambda: watched.append("by a process"))
-    values = ("--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
-    one = pendu("stability", *values, *own[1:])
-    assert watched
-    assert one.out == pendu("stability", *values, *own[1:], "--workers", "2").out

@@ -35,7 +35,6 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_the_same_input_gives_the_same_figure_of_the_width_of_a_column(tmp_path):
-    pytest.importorskip("matplotlib")
     files = [tmp_path / "one.svg", tmp_path / "two.svg"]
     for file in files:
         assert pendu(*RUN, file).code == 0
@@ -48,7 +47,6 @@ def test_the_same_input_gives_the_same_figure_of_the_width_of_a_column(tmp_path)
 
 @pytest.mark.slow
 def test_other_figures_are_pdf_with_truetype_and_png(tmp_path):
-    pytest.importorskip("matplotlib")
     for suffix, holds in (("pdf", b"/FontFile2"), ("png", b"PNG")):
         assert pendu(*RUN, tmp_path / f"run.{suffix}").code == 0
         assert holds in (tmp_path / f"run.{suffix}").read_bytes()

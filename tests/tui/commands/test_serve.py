@@ -6,6 +6,7 @@ import sys
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
+import aiohttp
 import pyte
 import pytest
 
@@ -14,10 +15,8 @@ from tests.tui.command_line import PENDU, own_method, pendu
 
 pytestmark = pytest.mark.slow
 
-aiohttp = pytest.importorskip("aiohttp", reason="the extra web is not installed")
 if not Path("/proc").is_dir():
     pytest.skip("needs /proc, to count the labs", allow_module_level=True)
-pytest.importorskip("textual_serve", reason="the extra web is not installed")
 
 PATIENCE = 50.0  # s, on a busy machine
 CTRL_Z = "\x1a"

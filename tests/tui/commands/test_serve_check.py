@@ -5,10 +5,9 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from aiohttp import web
 
-serve = pytest.importorskip("pendu_tui.tui.commands.serve")
-web = pytest.importorskip("aiohttp.web", reason="the extra web is not installed")
-pytest.importorskip("textual_serve", reason="the extra web is not installed")
+from pendu_tui.tui.commands import serve
 
 OURS = "127.0.0.1:8000"
 

@@ -14,7 +14,7 @@ import pytest
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
-from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops, available
+from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
@@ -253,7 +253,6 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     assert bench.live.failure is None
 
 
-@pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
     method, model = DEFAULT_SCENE.cast[3], DEFAULT_SCENE.equations
     start = (1.0, 0.0), 0.05, 20, math.inf
