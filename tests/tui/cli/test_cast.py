@@ -62,6 +62,7 @@ def test_a_name_as_the_tables_print_it_will_do_in_any_case():
         ("nothing", "choose from explicit_euler, symplectic_euler, "),
         ("rk4,rk4", "rk4 is given twice"),
         ("rk4,", "no method ''"),
+        ("taylor_20", "--cost seconds"),
         ("euler", "may be explicit_euler or symplectic_euler or backward_euler"),
     ],
 )

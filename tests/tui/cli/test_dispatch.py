@@ -49,7 +49,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("crosover", 2, "did you mean crossover?"),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),
-        ("run --tim 10", 2, "there is no option --tim: did you mean --time?"),
+        ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),
         ("run --resume=x", 2, DROPPED["run --resume"]),
         ("snapshot -x lab.svg", 2, "there is no option -x; pendu-tui snapshot --help"),
         ("accuracy --cost second", 2, "--cost: there is no choice 'second': did you mean seconds?"),

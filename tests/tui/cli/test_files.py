@@ -18,7 +18,7 @@ from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.errors import explained
-from pendu_tui.tui.cli.files import whole_file
+from pendu_tui.tui.cli.files import text_file, whole_file
 from pendu_tui.tui.cli.options import resolve
 from tests.tui.command_line import pendu
 
@@ -141,6 +141,12 @@ def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
         write(file, lambda: file.write_text("precious"))
     assert file.read_text() == "precious"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_text_has_the_same_bytes_on_every_system(tmp_path):
+    with text_file(tmp_path / "data") as out:
+        out.write("θ\n")
+    assert (tmp_path / "data").read_bytes() == "θ\n".encode()
 
 
 def test_two_commands_may_write_the_same_name_at_once(tmp_path):

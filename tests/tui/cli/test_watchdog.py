@@ -28,12 +28,9 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
         if now > 5.0:
             raise EnoughError
 
-    def note(code: int, *_: object) -> None:
-        happened.append((round(now, 1), code))
-
     dog = Watchdog()
-    monkeypatch.setattr(dog, "end", note)
-    monkeypatch.setattr(watchdog, "interrupt_main", note)
+    for place, name in ((dog, "end"), (watchdog, "interrupt_main")):
+        monkeypatch.setattr(place, name, lambda code, *_: happened.append((round(now, 1), code)))
     monkeypatch.setattr(watchdog.time, "sleep", sleep)
     monkeypatch.setattr(watchdog, "USER_CODE", SimpleNamespace(depth=1, count=0))
     with pytest.raises(EnoughError):

@@ -2,7 +2,6 @@
 
 import argparse
 import os
-import signal
 import sys
 import time
 from pathlib import Path
@@ -11,8 +10,8 @@ import pytest
 
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.tui.cli import workers
-from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.workers import Work, received, started, work_of, workers_of
+from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.workers import Work, received, started, work_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -35,7 +34,7 @@ def interrupted(error: BaseException, done: int, output: Path | None = None) -> 
     ("error", "code"), [(KeyboardInterrupt(), 130), (OwnMethodError("mine fails."), 3)]
 )
 def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code, tmp_path, capsys):
-    assert interrupted(error, done=1).conclude() == code
+    assert interrupted(error, done=1, output=tmp_path / "new.csv").conclude() == code
     assert capsys.readouterr().err.endswith(": 33 % of the runs are done and kept.\n")
     with pytest.raises(type(error)):
         interrupted(error, done=0)
@@ -75,19 +74,6 @@ def test_so_it_is_on_a_dask_cluster(monkeypatch):
         for command in ((*STABILITY, "--csv"), (*RUNS, "--csv")):
             there = pendu(*command, "--dask", cluster.scheduler_address)
             assert there.out == pendu(*command).out
-
-
-def die(number: int) -> int:
-    os.kill(os.getpid(), signal.SIGKILL)
-    return number
-
-
-@pytest.mark.slow
-def test_workers_that_die_are_lost():
-    options = argparse.Namespace(workers=2, dask=None)
-    with workers_of(options) as run, pytest.raises(UserError, match="lost") as lost:
-        list(run(die, [1]))
-    assert lost.value.code == Exit.INPUT_UNREADABLE
 
 
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):

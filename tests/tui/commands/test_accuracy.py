@@ -48,7 +48,6 @@ def test_a_target_that_no_method_reaches_is_reported():
     answer = outcome.json["recommendation"]
     found = (answer["method"], answer["h"], answer["why_not"])
     assert found == (None, None, "no method gets there")
-    assert all(attempt["why_not"] for attempt in answer["attempts"])
     assert "not within 20000000 evaluations" in pendu(*asked).out
 
 

@@ -16,7 +16,6 @@ def findings() -> dict[str, dict[str, str]]:
 def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_terminal():
     outcome = pendu("doctor")
     assert (outcome.code, outcome.err) == (0, "")
-    assert all(f"\n{what}" in outcome.out for what in ("lab", "encoding", "numba"))
     assert re.search(r"^encoding +utf-8 +fine", outcome.out, re.MULTILINE)
     lab = findings()["lab"]
     assert lab["found"] == "cannot start here"

@@ -12,7 +12,7 @@ RUN = ("run", "--time", "5", "--methods", "rk4,verlet,heun", "-o")
 
 
 STUDIES = """\
-run --time 5 --h 0.1 --methods rk4,explicit_euler
+run --theta 3 --time 20 --methods rk4,explicit_euler
 accuracy --time 2 --h-values 0.2:0.1:2 --methods rk4 --error energy
 stability --steps 50 --z-values 0.1:3:4 --theta-values 0.5,2
 """
@@ -23,6 +23,8 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
     matplotlib.figure.Figure().savefig.side_effect = lambda file, **_: file.touch()
     monkeypatch.setitem(sys.modules, "matplotlib", matplotlib)
     monkeypatch.setattr("pendu_tui.tui.commands.report.find_spec", bool)
+    listed = pendu("run", "--theta", "1,2", "--time", "1", "-o", tmp_path / "a.svg")
+    assert listed.refused(2, "a figure are for one run")
     texts = []
     for line in STUDIES.splitlines():
         matplotlib.reset_mock()

@@ -9,7 +9,6 @@ import pytest
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.files import DiskError, NameTakenError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
-from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
@@ -17,21 +16,6 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PtyLab
-
-
-@pytest.mark.slow
-def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
-    library = {"PENDU_RECORDINGS": str(tmp_path)}
-    with PtyLab(**library) as one, PtyLab(**library) as other:
-        while not all(b"REC " in session.output for session in (one, other)):
-            one.read(0.1)
-            other.read(0.1)
-        for session in (one, other):
-            session.type("q")
-            assert session.end() == 0
-    assert len(listing(tmp_path)) == 2
-    assert all(verify(item.path).complete for item in listing(tmp_path))
 
 
 def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):

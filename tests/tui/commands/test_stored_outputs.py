@@ -25,7 +25,7 @@ run --theta 0.5,1 --h 0.05,0.1 --time 9 --methods rk4,verlet --fail-if 'rk4.slop
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
 accuracy --all --error energy --time 2 --h-values 0.2:0.05:2
 stability {FEW}
-stability --steps 5 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4
+stability --steps 1000 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4
 methods explicit_e symplectic rk4 heun forest_ruth backward_euler halving_verlet
 scenes crossover
 recordings
@@ -34,6 +34,7 @@ recordings show cut
 recordings recover cut -o {FOLDER}/saved.mcap
 verify {FOLDER}
 verify b cut
+verify b --max-steps 3
 run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
 run --time 2 --methods rk4,verlet --json
 accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
@@ -45,6 +46,7 @@ verify b cut --json
 HEADS = """\
 run --time 1 --csv
 run --theta 1,2 --time 1 --csv
+run damped --time 1 --csv
 accuracy {QUICK} --csv
 stability --steps 50 --z-values 0.1:3:4 --theta-values 0.5,2 --csv
 export a

@@ -27,7 +27,7 @@ def first_words(outcome: Outcome) -> list[str]:
     return [line.split()[0] for line in outcome.out.splitlines()]
 
 
-def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_path):
+def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_path, monkeypatch):
     assert pendu("verify", tmp_path).refused(3, "no recordings in this folder")
     (tmp_path / "a").mkdir()
     record(tmp_path / "one.mcap", two_runs())
@@ -37,6 +37,9 @@ def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_
     assert "differently" not in ours.out
     count = len(golden_names())
     assert first_words(pendu("verify", "golden")) == [*["identical"] * count, str(count)]
+    (tmp_path / "golden").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert pendu("verify", "golden").refused(3, "no recordings in this folder")
 
 
 def test_the_leftover_of_a_killed_lab_may_be_incomplete(cut):
@@ -74,7 +77,9 @@ def test_what_cannot_be_read_does_not_keep_the_others_from_being_verified(whole,
     outcome = pendu("verify", tmp_path, "no/such.mcap")
     assert (outcome.code, outcome.err.count("\n")) == (3, 2)
     assert first_words(outcome) == ["identical", "3"]
-    rows = pendu("verify", tmp_path, "no/such.mcap", "--json").json["files"]
+    outcome = pendu("verify", tmp_path, "no/such.mcap", "--json")
+    assert outcome.err == ""
+    rows = outcome.json["files"]
     assert [row["identical"] for row in rows] == [False, True, False]
     assert "there is no recording 'no" in rows[2]["error"]
 
@@ -87,9 +92,12 @@ def test_only_the_methods_asked_for_are_compared(other, tmp_path):
     assert pendu("verify", alone, "--methods", "s,v").refused(3, "run 1 has none of the methods")
 
 
-def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path):
+def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path, monkeypatch):
+    known = []
+    monkeypatch.setattr("pendu_tui.tui.commands.verify.remember", known.extend)
     outcome = pendu("verify", whole, "--method", own_method(tmp_path))
     assert (outcome.code, "has the method mine" in outcome.err) == (0, True)
+    assert [method.key for method in known] == ["mine"]
 
 
 def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):

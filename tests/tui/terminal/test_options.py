@@ -48,7 +48,8 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 
 
 @pytest.mark.parametrize(
-    ("term", "number"), [("xterm-256color", 256), ("xterm-kitty", 256), ("screen", 16), ("", 0)]
+    ("term", "number"),
+    [("xterm-256color", 256), ("xterm-kitty", 256), ("screen", 16), ("", 0), ("unknown", 0)],
 )
 def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     assert colours({"TERM": term}) == number
@@ -84,7 +85,7 @@ def test_the_screen_has_the_frames_that_were_asked_for():
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
     assert chosen(encoding="utf8") == TerminalOptions("dark", "braille", mouse=True, fps=30)
     assert chosen(encoding="latin-1").character_set == "ascii"
-    assert chosen(TEXTUAL_ANIMATIONS="none").fps == CALM_FPS == 10
+    assert chosen(TEXTUAL_ANIMATIONS="None").fps == CALM_FPS == 10
 
 
 @pytest.mark.parametrize("arguments", ["--fps 0", "--fps 61", "--fps 1.5", "--theme pink"])

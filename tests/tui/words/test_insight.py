@@ -14,7 +14,6 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.words.insight import (
-    FRESH,
     bounded,
     drift,
     forecast,
@@ -25,7 +24,7 @@ from pendu_tui.tui.words.insight import (
     painted,
 )
 from pendu_tui.tui.words.numbers import seconds
-from tests.tui.harness import FPS, Lab, after
+from tests.tui.harness import Lab, after
 
 DRIFT = SCENES["drift"]
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -63,18 +62,6 @@ def test_insights_as_they_are_stored(snapshot):
                 texts.append(f"{second} s {text}")
             lab.run(1)
     snapshot("insights.txt", "\n".join(texts) + "\n")
-
-
-@pytest.mark.parametrize("speed", [0.5, 16.0])
-def test_news_stays_equally_long_at_any_speed(speed):
-    lab = Lab(DRIFT, speed)
-    seen = 0
-    while lab.live.sample.t < 7.15 + FRESH * speed + 1:
-        lab.run(1 / FPS)
-        happened = any(each.kind == "over the top" for each in lab.live.milestones)
-        seen += happened and insight(lab.live).kind == "over the top"
-    # a frame at each end, and a step
-    assert seen / FPS == pytest.approx(FRESH, abs=2 / FPS + 0.05 / speed)
 
 
 def test_the_energy_at_the_top_is_that_of_the_milestone(judged):
@@ -189,10 +176,6 @@ def test_names_of_methods_are_painted_in_their_inks_and_nothing_else():
 
 
 def test_bounded_methods_have_the_time_behind_the_verdict(judged):
-    found = bounded(judged)
-    assert found.text.startswith("Symplectic Euler and Verlet stay bounded")
-    since = float(found.text.split()[-2])
-    assert 20 - judged.exact.period - 0.5 < since <= 20
     shorter = bounded(changed(judged, VERLET, periods=4))
     assert shorter.text.endswith(f" {4 * judged.exact.period:.2g} s.")
     assert bounded(judged, {"symplectic_euler"}).text.startswith("Verlet stays bounded")

@@ -30,6 +30,8 @@ FACTORS = {
     -0.5: "-1/2",
     0.3: "0.3",
     999.96: "1000",
+    9999.6: "10000",
+    1.0: "1",
     16384: "16384",
     2.0**18: "262144",
     2e9: "2e+09",
@@ -64,7 +66,8 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
         (decimal(1.5e9, 8, 3), "+1.5e+09"),
         (decimal(-1e150, 8, 3), " -1e+150"),
         (fitting(1.5e-300, 5, *SIGNED), "#####"),  # not cut to a wrong one
-        (seconds(0), "0.00 s"),
+        (seconds(-0.004), "0.00 s"),
+        (seconds(59.996), "1 min 00 s"),
         (seconds(12.345), "12.35 s"),
         (seconds(-185), "-3 min 05 s"),
         (seconds(3599.6), "1 h 00 min"),

@@ -51,7 +51,7 @@ def said(source: Source, seconds: float) -> list[str]:
 
 def test_descriptions_as_they_are_stored(snapshot):
     live = after(DRIFT, 3)
-    texts = [*description(live), ""]
+    texts = [*description(live), "", description(live, stands_still=True)[0], ""]
 
     def record(failed: str | None) -> None:
         path = Path("mine.mcap")
