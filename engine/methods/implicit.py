@@ -135,8 +135,8 @@ IMPLICIT_MIDPOINT = Method(
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
     note="It keeps the energy of small swings exactly, but not their phase; beyond z = 2 a step "
-    "fails if Newton's iteration, to 1e-12 rad with two evaluations a round, finds no solution. On "
-    "a spring a step has a closed form, counted as one.",
+    "fails if Newton's iteration, to 1e-12 rad with two evaluations a round, finds no solution. A "
+    "step on a spring has a closed form, counted as one evaluation.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )
