@@ -2,10 +2,11 @@
 
 import pytest
 
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import ladder
 from pendu_tui.tui.terminal.options import SMALLEST
 from pendu_tui.tui.views.lab import TimeChart
-from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.views.view import Held, Pane
 from tests.tui.drawn import looks
 from tests.tui.harness import Theatre, lab
 
@@ -66,9 +67,21 @@ async def test_panes_after_keys_and_pointers(snapshot):
         await theatre.run(SECONDS)
         await theatre.pilot.hover(TimeChart, offset=(40, 5))
         await note("pointer")
+        theatre.stage.post_message(Held(1.0))
+        await note("held")
+        theatre.stage.post_message(Held(None))
         await theatre.press("+", "2", "e", "y", "o", "r")
         await theatre.run(5)
         await note("ghost")
         await theatre.press("f3", "right", "up")
         await note("crosshair")
+        await theatre.press("escape", "f2", "o")
+        await theatre.stage.start(SCENES["gentle"])
+        await theatre.run(4)
+        await theatre.press("+", "r")
+        await theatre.run(2)
+        await note("small swings")
+        await theatre.stage.start(SCENES["stiff-slow"])
+        await theatre.run(2)
+        await note("springs")
     snapshot("panes.txt", "\n".join(texts) + "\n")

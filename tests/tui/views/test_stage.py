@@ -5,8 +5,10 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from textual.geometry import Size
 
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
+from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, lanes, stage_picture
 from tests.tui.drawn import cells, size
@@ -76,12 +78,26 @@ async def test_small_swings_are_enlarged_though_explicit_euler_leaves_and_o_show
         stage = theatre.stage.query_one(Stage)
         assert abs(theatre.source.sample.readings[0].theta) > 1
         assert "small angles ×" in stage.border_title
-        widest = 1e-4 * stage._lens(1e-4).times
-        assert [stage._lens(widest / by).times for by in (1.9, 2.1, 3.1)] == [1, 2, 3]
         rk4 = next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3))
         await theatre.press("o")
         assert "×" not in stage.border_title
         assert next(place for place, ink in cells(stage._picture).items() if ink == ("r", 3)) != rk4
+        for columns, below in ((36, "drag: throw it · dotted: exact"), (35, "drag: throw it")):
+            stage.room = Size(columns, 20)
+            stage.draw()
+            assert stage.border_subtitle == below
+
+
+@pytest.mark.parametrize(
+    ("room", "half", "times"),
+    [((20, 6), 0.099, 8), ((43, 22), 0.25, 2), ((43, 22), 0.26, 1), ((20, 30), 0.099, 4)],
+)
+def test_small_swings_are_enlarged_to_23_to_46_degrees_as_the_stage_is_wide(room, half, times):
+    stage = Stage()
+    stage.room = Size(*room)
+    assert stage._lens(half).times == times
+    stage.shown = Shown(theta=half)  # of a shot
+    assert stage._lens(3.0).times == times
 
 
 def on_lane(theatre, place):
@@ -123,8 +139,14 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         await theatre.press("u")
         assert theatre.source.scene == SCENES["drift"]
         assert theatre.source.sample.step == before.step
-        held, *_ = await grabbed(theatre, (15, 9), wait=0)
-        assert held is not None
+        for move, is_drag in (
+            ((15, 9), True),
+            ((14, 9), False),
+            ((12, 11), True),
+            ((12, 10), False),
+        ):
+            held, *_ = await grabbed(theatre, move, wait=0)
+            assert (held is not None) == is_drag
 
 
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
@@ -138,6 +160,9 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
         await theatre.pilot.pause()
         scene = theatre.source.scene
         assert scene.omega == pytest.approx(-5 * scene.w0, abs=0.01)  # the terminal was late
+        theatre.stage.query_one(Stage)._throw([(0.0, 3.1), (0.05, -3.1)], 0.06)  # over the top
+        await theatre.pilot.pause()
+        assert theatre.source.scene.omega == pytest.approx(0.83)
 
 
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
