@@ -27,6 +27,7 @@ async def test_a_theme_changes_all_colours_and_no_character():
             await theatre.pilot.pause()
             seen[theme] = screen(theatre.app)
             assert theatre.app.current_theme.error == PALETTES[theme].warn
+            assert theatre.app.current_theme.dark == (theme == "dark")
             palette = {Color.parse(PALETTES[theme].colour(ink)) for ink in inks}
             assert {style.color for row in seen[theme] for _, style in row} >= palette
         for dark, light in zip(*map(chain.from_iterable, seen.values()), strict=True):

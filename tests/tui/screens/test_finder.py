@@ -34,6 +34,7 @@ async def test_it_has_themes_pixels_and_scenes_first_then_keys_each_once():
         keys = {entry.text: entry.key for entry in theatre.app.screen.found[len(first) :]}
         assert (keys["larger step h"], keys["view: Phase space"]) == ("+", "F3")
         assert len(texts) == len(set(texts))
+        assert "continue a replay live" not in texts
         assert not any("Textual" in text or "Focus" in text for text in texts)
 
 

@@ -1,6 +1,7 @@
 """Every key of the lab does what the help says."""
 
 import runpy
+from itertools import pairwise
 
 import pytest
 
@@ -141,8 +142,36 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
         theatre.source.pause(False)
         theatre.stage.post_message(Held(1.0))
         assert not await runs("held")
+        assert theatre.text(ErrorTable).count(" +0.00000") == 4  # omega
         theatre.stage.post_message(Held(None))
         assert await runs("running")
+        for gap, played in ((0.99, 0.99), (1.01, 0.0)):  # as after ctrl+z
+            before = theatre.source.playhead.position
+            theatre.now += gap
+            theatre.stage.frame()
+            assert theatre.source.playhead.position - before == pytest.approx(played)
+        theatre.now += 0.02
+        theatre.stage.action_pause()
+        assert theatre.source.playhead.position - before == pytest.approx(0.02)
+
+
+async def test_thirty_changes_can_be_undone_and_a_step_takes_the_line_of_its_scene_away():
+    scene = SCENES["euler-caught"]
+    async with lab(scene) as theatre:
+        stage = theatre.stage
+        await theatre.press("+")
+        assert stage.shown.line is None
+        await theatre.press("u")
+        assert stage.shown.line == scene.shot.line is not None
+        for _ in range(40):
+            stage.action_switch("exact")
+            stage.action_window()
+        seen = [stage.shown]
+        for _ in range(31):
+            stage.action_undo()
+            seen.append(stage.shown)
+        changes = [one != other for one, other in pairwise(seen)]
+        assert changes == [*[True] * 30, False]
 
 
 async def test_the_help_begins_with_the_keys_of_the_view_in_front(monkeypatch):

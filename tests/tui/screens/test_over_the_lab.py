@@ -31,6 +31,9 @@ async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
         help_screen.dismiss()
         await theatre.pilot.pause()
         assert theatre.app.screen is theatre.stage
+        await theatre.press("i")
+        await theatre.pilot.click(offset=(0, 0))
+        assert theatre.app.screen is theatre.stage
         theatre.app.call_later(theatre.stage.action_start_values)  # and the app ends meanwhile
 
 

@@ -32,7 +32,7 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
         assert replay.sample.step == 25
         assert "paused" in theatre.text(StatusLine)
 
-        await theatre.press("home", "space", "right_square_bracket")
+        await theatre.press("home", "space", "m", "right_square_bracket")  # no mark in a file
         assert replay.playhead.position == pytest.approx(2)
         await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
         assert replay.playhead.position == pytest.approx(4)
@@ -116,7 +116,10 @@ async def test_where_the_lab_could_not_record_the_replay_stays(path):
         ("r", lambda live: live.sample.step == 0),
         ("p", lambda live: live.scene == SCENES["gentle"]),
         ("f3 right enter", lambda live: live.scene.theta != 1.0),
-        ("T plus escape", lambda live: live.scene.name == "who gains"),
+        (
+            "b T plus escape",
+            lambda live: (live.scene.name, live.playhead.speed) == ("who gains", 1.0),
+        ),
     ],
 )
 async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_back(
@@ -136,6 +139,7 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         assert any(said in notice.message for notice in theatre.app._notifications)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
+        assert replay.playhead.paused
         await theatre.press("u", "right", "full_stop")
         assert theatre.source.sample.step > here.step  # it is still open
     assert path.read_bytes() == before

@@ -30,7 +30,8 @@ def words(theatre: Theatre) -> list[str]:
         texts = [*rows[y : y + min(height - 1, 9)], rows[y + height - 1]]
     shown = theatre.stage.shown._asdict() | {"hidden": sorted(theatre.stage.shown.hidden)}
     texts.append(f"{theatre.stage.view}: {shown}")
-    texts += [f"! {each.message}" for each in app._notifications]
+    notices = app._notifications
+    texts += [f"! {each.message} ({each.severity}, {each.timeout:g} s)" for each in notices]
     app.clear_notifications()
     return [re.sub(r" of \d+:", " of N:", line) for text in texts for line in text.splitlines()]
 

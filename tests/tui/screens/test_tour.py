@@ -92,6 +92,10 @@ async def test_while_a_page_runs_the_other_keys_keep_their_meaning():
         assert "This is your own run now" in panel(theatre)
         await theatre.press("enter")
         assert (theatre.source.stepping.h, theatre.source.sample.step) == (STEPS[0].h, 0)
+        for columns, rows in ((119, 6), (120, 4)):
+            await theatre.pilot.resize_terminal(columns, 40)
+            await theatre.pilot.pause()
+            assert theatre.stage.query_one(LessonPanel).size.height == rows
 
 
 async def test_the_command_begins_with_it():

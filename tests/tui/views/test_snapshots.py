@@ -73,6 +73,8 @@ async def test_panes_after_keys_and_pointers(snapshot):
         await theatre.press("+", "2", "e", "y", "o", "r")
         await theatre.run(5)
         await note("ghost")
+        await theatre.press("z")
+        await note("zoomed ghost")
         await theatre.press("f3", "right", "up")
         await note("crosshair")
         await theatre.press("escape", "f2", "o")
