@@ -450,9 +450,8 @@ class LabScreen(SizedScreen[None]):
     # Settings
 
     def change_shown(self, shown: Shown) -> None:
-        if shown != self.shown:
-            self._undo.append(self.state)
-            self.shown = shown
+        self._undo.append(self.state)
+        self.shown = shown
 
     def action_switch(self, name: str) -> None:
         changes: dict[str, Any] = {name: not getattr(self.shown, name)}
