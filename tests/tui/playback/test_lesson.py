@@ -1,6 +1,5 @@
 """A lesson leads a lab from page to page: to the moment, the question, and the answer."""
 
-import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -10,9 +9,8 @@ import pytest
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Shot
 from pendu_tui.tui.cli.scene import read_scenes
-from pendu_tui.tui.playback.lesson import Lesson, tour
+from pendu_tui.tui.playback.lesson import Lesson
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.words.plain_text import READING, tell
 from tests.tui.harness import FPS, Clocked
 
 DOCUMENTATION = Path(__file__).parents[3] / ".github/docs/lab.md"
@@ -152,31 +150,3 @@ def test_the_lesson_in_the_documentation_is_walked_as_it_stands(tmp_path, live):
     assert stages == ["asked", "answered", "watching", "told"]
     verlet, rk4 = (abs(reading.energy_error) for reading in live.sample.readings[2:])
     assert rk4 > verlet
-
-
-def told(lesson: Lesson, stop_at: float = math.inf) -> list[tuple[float, str]]:
-    now = 0.0
-    lines = []
-
-    def sleep(seconds: float) -> None:
-        nonlocal now
-        now += seconds
-
-    live = Live(lesson.page, clock=lambda: 0.0)
-    emit = lambda line: lines.append((now, line))  # noqa: E731
-    tell(live, emit, lambda: now > stop_at, lambda: now, sleep, lesson)
-    return lines
-
-
-def test_without_a_screen_it_asks_waits_and_answers():
-    lines = [(at, line) for at, line in told(Lesson("Page", [ASKS])) if "Page 1 of" in line]
-    starts = [line.partition(". ")[2][:8] for _, line in lines]
-    assert starts == ["Explicit", "A second", "1: Neith"]
-    asked, answered = (at for at, _ in lines[1:])
-    assert asked == pytest.approx(ASKS.shot.moment / ASKS.speed, abs=0.1)
-    assert answered - asked == pytest.approx(READING, abs=0.1)
-
-
-@pytest.mark.parametrize("stop_at", [1.0, 15.0])
-def test_it_stops_when_it_is_asked_to(stop_at):
-    assert told(tour(), stop_at)[-1][0] <= stop_at + 0.1

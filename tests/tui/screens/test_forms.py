@@ -47,7 +47,7 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
 
 async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen():
     async with lab(size=(100, 40)) as theatre:
-        await theatre.press("M")
+        await theatre.press("plus", "M")
         form = theatre.app.screen
         known = [*METHODS]
         assert form._methods == [each for each in known if "pendulum" in each.models]
@@ -72,3 +72,4 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         await theatre.press("home", "space", "down", "space", "space", "enter")
         await theatre.pilot.pause()
         assert theatre.source.scene.cast == (known[3], known[0])
+        assert theatre.source.scene.h == 0.1

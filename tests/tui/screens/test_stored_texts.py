@@ -15,7 +15,9 @@ KEYS = (
     *("escape", "o", "r", "f3", "x", "escape", "f4", "v", "v", "p", "S", "T", "plus", "enter"),
     *("enter", "backspace", "1", "enter", "escape", "u", "i", "9", "escape", "M", "space", "down"),
     *("space", "escape", "question_mark", "escape", "d", "escape", "E", "escape", "ctrl+p"),
-    *("escape", "P", "escape", "f"),
+    *("escape", "P", "escape", "f", "r", "T", "space", "1", "2", "3", "space", "f3"),
+    *("question_mark", "escape", "plus", "u", "enter", "enter", "enter", "enter", "backspace"),
+    *("u", "u", "u", "3", "enter", "T"),
 )
 
 

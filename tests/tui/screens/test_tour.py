@@ -80,18 +80,9 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert words(STEPS[1].watch) in panel(theatre)
 
 
-async def test_while_a_page_runs_the_other_keys_keep_their_meaning():
+async def test_its_panel_has_six_rows_or_four_on_a_wide_screen():
     async with lab() as theatre:
-        await theatre.press("T", "space", "1", "2", "3")
-        assert theatre.source.playhead.paused
-        assert theatre.stage.shown.hidden == {"velocity_verlet"}
-        await theatre.press("space", "f3", "question_mark", "escape", "plus")
-        await theatre.pilot.pause()
-        assert not theatre.source.playhead.paused
-        assert theatre.stage.view == "phase"
-        assert "This is your own run now" in panel(theatre)
-        await theatre.press("enter")
-        assert (theatre.source.stepping.h, theatre.source.sample.step) == (STEPS[0].h, 0)
+        await theatre.press("T")
         for columns, rows in ((119, 6), (120, 4)):
             await theatre.pilot.resize_terminal(columns, 40)
             await theatre.pilot.pause()
@@ -127,25 +118,3 @@ async def test_of_a_page_that_is_too_long_the_end_is_kept():
         await theatre.pilot.pause()
         assert panel(theatre).startswith("Page 1 of 1")
         assert panel(theatre).endswith("long.")
-
-
-async def test_undo_leads_back_to_the_page_before_and_never_out_of_the_tour():
-    async with lab(SCENES["drift"], (80, 24)) as theatre:
-        await theatre.press("plus", "T", "enter", "enter", "enter", "backspace")
-        assert theatre.source.scene == STEPS[0]
-        await theatre.press("u")
-        assert theatre.source.scene == STEPS[1]
-        assert "Tour 2 of 9" in panel(theatre)
-        await theatre.press("u", "u", "u", "u", "u")
-        assert theatre.source.scene == STEPS[0]
-        assert "Tour 1 of 9" in panel(theatre)
-
-
-async def test_a_run_whose_step_was_changed_and_changed_back_is_the_users_own():
-    async with lab(SCENES["drift"], (80, 24)) as theatre:
-        await theatre.press("T")
-        for key in ("plus", "u"):
-            await theatre.run(1)
-            await theatre.press(key)
-        assert "This is your own run now" in panel(theatre)
-        assert theatre.source.stepping.h == STEPS[0].h

@@ -105,11 +105,3 @@ def test_a_chart_depends_on_the_run_and_not_on_the_frames_or_on_going_back(h, ch
     scene = WHOLE.altered(h=h)
     expected = charted(60, scene, changes=changes)
     assert charted(3, scene, changes=changes, returns=True) == expected
-
-
-async def test_a_chart_of_the_shadow_energy_names_the_methods_that_have_one():
-    async with lab() as theatre:
-        await theatre.pilot.press("e", "e")
-        await theatre.run(1)
-        chart = theatre.stage.query(TimeChart).first()
-        assert str(chart.border_subtitle) == "shadow energy is known for s and v only"

@@ -17,6 +17,7 @@ from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import insight
 from pendu_tui.tui.words.plain_text import (
+    READING,
     description,
     event_lines,
     method_sentence,
@@ -99,16 +100,22 @@ def test_every_event_has_a_sentence_also_at_another_speed():
         said(live, 1)
 
 
-def test_a_lesson_gives_time_to_read_a_question_before_it_answers():
+def test_a_lesson_asks_at_its_moment_and_gives_time_to_read_before_it_answers():
     clock = Hour()
-    sentences = []
+    told = []
     lesson = tour()
-    end = clock.now + 7.15 + 5  # the pause, and less than READING
+    shot = lesson.shot
+    begin = clock.now
     live = Live(lesson.page, clock=clock.read)
-    tell(live, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, lesson=lesson)
-    told = "\n".join(sentences)
-    assert lesson.shot.question in told
-    assert lesson.shot.truth not in told
+
+    def emit(sentence):
+        told.append((clock.now - begin, sentence))
+
+    tell(live, emit, lambda: clock.now > begin + 25, clock.read, clock.sleep, lesson=lesson)
+    asked = next(at for at, sentence in told if shot.question in sentence)
+    answered = next(at for at, sentence in told if shot.truth in sentence)
+    assert asked == pytest.approx(shot.moment, abs=0.1)
+    assert answered - asked == pytest.approx(READING, abs=0.1)
 
 
 def test_a_replay_ends_at_its_end():
