@@ -66,8 +66,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         await theatre.press("enter")
         assert theatre.app.screen is form  # not without a method
         said = [notice.message for notice in theatre.app._notifications]
-        assert said[0] == f"No more than {MAX_METHODS} methods fit: leave one out first."
-        assert said[-1] == "Take at least one method."
+        assert [str(MAX_METHODS) in each for each in said] == [True, False]
         await click(3)
         await theatre.press("home", "space", "down", "space", "space", "enter")
         await theatre.pilot.pause()
