@@ -1,13 +1,17 @@
 """Which requests `pendu-tui serve` answers."""
 
 import argparse
+import pickle
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from aiohttp import web
 
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.commands import serve
+from pendu_tui.tui.terminal.options import TerminalOptions
+from tests.tui.command_line import pendu
 
 OURS = "127.0.0.1:8000"
 
@@ -44,3 +48,22 @@ async def test_a_lab_is_for_pages_of_this_computer_while_one_is_free(
         return
     with pytest.raises(getattr(web, refusal)):
         await server.check(request, handler)
+
+
+def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path, monkeypatch):
+    told = []
+
+    class Server:
+        def __init__(self, settings, options):
+            told.append(pickle.loads(settings.read_bytes()))
+
+        async def run(self):
+            if len(told) > 2:
+                raise OverflowError("no such port.")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(serve, "LabServer", Server)
+    line = ("serve", "spin", "--theme", "light", "--record", "folder")
+    assert [pendu(*line).code for _ in range(2)] == [130, 130]
+    assert told[0] == (SCENES["spin"], TerminalOptions("light"), tmp_path / "folder")
+    assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 8000: no such port; use")

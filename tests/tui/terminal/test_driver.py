@@ -13,6 +13,7 @@ from textual.color import Color
 from textual.drivers._writer_thread import WriterThread
 
 from pendu_tui.tui.drawing.canvas import Canvas
+from pendu_tui.tui.terminal import driver
 from pendu_tui.tui.terminal.driver import (
     CharacterSetFilter,
     PatientParser,
@@ -64,6 +65,22 @@ def test_the_terminal_is_behind_while_textuals_queue_holds_a_frame():
     writer.write("a frame")
     assert is_writing(app)
     assert not is_writing(SimpleNamespace(_driver=None))  # which has no such queue
+
+
+def test_a_paste_without_an_end_counts_as_ended_after_2_s(monkeypatch):
+    now = 0.0
+    monkeypatch.setattr(driver, "time", SimpleNamespace(monotonic=lambda: now))
+    parser = PatientParser()
+    assert not [*parser.feed("\x1b[200~text")]
+    now = 1.9
+    assert not [*parser.tick()]
+    now = 2.1
+    assert [each.text for each in parser.tick()] == ["text"]
+    assert [each.key for each in parser.feed("q")] == ["q"]
+    in_parts = [*parser.feed("\x1b[200~more\x1b[2"), *parser.feed("01~")]
+    assert [each.text for each in in_parts] == ["more"]
+    now = 9.0
+    assert not [*parser.tick()]
 
 
 @pytest.mark.parametrize("name", ["linux_driver", "web_driver", "win32"])

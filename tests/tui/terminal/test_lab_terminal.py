@@ -158,19 +158,6 @@ def test_a_method_that_cannot_be_interrupted_ends_the_lab_with_a_sentence(
         assert recording.length > 0.5
 
 
-@pytest.mark.parametrize("paste", ["\x1b[200~text\x1b", "\x1b[200~q\x1b[201~\x1b[200~"])
-def test_a_paste_without_an_end_counts_as_ended_after_2_s(library, paste):
-    with lab(library) as session:
-        session.wait_for(RECORDING)
-        session.type(paste)
-        session.run(1.0)
-        session.type(" ")
-        session.run(1.5)
-        assert b"paused" not in session.output
-        session.type(" ")
-        session.wait_for("paused")
-
-
 def test_a_bug_ends_the_lab_with_a_traceback_and_its_recording_is_finished(library):
     with lab(library, program=program(mark="raise ZeroDivisionError('in the lab')")) as session:
         session.wait_for(RECORDING)
@@ -196,13 +183,3 @@ def test_a_lab_that_cannot_record_after_all_ends_with_a_sentence(library):
         printed = session.output.decode().rpartition("\x1b[")[2]
     assert printed.count("pendu-tui: ") == 1
     assert "the disk is full; free some space" in " ".join(printed.split())
-
-
-def test_a_terminal_that_cannot_move_its_cursor_gets_a_sentence_and_exit_4(library):
-    with lab(library, TERM="dumb") as session:
-        assert session.end() == 4
-        printed = session.output.decode()
-    assert printed.startswith("pendu-tui: ")
-    assert "TERM=dumb" in printed
-    assert printed.count("\n") == 1
-    assert not library.exists()

@@ -1,3 +1,4 @@
+import sys
 from contextlib import nullcontext
 from types import SimpleNamespace
 
@@ -13,6 +14,8 @@ from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
     TerminalOptions,
+    cells,
+    check_terminal,
     colours,
     terminal_options_of,
 )
@@ -84,8 +87,27 @@ def test_the_screen_has_the_frames_that_were_asked_for():
 
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
     assert chosen(encoding="utf8") == TerminalOptions("dark", "braille", mouse=True, fps=30)
+    assert chosen("--fps 60").fps == 60
     assert chosen(encoding="latin-1").character_set == "ascii"
     assert chosen(TEXTUAL_ANIMATIONS="None").fps == CALM_FPS == 10
+
+
+@pytest.mark.parametrize("text", ["59x16", "60x15", "401x200", "400x201", "80", "80x24x2"])
+def test_a_screen_has_60x16_to_400x200_cells(text):
+    assert [cells("60x16"), cells("400×200")] == [(60, 16), (400, 200)]
+    with pytest.raises(ValueError, match="is not a size; use for example 120x40, from 60x16"):
+        cells(text)
+
+
+@pytest.mark.parametrize("stream", ["stdin", "stdout", "stderr", ""])
+def test_the_lab_needs_a_terminal_for_all_that_it_reads_and_writes(stream, monkeypatch):
+    monkeypatch.setattr(options, "environment", lambda: {"TERM": "dumb"})
+    for name in ("stdin", "stdout", "stderr"):
+        terminal = SimpleNamespace(isatty=lambda is_one=name != stream: is_one)
+        monkeypatch.setattr(sys, name, terminal)
+    with pytest.raises(UserError, match="not a term" if stream else "TERM=dumb") as error:
+        check_terminal()
+    assert error.value.code == 4
 
 
 @pytest.mark.parametrize("arguments", ["--fps 0", "--fps 61", "--fps 1.5", "--theme pink"])
