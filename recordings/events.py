@@ -123,7 +123,7 @@ def method_named(name: str) -> Method:
     that was may have another source than the recorded one.
     """
     key, is_own, _ = name.partition("@")
-    if is_own and key in _own:
+    if key in _own:
         return _own[key]
     if not is_own:
         try:

@@ -145,7 +145,7 @@ class Recorder:
 
     def keep_older(self) -> None:
         """Do not replace an older file, because this recording is not whole: choose a free name."""
-        if self._overwrite and os.path.lexists(self.path):
+        if os.path.lexists(self.path):
             self.path = free_path(self.path)
         self._overwrite = False
 

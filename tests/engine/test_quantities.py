@@ -3,7 +3,7 @@
 import math
 
 from pendu_tui.engine.models import MODELS, NUMBERS
-from pendu_tui.engine.quantities import CHARTED, QUANTITIES, RECORDED
+from pendu_tui.engine.quantities import CHARTED, EXTREMES, QUANTITIES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading
 
 
@@ -14,6 +14,7 @@ def test_a_reading_has_the_recorded_quantities_in_order_and_requires_those_alway
     defaults = Reading._field_defaults
     optional = {each.name for each in RECORDED if each.recorded == "if known"}
     assert set(defaults) - {"extra"} <= optional
+    assert {each.name for each in RECORDED if not each.in_gate} == {*EXTREMES}
 
 
 def test_no_two_quantities_share_a_name_or_a_head():

@@ -95,9 +95,12 @@ def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_writ
     assert verify(recorder.path).samples == 2
 
 
-def test_a_recording_without_a_start_leaves_no_file(tmp_path):
-    with Recorder(tmp_path / "a.mcap") as recorder:
+@pytest.mark.parametrize("kind", [Recorder, LiveRecorder])
+def test_a_recording_without_a_start_leaves_no_file(tmp_path, monkeypatch, kind):
+    monkeypatch.setattr("pendu_tui.recordings.recorder.FLUSH_EVERY", 0.01)
+    with kind(tmp_path / "a.mcap") as recorder:
         assert recorder.part.exists()
+        time.sleep(0.03)  # longer than between two flushes
     assert not list(tmp_path.iterdir())
 
 

@@ -3,6 +3,7 @@
 import cmath
 import math
 import re
+import zlib
 from itertools import islice
 
 import mpmath as mp
@@ -22,6 +23,7 @@ from pendu_tui.engine.methods import (
     learned,
     matching,
     measure,
+    method_of,
 )
 from pendu_tui.engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from pendu_tui.engine.methods.method import no_order
@@ -30,7 +32,8 @@ from pendu_tui.engine.methods.tangent import jacobian
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.run.loops import PlainLoops, count_evaluations
 from pendu_tui.engine.scenes import Scene
-from tests.models import EQUATIONS
+from pendu_tui.recordings.events import fingerprint
+from tests.models import EQUATIONS, EXAMPLES
 
 PENDULUM = Pendulum(9.81)
 FORCE = PENDULUM.force()
@@ -59,6 +62,55 @@ def test_the_measured_properties_are_the_claimed_ones(method):
     else:
         cost = (method.force_evaluations, int(method.first_same_as_last))
         assert (found.force_evaluations, found.more_at_the_start) == cost
+
+
+BITS = {  # checksums of 20 steps
+    "explicit_euler": 0x1355656D,
+    "symplectic_euler": 0x8A9789B7,
+    "velocity_verlet": 0xB7A7DE8F,
+    "position_verlet": 0x5B7D5E30,
+    "rk4": 0x4ED50D2F,
+    "heun": 0xA2510F42,
+    "explicit_midpoint": 0x10894CF3,
+    "forest_ruth": 0xC993FDD5,
+    "yoshida_6": 0xE181E78D,
+    "blanes_moan_4": 0x9E191DE9,
+    "blanes_moan_6": 0xD8541C39,
+    "backward_euler": 0xF66336BC,
+    "implicit_midpoint": 0xCAB74901,
+    "lagged_verlet": 0x7304AB24,
+    "conformal_verlet": 0x9C448EB8,
+    "halving_verlet": 0x514BC455,
+    "halving_richardson": 0xC03502BF,
+    "verlet_float32": 0xE02E11A0,
+    "verlet_compensated": 0xEDB1F3C1,
+    "respa": 0xF47290BC,
+    "imex_euler": 0xCD65094F,
+    "mean_field_splitting": 0xCEC0701C,
+    "rk4_learned_field": 0xA6A82F40,
+    "rk4_learned_hamiltonian": 0x12039CF9,
+    "learned_map": 0xA9200A71,
+    "learned_symplectic_map": 0xF742F848,
+}
+
+
+def cubic(q):
+    """A force that has the same bits everywhere."""
+    return q * q * q / 6 - q
+
+
+@pytest.mark.parametrize("key", BITS)
+def test_every_bit_of_a_step_is_as_recordings_know_it(key):
+    method = method_of(key)
+    model = EXAMPLES[method.models[0]].equations
+    takes, phases = method.phases_for(model)
+    taken = cubic
+    if takes == "parts":
+        if fingerprint("sin") != "977b70889c532ffc":
+            pytest.skip("this machine has another sine")
+        taken = model.parts()
+    path = list(islice(phases(taken, model.start(1.0, 0.5), 0.1), 20))
+    assert zlib.crc32(repr(path).encode()) == BITS[key]
 
 
 STEPS = {1: (8000, 16_000), 2: (100, 141, 200, 283), 3: (80, 113, 160), 4: (100, 140, 200)}
@@ -263,6 +315,21 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
 )
 def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed, keys):
     assert [method.key for method in matching(typed)] == keys
+
+
+@pytest.mark.parametrize(
+    ("share", "above", "kept"),
+    [(1e-16, 0.0, True), (1e-10, 0.0, False), (1e-10, 7.5, False)],  # rad/s
+)
+def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, kept):
+    def losing(force, phase, h):
+        while True:
+            theta, omega = VELOCITY_VERLET.step(force, phase, h)
+            phase = theta, omega * (1 - share * (abs(omega) > above))
+            yield phase
+
+    assert measure.is_reversible(losing) == kept
+    assert above or measure.is_symplectic(losing) == kept
 
 
 @pytest.mark.parametrize(

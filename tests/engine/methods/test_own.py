@@ -11,27 +11,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
+from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
-from pendu_tui.engine.models.pendulum import Pendulum
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.run.loops import PlainLoops, compiled
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.engine.studies.stability import Grid, Part
-from tests.own_methods import load
+from tests.own_methods import VERLET, load
 
-VERLET = '''
-def mine(force, phase, h):
-    """Half a kick, a drift, half a kick."""
-    theta, omega = phase
-    a = force(theta)
-    while True:
-        omega_half = omega + h / 2 * a
-        theta = theta + h * omega_half
-        a = force(theta)
-        omega = omega_half + h / 2 * a
-        yield theta, omega
-'''
 EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
 
 
@@ -67,6 +53,7 @@ def test_verlet_written_again_is_measured_to_be_verlet():
     assert mine.linear_limit == pytest.approx(2, abs=1e-9)
     for field in ("force_evaluations", "first_same_as_last", "symplectic", "reversible"):
         assert getattr(mine, field) == getattr(verlet, field)
+    assert family_of("mine") == "your own"
     assert (mine.key, mine.label, mine.letter) == ("mine", "Mine", "m")
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
 
@@ -103,10 +90,6 @@ def test_it_has_the_same_bits_in_another_process():
     assert (mine == grid.cells()[:, 0]).all()
 
 
-def test_it_is_never_compiled():
-    assert isinstance(compiled(load(VERLET), Pendulum(9.81)), PlainLoops)
-
-
 WRONG = {
     "a step instead of a generator": (
         f"def mine(force, phase, h):\n    theta, omega = phase\n    {EULER}\n    return theta, omega",
@@ -120,6 +103,10 @@ WRONG = {
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
         "        omega += h * force(theta)\n        yield theta, omega",
         "with NumPy arrays, which stability needs: use only +, -, * and / on theta and omega, and theta =",
+    ),
+    "one number of an array": (
+        euler(yields="np.mean(theta), np.mean(omega)", before="import numpy as np"),
+        "this was with NumPy arrays, which stability needs",
     ),
     "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
@@ -163,8 +150,9 @@ def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
         lockstep.advance(30_000)
 
 
-def test_it_diverges_as_any_method_does():
-    lockstep = Lockstep(SCENES["linear"].with_cast((load(euler()),)))
+@pytest.mark.parametrize("step", ["", "omega ** 4"])  # a power overflows with an exception
+def test_it_diverges_as_any_method_does(step):
+    lockstep = Lockstep(SCENES["linear"].with_cast((load(euler(step)),)))
     lockstep.advance(10_000)
     (reading,) = lockstep.sample().readings
     assert reading.diverged_at is not None

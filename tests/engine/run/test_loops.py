@@ -21,6 +21,7 @@ from pendu_tui.engine.run.loops import (
     count_evaluations,
 )
 from tests.models import EQUATIONS, EXAMPLES
+from tests.own_methods import VERLET, load
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
@@ -166,6 +167,10 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
         assert loops.propagate(*start) == plain.propagate(*start)
         assert loops.advance(*start, math.inf) == plain.advance(*start, math.inf)
     assert used == compiled_steps
+
+
+def test_a_method_of_ones_own_is_never_compiled():
+    assert isinstance(compiled(load(VERLET), PENDULUM), PlainLoops)
 
 
 def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):

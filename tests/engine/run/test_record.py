@@ -337,6 +337,10 @@ def test_a_slope_is_within_a_limit_beyond_it_or_not_known(slope, bound, limit, e
 def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():
     assert fluctuation(T, 50 + 0.1 * T + 3 * NOISE).size == pytest.approx(3.0, rel=0.05)
     assert fluctuation(T, np.full(2000, 7.0)) == (0.0, 0.0)
+    squares = np.repeat([1.0, 3.0] * 8, 100)  # of a sixteenth of a record each
+    found = fluctuation(np.arange(1600.0), np.sqrt(squares) * (-1.0) ** np.arange(1600))
+    error = math.sqrt(16 / 15) / 4  # of their mean, 2
+    assert found == pytest.approx((math.sqrt(2), error / math.sqrt(8)), rel=1e-3)
 
 
 @pytest.mark.parametrize("times", [1e6, 200])

@@ -1,5 +1,7 @@
 """The change of area along a run, and a ring of neighbours that follows a run."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,13 @@ def test_symplectic_methods_keep_area_and_rk4_loses_it_slowly():
     # each step rounds its determinant by about 1e-16, and the roundings add up like a walk or worse
     assert (symplectic, verlet) == pytest.approx((1.0, 1.0), abs=1e-12)
     assert 0.998 < rk4 < 0.99998
+
+
+def test_area_is_counted_also_where_a_step_turns_it_over():
+    scene = Scene(theta=3.0, h=1.5 / Scene().w0)
+    neighbourhood = Neighbourhood(scene, radius=0.05)
+    neighbourhood.advance(1, Stepping(scene.h))
+    assert neighbourhood.area_ratios[0] == pytest.approx(-1 - 1.5**2 * math.cos(3.0))
 
 
 def shoelace(ring):

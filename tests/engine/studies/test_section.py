@@ -8,6 +8,7 @@ import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
 from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
+from pendu_tui.engine.studies import section
 from pendu_tui.engine.studies.section import (
     iterate,
     kind_of,
@@ -87,6 +88,13 @@ def test_a_curve_beside_a_resonance_is_no_island():
         assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
 
 
+@pytest.mark.parametrize(("off", "island"), [(0.09, True), (0.11, False)])
+def test_an_island_leaves_its_fraction_by_less_than_a_tenth_of_a_turn_in_all(off, island):
+    points = orbit(VERLET, UNIT, 1.09, (1.25, 0.0), 4000)
+    rotation = 1 / 6 + off / 4000
+    assert section._is_island(points, 1.0, rotation, Fraction(1, 6), False) == island
+
+
 def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
     for omega in (math.pi / 0.5, -math.pi / 0.5):  # omega h = pi
         spun = kind(SYMPLECTIC, 0.1, 0.5, omega=omega)
@@ -127,6 +135,9 @@ def test_at_rest_and_in_few_steps_nothing_turns():
     for steps in (1, 2, 5):
         found = kind(VERLET, 1.0, 0.3, steps)
         assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
+    angle = 0.13 * math.tau * np.arange(5)  # two steps in each half
+    assert rotation_number(np.cos(angle), -np.sin(angle), w0=1.0) == pytest.approx(0.13)
+    assert rotation_number(np.cos(angle[1:]), -np.sin(angle[1:]), w0=1.0) is None
 
 
 def test_an_orbit_ends_where_numbers_stop_being_finite():
