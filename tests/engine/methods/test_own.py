@@ -138,6 +138,8 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
         "print('here'); __import__('sys').stdout.write('there')", yields="[theta, omega]"
     )
     assert load(source).order == 1
+    more = euler("np.max(np.abs(theta)) > 0.5 and force(theta)", "import numpy as np")
+    assert load(more).force_evaluations == 2  # 1.6 a step
     printed = capsys.readouterr()
     assert not printed.out
     assert "here\nthere" in printed.err

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import EnergyReference, State
-from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
+from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum, _carlson_rf
 from pendu_tui.engine.scenes import Scene
 from tests.truths import LIMITS
 
@@ -71,6 +71,11 @@ def test_the_swing_is_exact_to_1e_12_and_back_after_its_period(start):
     theta, omega = exact.at(exact.period)
     assert theta - turn == pytest.approx(scene.theta, rel=1e-12, abs=1e-10)
     assert omega == pytest.approx(scene.omega, rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize("x", np.linspace(0, 0.95, 20).tolist())
+def test_carlsons_integral_is_right_to_the_last_digits(x):
+    assert _carlson_rf(x, 0.7, 1.0) == pytest.approx(float(mp.elliprf(x, 0.7, 1)), rel=2e-15)
 
 
 @settings(max_examples=60)

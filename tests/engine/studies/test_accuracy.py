@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import TAYLOR_20, USUAL_CAST, Method, method_of
+from pendu_tui.engine.methods import GENERAL, TAYLOR_20, USUAL_CAST, Method, method_of
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run.loops import PlainLoops, compiled, count_evaluations
 from pendu_tui.engine.scenes import SCENES
@@ -24,6 +24,7 @@ from pendu_tui.engine.studies.accuracy import (
     rounding_floor,
     timed,
     usual,
+    with_all_methods,
 )
 
 E, S, V, R = USUAL_CAST
@@ -126,6 +127,12 @@ def test_seconds_are_the_shortest_of_five_of_many_steps_with_their_spread():
     found = timed(point, DRIFT, clock, Counting)
     assert calls == 1001 * [100]  # 20 000 steps a measurement
     assert (found.seconds, found.spread) == pytest.approx((3.0 / 200, 1.0))
+
+
+def test_with_all_methods_each_general_one_is_there_once_and_the_cast_first():
+    cast = with_all_methods(replace(DRIFT, cast=(R, E))).cast
+    assert cast[:2] == (R, E)
+    assert sorted(cast, key=GENERAL.index) == list(GENERAL)
 
 
 def test_a_scene_at_rest_has_no_errors():
