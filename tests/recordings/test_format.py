@@ -88,7 +88,10 @@ def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
         assert declared["type"] in ("integer", "number", "string", "boolean", "array"), name
         assert not {"anyOf", "oneOf", "$ref"} & set(declared), name
         assert ("items" in declared) == (declared["type"] == "array")
-    assert schema["properties"].get("theta", {}).get("description") == "rad"
+    told = {name: each.get("description") for name, each in schema["properties"].items()}
+    units = {"t": "s", "theta": "rad", "trend": "s^-1", "lyapunov": "s^-1", "vx": "s^-1"}
+    units |= {"speed": "times real time", "max_energy_error": "over every step so far"}
+    assert told.items() >= {name: units[name] for name in units.keys() & told.keys()}.items()
 
 
 def test_a_nonfinite_number_is_never_written():

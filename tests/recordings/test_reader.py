@@ -200,6 +200,14 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(path, o
     assert verify(out).identical
 
 
+@pytest.mark.parametrize("number", [1, 3, 5])
+def test_each_entry_of_a_lost_chunk_is_counted(path, number):
+    with path.open("rb") as stream:
+        _, groups = reader.read_chunk(stream, places_in(path)[number].offset)
+    with Recording.open(spoil(path, number), check=True) as recording:
+        assert recording.entries_lost == len(groups)
+
+
 def test_without_its_start_a_run_is_lost(path, out):
     path.unlink()
     with pytest.raises(RecordingError, match="are lost"):

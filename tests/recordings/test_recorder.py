@@ -237,6 +237,7 @@ def test_a_real_file_size_limit_is_survived(tmp_path):
     [
         (0.1, 2.0, 6, [0, 6, 12, 18, 20]),
         (0.1, 0.3, None, [0, 1, 2, 3]),
+        (0.1, 0.0, None, [0]),
         (0.004, 0.1, None, [0, 8, 16, 24, 25]),  # 1/30 s are 8.3 steps
     ],
 )
@@ -251,7 +252,9 @@ def test_each_milestone_is_recorded_once_at_the_next_sample():
     list(simulate(scene, 40.0, lambda *entry: entries.append(entry), sample_every=7))
     lockstep = Lockstep(scene, judged=True)
     lockstep.advance(800)
-    recorded = [(value.milestone, t) for value, t in entries if getattr(value, "milestone", None)]
+    noticed = [(value, t) for value, t in entries if getattr(value, "milestone", None)]
+    assert all(event[2:4] == event.milestone[2:4] for event, _ in noticed)  # step and time
+    recorded = [(event.milestone, t) for event, t in noticed]
     at = [min(math.ceil(each.step / 7) * 7, 800) * scene.h for each in lockstep.milestones]
     assert recorded == list(zip(lockstep.milestones, at, strict=True)) != []
 

@@ -107,3 +107,6 @@ def test_milestones_are_in_the_order_of_steps_also_while_time_runs_back():
     for step, t in ((200, 10.0), (600, 4.0)):
         run.add(9.0, noticed(1, Milestone("over the top", RK4, step, t, 0.1)))
     assert [each.step for each in run.milestones] == [200, 600]
+    for step, t, h in ((20, 2.0, -0.05), (60, 0.0, 0.1)):
+        run.add(9.0, Event("set_h", 1, step, t, h=h))
+    assert [change.x for change in run.changes] == [0.0, 2.0, 4.0]  # s on the way

@@ -337,7 +337,9 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
     [
         ("moan", "may be blanes_moan_4 or blanes_moan_6"),
         ("verlt", "choose from explicit_euler, rk4, lagged_verlet, conformal_verlet"),
-        ("rk4 RK4", "given twice"),
+        ("rk4 RK4", "rk4 is given twice"),
+        ("", "for example rk4"),
+        ("conformally-symplectic-verlett", "did you mean conformal_verlet?"),
     ],
 )
 def test_a_name_of_no_or_of_several_methods_is_refused(names, why):
@@ -346,5 +348,14 @@ def test_a_name_of_no_or_of_several_methods_is_refused(names, why):
 
 
 def test_what_was_measured_is_told_in_words():
-    told = str(measure.measured(IMPLICIT_MIDPOINT.phases)._replace(reversible=False))
-    assert "symplectic        yes\nreversible        no\nstable            at any h" in told
+    found = measure.measured(IMPLICIT_MIDPOINT.phases)
+    told = str(found._replace(order=1.9876, force_evaluations=6.54, reversible=False))
+    assert told.splitlines() == [
+        "order             1.988",
+        "force evaluations 6.54 per step",
+        "symplectic        yes",
+        "reversible        no",
+        "stable            at any h (small swings)",
+    ]
+    assert "\nstable            at no h (" in str(found._replace(linear_limit=0.0))
+    assert "\nstable            up to z = h·w0 = 2.345 (" in str(found._replace(linear_limit=2.345))

@@ -28,6 +28,19 @@ def test_every_model_has_a_scene_and_no_two_a_number_of_the_same_name():
     assert EXAMPLES.keys() == MODELS.keys()
     names = [number.name for model in MODELS.values() for number in model.parameters]
     assert len(names) == len(set(names))
+    symbols = {model.key: model.frequency_symbol for model in EQUATIONS}
+    assert symbols == dict.fromkeys(MODELS, "w0") | {"spring": "omega_s", "mean_field": "nu"}
+
+
+def test_a_model_adds_columns_to_readings():
+    columns = {}
+    for model in EQUATIONS:
+        extra = model.observe(model.start(1.0, 0.5)).extra
+        columns |= {each.head: (each.wide_head, each.value(extra)) for each in model.extra_columns}
+    length = pytest.approx(abs(SPRING.start(1.0, 0.5)[0]))
+    energy = pytest.approx(2500 * 0.04**2 / 2, rel=1e-2)
+    spring = {"length": ("length", length), "spring": ("spring E", energy)}
+    assert columns == spring | {"|s|": ("probability", 1.0)}
 
 
 @each_model
@@ -90,7 +103,7 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     expected = [1, math.log(reference.least / true)]
     assert reference.errors(30.0, true * math.e, 0.0) == pytest.approx(expected)
     assert reference.least == pytest.approx(1e-24 * 9.81)
-    assert math.isfinite(reference.errors(30.0, math.inf)[0])
+    assert reference.errors(30.0, math.inf)[0] == pytest.approx(math.log(1e300 / true))
     # of an energy that is hardly a number, and far back in time, there are still numbers
     assert DampedPendulum(9.81, 0.1).reference(1e-157, 0.0).errors(30.0, 0.0) == [0]
     assert np.isfinite(DampedPendulum(9.81, 20.0).reference(2.0, 0.0).errors(-1000.0, 10.0)).all()

@@ -260,6 +260,8 @@ def test_before_four_swings_there_is_neither_verdict_nor_slope():
         assert (judgement.verdict, judgement.slope is not None) == ("undecided", known)
         assert judgement.progress is not None
         assert judgement.progress.have < judgement.progress.need
+    judgement = judge_of([0.0] * 33).judgement
+    assert str(judgement) == str(judgement._replace(reason="")) == "undecided: 2 of 4 swings"
 
 
 def test_a_run_that_has_grown_is_not_called_losing_later():

@@ -267,6 +267,8 @@ def test_a_wave_explains_95_percent_of_what_a_line_leaves(other, is_wave):
     t = np.arange(64) / 64
     values = 3 * t + np.sin(5 * math.pi * t) + other * np.sin(40 * math.pi * t)
     assert (core.without_wave(t, values) is not values) == is_wave
+    wave = np.cos(math.tau * 2.62 * t / t[-1] + 1)  # of any frequency, to a hundredth of a cycle
+    assert np.abs(core.without_wave(t, wave)).max() < 1e-3
 
 
 def test_bins_are_blocks_of_equally_many_samples():
@@ -299,6 +301,7 @@ def test_a_digit_is_a_jump_that_comes_three_times():
 def test_64_samples_are_needed():
     few = judge_record(T[:63], 1000 + SINE[:63])
     assert (few.verdict, few.reason) == ("undecided", "64 samples are needed")
+    assert few.independent == 63
     assert judge_record(T[:64], 1000 + SINE[:64]).reason != few.reason
     assert fluctuation(T[:64], NOISE[:64]).size > 0
     with pytest.raises(ValueError, match="too few"):

@@ -58,6 +58,14 @@ def test_errors_are_the_largest_of_the_run(steps):
     assert sampled["energy"] == largest
 
 
+@pytest.mark.parametrize("steps", [799, 800, 1199, 5000])
+def test_a_run_is_compared_at_400_times_or_more_below_800(steps):
+    study, times = Study(DRIFT, 10.0), []
+    study.exact = DRIFT.exact()._replace(at=lambda t: times.append(t) or DRIFT.exact().at(t))
+    study.run(V, steps)
+    assert 400 <= len(times) < 800
+
+
 def test_a_failed_run_is_kept_with_its_flaw():
     def failing(force, phase, h):
         yield from islice(V.phases(force, phase, h), 50)

@@ -100,6 +100,8 @@ def test_they_go_back_with_the_run_and_begin_again_with_another():
     assert np.array_equal(rings(neighbours, run), expected((15, 0.05), (2, 0.1)))
     gentle = RewindableRun(SCENES["gentle"], 3)
     gentle.forward(4)
+    assert neighbours.ring_of(gentle.scene, 3) is None
+    assert neighbours.ring_of(DRIFT, 2) is not None
     assert np.array_equal(
         rings(neighbours, gentle), expected((4, gentle.scene.h), scene=gentle.scene)
     )
