@@ -39,7 +39,7 @@ def implicit(share: float) -> Phases:
         return _solving(share, size=np.abs, any_of=np.any, root=np.sqrt)
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        if any(hasattr(value, "shape") for value in (*phase, h)):
+        if any(hasattr(value, "shape") for value in phase):
             yield from for_arrays()(force, phase, h)
         yield from for_numbers(force, phase, h)
 

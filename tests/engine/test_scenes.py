@@ -67,6 +67,8 @@ def test_every_scene_has_its_name_and_group_and_says_what_to_watch():
         assert scene.name == name
         assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and a blank
         assert scene.h / scene.speed < 0.4  # s from a step to the next
+        if moment := scene.shot.moment:
+            assert moment / scene.h == pytest.approx(round(moment / scene.h))
         if line := scene.shot.line:
             fences = {"pi/h": math.pi / scene.h, "2 pi/h": math.tau / scene.h}
             assert line.value == pytest.approx(fences.get(line.name, line.value))

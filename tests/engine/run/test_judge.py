@@ -254,6 +254,15 @@ def test_at_equal_cost_judges_count_each_methods_own_steps():
     assert [each.periods for each in lockstep.judgements] == pytest.approx([periods] * 4, rel=0.01)
 
 
+def test_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_looked():
+    lockstep = Lockstep(DRIFT, judged=True)
+    lockstep.set_stepping(Stepping(0.04, True, DRIFT.cast))
+    # a swing takes 53.6 steps, and there is a look point every 7 steps
+    swings = [lockstep.progress(2, steps).have for steps in (105, 108, 112)]
+    assert swings == [1, 1, 2]
+    assert lockstep.progress(2, 6) is None
+
+
 def test_before_four_swings_there_is_neither_verdict_nor_slope():
     for steps, known in ((64, False), (66, True)):
         judgement = judge_of([0.0] * steps).judgement
@@ -296,9 +305,11 @@ def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length():
 
 @pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
 def test_a_band_has_left_the_start_by_half_its_width(sign, word):
-    for middle, expected in ((1.95, ("undecided", False)), (2.05, (word, True))):
+    for middle, expected in ((1.95, ("undecided", levels.NEAR)), (2.05, (word, ""))):
         errors = sign * (middle + np.sin(np.arange(6000) / 3))
-        assert told([0.0, *errors[1:]]) == expected
+        found = judge_of([0.0, *errors[1:]]).judgement
+        assert (found.verdict, found.reason) == expected
+        assert found.rests == (word == found.verdict)
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.24, "grows"), (0.26, "undecided")])
