@@ -212,8 +212,8 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
     for key in shot.front:
         _check("front", "method", key, (method.key for method in scene.cast))
     if shot.moment is None and (shot.question or shot.returns):
-        why = "it needs a moment; use for example moment = 12.5."
-        raise _FieldError(why, "question" if shot.question else "returns")
+        name = "question" if shot.question else "returns"
+        raise _FieldError(f"{name} needs a moment; use for example moment = 12.5.", name)
     count = len(shot.answers)
     if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
         raise _FieldError(

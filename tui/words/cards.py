@@ -22,7 +22,7 @@ GLOSSARY = {
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
     "colours": "each method keeps its colour and letter everywhere; its digit is its place, "
     "and its key",
-    "×": "in the chart: one error passes another, and stays above it",
+    "×": "in the chart: one error passes another for good",
     "dotted": "the exact motion",
     "dim": "the run before the restart (r), with its own step",
 }

@@ -74,7 +74,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
-        ("[shot]\nreturns = true", "line 2: it needs a moment; use for example moment ="),
+        ("[shot]\nreturns = true", "line 2: returns needs a moment; use for example"),
         (
             "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
             "line 3: a question has 2 to 4 answers, and the number of the right one",
