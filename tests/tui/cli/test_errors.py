@@ -1,0 +1,40 @@
+"""How sentences and progress are shown."""
+
+import io
+import itertools
+
+from pendu_tui.tui.cli.errors import progress, warn
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
+    clock = itertools.count(0, seconds_per_call)
+    monkeypatch.setattr("sys.stderr", stream)
+    monkeypatch.setattr("pendu_tui.tui.cli.errors.monotonic", lambda: next(clock))
+    with progress("working") as show:
+        for done in range(5):
+            show(done, 5)
+    return stream.getvalue()
+
+
+def test_a_terminal_shows_a_bar_and_the_time_left_for_work_of_more_than_a_second(monkeypatch):
+    bar = shown(Terminal(), 0.5, monkeypatch)
+    assert "working" in bar
+    assert "left" in bar
+    assert shown(Terminal(), 0.1, monkeypatch) == ""
+    assert shown(io.StringIO(), 0.5, monkeypatch) == ""
+
+
+def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
+    sentence = "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter."
+    monkeypatch.setenv("COLUMNS", "30")
+    warn(sentence)
+    assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"
+    monkeypatch.setattr("sys.stderr", terminal := Terminal())
+    warn(sentence)
+    lines = terminal.getvalue().splitlines()
+    assert (max(map(len, lines)) <= 30, " ".join(lines)) == (True, f"pendu-tui: {sentence}")
