@@ -63,11 +63,13 @@ def test_a_name_as_the_tables_print_it_will_do_in_any_case():
         ("rk4,rk4", "rk4 is given twice"),
         ("rk4,", "no method ''"),
         ("taylor_20", "--cost seconds"),
+        ("nothing --scene damped", "from explicit_euler, rk4, lagged_verlet, conformal_verlet."),
         ("euler", "may be explicit_euler or symplectic_euler or backward_euler"),
     ],
 )
 def test_a_wrong_list_is_one_sentence_and_exit_2(text, words):
-    assert pendu("run", "--time", "2", "--methods", text).refused(2, "--methods: ", words)
+    asked = ("run", "--time", "2", "--methods", *text.split())
+    assert pendu(*asked).refused(2, "--methods: ", words)
 
 
 def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):

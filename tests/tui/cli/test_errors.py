@@ -15,7 +15,7 @@ def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
     clock = itertools.count(0, seconds_per_call)
     monkeypatch.setattr("sys.stderr", stream)
     monkeypatch.setattr("pendu_tui.tui.cli.errors.monotonic", lambda: next(clock))
-    with progress("working") as show:
+    with progress("[b]working") as show:
         for done in range(5):
             show(done, 5)
     return stream.getvalue()
@@ -23,8 +23,8 @@ def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
 
 def test_a_terminal_shows_a_bar_and_the_time_left_for_work_of_more_than_a_second(monkeypatch):
     bar = shown(Terminal(), 0.5, monkeypatch)
-    assert "working" in bar
-    assert "left" in bar
+    assert all(words in bar for words in ("[b]working", " 80%", "left"))
+    assert bar.endswith("\x1b[2K")  # it goes at the end
     assert shown(Terminal(), 0.1, monkeypatch) == ""
     assert shown(io.StringIO(), 0.5, monkeypatch) == ""
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from pendu_tui.engine.methods.own import OwnMethodError, TooLongError
 from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.watchdog import ALARM, Watchdog
 
@@ -36,6 +37,15 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
     with pytest.raises(EnoughError):
         dog.run()
     assert happened == happens
+
+
+def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_error_of_the_method():
+    line = compile("\nfound = find()", "mine.py", "exec")
+    found = {"__name__": "own_method", "find": watchdog._place_in_main}
+    exec(line, found)
+    assert found["found"].startswith("mine.py, line 2")
+    with pytest.raises(OwnMethodError, match="takes more than 3 s"), watchdog.limited():
+        raise TooLongError
 
 
 def test_the_recording_is_closed_and_the_terminal_restored_before_the_end(monkeypatch):
