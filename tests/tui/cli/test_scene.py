@@ -89,10 +89,6 @@ def test_an_error_names_the_line_and_the_field(mine, text, said):
     assert pendu("run", "--scene", mine, "--time", "1").refused(3, said)
 
 
-def test_a_missing_file_is_one_sentence():
-    assert pendu("run", "--scene", "none.toml", "--time", "1").refused(3, "cannot read none.toml")
-
-
 def test_it_may_begin_with_a_byte_order_mark_and_give_angles_in_degrees(mine):
     assert read_scene(mine, "\ufefftheta = '180deg'").theta == math.pi
 

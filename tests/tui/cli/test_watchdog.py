@@ -11,10 +11,6 @@ from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.watchdog import ALARM, Watchdog
 
 
-class EnoughError(Exception):
-    pass
-
-
 @pytest.mark.parametrize(("steps", "happens"), [(0, [(3.0, ALARM), (3.6, 3)]), (1, [])])
 def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
     steps, happens, monkeypatch
@@ -27,14 +23,14 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
         now += seconds
         watchdog.USER_CODE.count += steps
         if now > 5.0:
-            raise EnoughError
+            raise StopIteration
 
     dog = Watchdog()
     for place, name in ((dog, "end"), (watchdog, "interrupt_main")):
         monkeypatch.setattr(place, name, lambda code, *_: happened.append((round(now, 1), code)))
     monkeypatch.setattr(watchdog.time, "sleep", sleep)
     monkeypatch.setattr(watchdog, "USER_CODE", SimpleNamespace(depth=1, count=0))
-    with pytest.raises(EnoughError):
+    with pytest.raises(StopIteration):
         dog.run()
     assert happened == happens
 

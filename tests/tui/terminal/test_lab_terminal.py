@@ -87,6 +87,18 @@ def test_whatever_ends_the_lab_finishes_the_recording(library, how, before):
     assert whole(library)
 
 
+@pytest.mark.parametrize("how", [signal.SIGHUP, signal.SIGINT, "closed"])
+def test_a_lab_ends_though_it_was_stopped(library, how):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.signal(signal.SIGTSTP)
+        session.run(0.3)
+        finish(session, how)
+        session.signal(signal.SIGCONT)
+        assert has_ended(session)
+    assert whole(library)
+
+
 def test_a_lab_whose_loop_is_stuck_ends_within_10_s_and_its_recording_is_finished(tmp_path):
     with ExitStack() as stack:
         labs = {}
