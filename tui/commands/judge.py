@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 MAX_LISTED = 30
+FAR = 5  # times as far from the median as 98 of 100 energies
 MIN_CHART = 10  # rows
 MAX_CHART = 20
 CHOOSE = "choose with --time, --energy"
@@ -284,10 +285,14 @@ def lines_of(answer: Answer) -> list[str]:
         lines.append(_line("per atom", text))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
+    hint = ""
     if is_of_first and is_around_zero and (fields["max_energy_error"] or 0) >= 1:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
-        lines.append(_line("hint", hint))
-    return lines
+    distances = np.abs(answer.series.energies - np.median(answer.series.energies))
+    far = int((distances > FAR * np.quantile(distances, 0.98)).sum())
+    if far and fields["verdict"] in LEAVES and not fields["rests"]:
+        hint = f"{counted(far, 'value')} far from all others may blur the trend"
+    return [*lines, _line("hint", hint)] if hint else lines
 
 
 def _chart(answer: Answer, rows_below: int) -> "list[Text]":
