@@ -18,15 +18,7 @@ import numpy as np
 from pendu_tui.engine.run.verdicts import TOO_LARGE
 from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.layouts import key, role
-from pendu_tui.tui.cli.units import (
-    Moment,
-    is_of_another_kind,
-    is_same,
-    plain,
-    shown,
-    size,
-    split_unit,
-)
+from pendu_tui.tui.cli.units import Moment, is_of_another_kind, plain, shown, size, split_unit
 
 ROUNDING = 2e-15  # relative, of a converted time
 LATEST = 1e300  # of times; squares and differences of later ones overflow
@@ -172,7 +164,7 @@ def _energy(
         return _only(found) if is_certain else None
     if has_parts:
         further = best.get("", ())
-        is_whole = is_same(*(units[place] for place in parts))
+        is_whole = len({shown("energy", units[place]) for place in parts}) == 1
         if any("energ" in key(names[place]) for place in further):
             is_whole &= _lacks(samples, kinetic, parts[1:])  # they balance
         return parts if is_whole and not _lacks(samples, parts, further) else None
@@ -274,7 +266,7 @@ class Sheet:
             place = self.places[name]
             self.put([line], (place,), [[value]])
             own = self.units[place]
-            if unit and not is_same(unit, own or unit):
+            if unit and shown("energy", unit) != shown("energy", own or unit):
                 where = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
                 self.mixed.setdefault(place, where)
         elif len(self._once) < MAX_NAMES:

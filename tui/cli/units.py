@@ -73,11 +73,6 @@ def plain(kind: str, unit: str) -> str:
     return name if name in _KNOWN[kind] else ""
 
 
-def is_same(unit: str, other: str) -> bool:
-    """Return whether two units are the same, however they are written."""
-    return any(shown(kind, unit) == shown(kind, other) for kind in _KNOWN)
-
-
 def size(kind: str, unit: str) -> float:
     """Return a unit of time in ns, of energy in kT at 1 K.  Raises UserError if it is not known."""
     name = plain(kind, unit)
