@@ -69,16 +69,16 @@ def columns(series: Series) -> str | None:
         ("x,E", "{t},{e}", "x, E"),  # evenly
         ("x,E", "{k},{e}", "row, E"),  # no column increases
         ("t,total,Total Energy", "{t},{k},{e}", "t, Total Energy"),
-        ("time,sim_time,energy", "{s},{t},{e}", "sim_time, energy"),  # of the wall clock
+        ("time,sim_time,energy", "{s},{t},{e}", "sim_time, energy"),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
         ("t,KE (kJ/mol),PE (kJ/mole)", "{t},{k},{p}", "t, KE+PE kJ/mol"),
         ("t,x,KE,PE,pair energy", "{t},{k},{k},{p},{k}", "t, KE+PE"),
         ("t,KE,PE,internal energy", "{t},{k},-9,{e}", None),  # KE and PE do not balance
-        ("t,KE,PE,spring", "{t},{k},-9,{p}", None),  # which belongs to the sum
+        ("t,KE,PE,spring", "{t},{k},-9,{p}", None),
         ("t,KE,PE,spring,total", "{t},{k},-9,{p},{e}", "t, total"),
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
-        ("t,KE,energy", "{t},{k},{p}", None),  # potential
+        ("t,KE,energy", "{t},{k},{p}", None),
         ("t,a,e,inc", "{t},1.5,{e},0.1", None),  # eccentricity
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
