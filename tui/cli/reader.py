@@ -518,8 +518,11 @@ class _Text:
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
         elif opening == self._form[2] and (opening or numbers[0] is not None):
             sheet = self._tables[-1]
+            is_below_row = sheet.last == self._line - 1 and not self._begins
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
                 sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
+            elif is_below_row and len(numbers) < self._form[1] and None not in numbers:
+                sheet.put_time(self._line, numbers)
             else:
                 sheet.skipped += 1
         return is_row

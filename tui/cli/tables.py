@@ -220,6 +220,7 @@ class Sheet:
         self.choice: Choice | None = None
         self.skipped = 0  # rows of another width
         self.puts = 0
+        self.last = 0  # the line of the last row
         self.heads: list[int] = []  # lines of its head, where it is repeated
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
@@ -250,10 +251,20 @@ class Sheet:
                 ]
             self._lines[place].extend(here)
             self._values[place].extend(values)  # type: ignore[arg-type]
+        self.last = lines[-1]
         is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
         if self.puts >= SAMPLE and not is_sampled:
             self.choose()
+
+    def put_time(self, line: int, numbers: Sequence[float | None]) -> None:
+        """Add a row that ends early.  Only its time is certainly a number of its column."""
+        if self.choice is None:
+            self.choose()
+        time = (self.choice or Choice()).time
+        missing = next((value for value in numbers if value != value), None)
+        row = [*numbers, *[missing] * len(self.names)]
+        self.put([line], time, [[row[place]] for place in time])
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
         """Add a value that is printed with its name.  Once is not repeatedly."""

@@ -215,11 +215,14 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         (rows("t = {t}, E = {e}") + 2 * "t = nan, E = nan\n", 44.5, 2),
         ("t K E\n" + rows("{t} 3 {e}") + "45.0 nan\n45.5 nan\n", 44.5, 2),
         ("t K E\n" + rows("{t} 3 {e}") + "45.0***********\n", 44.5, 1),
-        ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", None, 2),
+        ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", 45.0, 0),
+        ("t K E\n" + rows("{t} 3 {e}") + "**********\ndone\n**********\n", None, 2),
+        ("n t E\n" + rows("{n} {t} {e}") + 2 * "**********\n", 44.5, 2),
         ("t,E\n" + rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
         ("t,E\n" + rows("{t},{e}") + "45.0,\n", None, 1),  # cut while it is written
         ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no number
-        ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5,\n", 45.0, 0),
+        ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
+        ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
 )
 def test_rows_at_the_end_without_time_or_energy_have_failed_unless_they_are_rarer(
