@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
-from pendu_tui.tui.cli.units import split_unit
+from pendu_tui.tui.cli.units import UNIT, split_unit
 
 NUMBER = r"[-+]?(?:\d*\.\d+[-+]\d{3}(?!\d)|(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)"
 """-4.52-107 is Fortran's -4.52e-107."""
@@ -110,7 +110,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="Tinker",
-        line=rf"^ (?P<name>[A-Z]\w+ [A-Z]\w+) {{2,}}{VALUE} +(?P<unit>Picosecond|Kcal/mole)",
+        line=rf"^ (?P<name>[A-Z]\w+ [A-Z]\w+) {{2,}}{VALUE} +(?P<unit>{UNIT})\b",
     ),
     Layout(
         programs="Desmond, Athena",
@@ -147,7 +147,7 @@ LAYOUTS = (
         line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{{,40}}"
         rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
         rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])){VALUE}"
-        r" *[\[(]?(?P<unit>pico-seconds|[fpn]?s|Ry|Ha?|m?eV|k?J(?:/mol)?|kcal/mol)?(?![\w/.:])",
+        rf" *[\[(]?(?P<unit>{UNIT}|[mk]J)?(?![\w/.:]| *[=:])",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

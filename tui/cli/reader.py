@@ -216,7 +216,8 @@ def number(text: str) -> float | None:
     if match and is_unit(match[2]):
         text = match[1]
     text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
-    text = re.sub(r"(\.\d+)([-+]\d{3})$", r"\1e\2", text)  # Fortran's large exponents
+    # Fortran's exponents from 100 on
+    text = re.sub(r"(\.\d+)([-+](?:[12]\d\d|3[0-2]\d))$", r"\1e\2", text)
     with suppress(ValueError):
         return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
     return None
@@ -422,7 +423,7 @@ class _Text:
                 pass
             case {"value": value}:
                 name = groups.get("name", "Step")
-                name += "'" * (name in prints and is_energy(name))  # so that neither is certain
+                name += "'" * (name in prints)  # so that no energy is certain
                 self._print(name, value, groups.get("unit", ""))
                 prints[name] = match.start("value")
                 return "name" in groups
@@ -552,6 +553,7 @@ class _Text:
             names = names or self._labelled(len(fields))
             self._begins = False
             self._page.clear()
+            self._shapes.clear()  # what held nothing may be a row
             self._tables.append(Sheet(self._wanted, self._line))
             for name, unit in zip(names, self._units_of(names, fields), strict=True):
                 self._tables[-1].add_column(name, unit)

@@ -52,6 +52,11 @@ _OTHER_NAMES = {
         (rf"kcal{_PER_MOLE}", "kcal/mol"),
     ),
 }
+UNIT = "|".join(
+    [*map(re.escape, NANOSECONDS | BOLTZMANN)]
+    + [pattern for names in _OTHER_NAMES.values() for pattern, _ in names]
+)
+"""The known units, as they are written in any case."""
 _NO_UNITS = re.compile(r"kin(etic)?|pot(ential)?|tot(al)?|const", re.IGNORECASE)
 _BRACKETS = re.compile(r"(.+?)[\s/]*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]")
 _SUFFIX = re.compile(r"(.+?)[\s_/]((?:kJ|kcal)/mol\w*|[^\s_/]{2,}|[sJ])", re.IGNORECASE)

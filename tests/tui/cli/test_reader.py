@@ -108,6 +108,9 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ("Step {n}: time: {t} ps, energy: {e} eV", "ps, eV"),
         ("Time (ps): {t} | Energy (eV): {e} | dE = 1e-3", "ps, eV"),
         ("INFO t={t}s E={e}J", "s, J"),
+        ("t = {t}, E = {e}, t = {s}", ", "),
+        ("t={t} ms E={e} mJ", "ms, mJ"),
+        ("t={t} µs K=3.5 E={e} J", "us, J"),  # K is no kelvin
         ("Step {s}\n  time = {t}\n  kinetic = {k}\n  total energy = {e} Ry", ", Ry"),
         ("E = {e}\nt = {t}", ", "),
         ("Time: {t} ps\nEnergy: {e} eV", "ps, eV"),
@@ -220,7 +223,8 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("n t E\n" + rows("{n} {t} {e}") + 2 * "**********\n", 44.5, 2),
         ("t,E\n" + rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
         ("t,E\n" + rows("{t},{e}") + "45.0,\n", None, 1),  # cut while it is written
-        ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no number
+        ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no numbers
+        ("t,E\n" + rows("{t},{e}") + "45.0,10.000-344\n", None, 1),
         ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
         ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
@@ -331,6 +335,12 @@ def test_units_have_the_sizes_of_the_si():
     seconds = {"fs": 1e-15, "ps": 1e-12, "ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1}
     seconds |= {"yr": 365.25 * 86400, "a.u.": 1.054571817e-34 / joule["hartree"]}
     assert {unit: size * 1e9 for unit, size in seconds.items()} == pytest.approx(NANOSECONDS)
+
+
+def test_a_line_above_the_rows_hides_none_of_them():
+    text = "name n t E\na 5 0.1-1.0\n" + rows("a 5 {t} -{k}").replace(" 7.0 -", " 7.0-")
+    (series,) = tables(text)
+    assert list(series.times) == TIMES
 
 
 HEAD = "   Step  Temp  TotEng\n"
