@@ -135,8 +135,9 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
 
 def _parsed(text: str) -> Any:
     """Return what there is in JSON, or the text itself if it is none."""
-    with suppress(ValueError, RecursionError):
-        return json.loads(text)
+    for decode in (msgspec.json.decode, json.loads):  # twice as fast, but it knows no NaN
+        with suppress(ValueError, RecursionError):
+            return decode(text)
     return text
 
 
@@ -151,10 +152,19 @@ def _records(document: Any) -> list[str]:
     lines = []
     for item in _items(document):
         if isinstance(item, dict):
-            lines.append(json.dumps(dict(_flat(item)), ensure_ascii=False))
+            lines.append(_encoded(_flat(item)))
         else:
             lines.append(" ".join(map(str, item if isinstance(item, list) else [item])))
     return lines
+
+
+def _encoded(record: dict[str, Any]) -> str:
+    """Return an object in JSON."""
+    with suppress(TypeError, UnicodeEncodeError):
+        line = msgspec.json.encode(record).decode()  # ten times as fast
+        if "null" not in line:  # which may stand for nan
+            return line
+    return json.dumps(record, ensure_ascii=False, default=str)
 
 
 def _items(document: Any) -> list[Any]:
@@ -177,17 +187,20 @@ def _items(document: Any) -> list[Any]:
     return next(filter(None, map(_items, document.values())), [])
 
 
-def _flat(item: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the values in an object; the names of inner ones have those around them."""
-    if isinstance(item, dict):
-        for inner, value in item.items():
-            yield from _flat(value, f"{name}.{inner}".lstrip("."))
-    elif isinstance(item, list):
-        for place, value in enumerate(item[:MAX_INNER], 1):
-            if not isinstance(value, (dict, list)):
-                yield f"{name}_{place}", value
-    else:
-        yield name, item
+def _flat(item: dict[str, Any], above: str = "") -> dict[str, Any]:
+    """Return the values in an object; the names of inner ones have those around them."""
+    found: dict[str, Any] = {}
+    for key, value in item.items():
+        name = f"{above}{key}"
+        if isinstance(value, dict):
+            found |= _flat(value, f"{name}.")
+        elif isinstance(value, list):
+            for place, inner in enumerate(value[:MAX_INNER], 1):
+                if not isinstance(inner, (dict, list)):
+                    found[f"{name}_{place}"] = inner
+        else:
+            found[name] = value
+    return found
 
 
 def _arrays(stream: io.BufferedReader) -> Any:
@@ -226,8 +239,9 @@ def number(text: str) -> float | None:
 def _numbers(fields: list[str]) -> Sequence[float | None]:
     """Return the number in each field."""
     with suppress(msgspec.DecodeError):  # three times as fast
-        values = _JSON_NUMBERS.decode(f"[{','.join(fields)}]")
-        if len(values) == len(fields):  # no field has a comma
+        text = "\n".join(fields).replace(",", ".").replace("\n", ",")  # commas may be decimal
+        values = _JSON_NUMBERS.decode(f"[{text}]")
+        if len(values) == len(fields):  # not one blank
             return values
     with suppress(ValueError):
         return [*map(float, fields)]
