@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.models import MODELS, Pendulum
+from pendu_tui.engine.models import MODELS, NUMBERS, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.mean_field import MeanField, strang
 from pendu_tui.engine.models.model import ACCURACY, Reference
@@ -30,6 +30,22 @@ def test_every_model_has_a_scene_and_no_two_a_number_of_the_same_name():
     assert len(names) == len(set(names))
     symbols = {model.key: model.frequency_symbol for model in EQUATIONS}
     assert symbols == dict.fromkeys(MODELS, "w0") | {"spring": "omega_s", "mean_field": "nu"}
+
+
+def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
+    found = {name: (each.unit, each.min, each.max) for name, each in NUMBERS.items()}
+    known = {
+        "theta": ("rad", -1e9, 1e9),
+        "omega": ("rad/s", -1e9, 1e9),
+        "length": ("m", 1e-6, 1e6),
+        "gravity": ("m/s²", 1e-6, 1e6),
+        "h": ("s", 0, math.inf),
+        "friction": ("s⁻¹", 0, 100),
+        "stiffness": ("s⁻²", 1, 1e18),
+        "coupling": ("s⁻²", -1e6, 1e6),
+        "level_frequency": ("s⁻¹", 1e-3, 1e4),
+    }
+    assert known.items() <= found.items()
 
 
 def test_a_model_adds_columns_to_readings():
