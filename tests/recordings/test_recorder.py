@@ -81,14 +81,19 @@ def test_a_recording_is_valid_to_mcaps_readers_which_find_a_time_through_the_ind
     assert [json.loads(message.data)["step"] for *_, message in found] == [9, 12]  # 1.5 and 2.0 s
 
 
-def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_written_twice(recorder):
+def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_written_twice(
+    recorder, monkeypatch
+):
     with pytest.raises(ValueError, match="NaN"):
         recorder.add(stepped(1), float("nan"))
     with pytest.raises(ValueError, match="inf"):
         recorder.add(Event("mark", 1, 0, float("inf")), 0.0)
     for step in (5, 4, 5):
         recorder.add(stepped(step), 0.5)
+    synced = []
+    monkeypatch.setattr(os, "fsync", lambda _: synced.append(recorder.part.exists()))
     recorder.close()
+    assert synced == [True]  # on disk before it has its name
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
         assert [clock for clock, _ in recording.entries()] == [0.0, 0.0, 0.5, 0.5]

@@ -1,5 +1,7 @@
 """Reading: any moment of a recording, complete or not."""
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -82,9 +84,15 @@ def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
             assert recording.sample(recording.at(1.0)).value.step == 10
 
 
-def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_refused(tmp_path):
-    with pytest.raises(RecordingError, match="it has no samples"):
-        Recording.open(record(tmp_path / "a.mcap", two_runs()[:1]))
+def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_refused(
+    tmp_path, monkeypatch
+):
+    path, opened, opening = record(tmp_path / "a.mcap", two_runs()[:1]), [], Path.open
+    with monkeypatch.context() as watched:
+        watched.setattr(Path, "open", lambda *each: opened.append(opening(*each)) or opened[-1])
+        with pytest.raises(RecordingError, match="it has no samples"):
+            Recording.open(path)
+    assert [stream.closed for stream in opened] == [True]
     starts = [Entry(1.0, start(2)), Entry(1.0, start(3))]
     with Recording.open(record(tmp_path / "b.mcap", [*two_runs()[:4], *starts])) as recording:
         runs = [(run.steps, run.begin, run.end) for run in recording.runs]

@@ -28,6 +28,8 @@ def test_h_goes_along_1_2_5():
         stepping = stepping.next(up=up)
         rungs.append(stepping.h)
     assert rungs == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02]
+    for towards, up, rung in ((0, True, 0.5), (1, False, 0.1)):  # from a rung, but for rounding
+        assert Stepping(math.nextafter(0.2, towards)).next(up).h == rung
 
 
 @given(STEPPINGS)
