@@ -10,7 +10,7 @@ import pytest
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import TAYLOR_20, learned, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene
+from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, Shot
 from tests.sine import needs_rounded_sine
 from tests.truths import LIMITS
 
@@ -44,6 +44,8 @@ def test_a_scene_keeps_its_name_only_while_nothing_is_changed():
     assert scene.altered(omega=scene.omega) is scene
     changed = scene.altered(omega=9.0)
     assert (changed.name, changed.watch, changed.omega, changed.h) == ("custom", "", 9.0, scene.h)
+    assert changed.shot == Shot() != scene.shot
+    assert SCENES["damped"].altered(theta=1.0).often_said == ""
     assert SCENES["damped"].altered(model="pendulum", cast=scene.cast).parameters == {}
 
 

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from itertools import islice
 
+import mpmath as mp
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.methods import METHODS, USUAL_CAST, method_of
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.models.pendulum import Pendulum
-from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.run.lockstep import Lockstep, _Track
 from pendu_tui.engine.run.loops import compiled
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
@@ -71,6 +72,15 @@ def test_a_long_rotation_stays_in_the_band_of_its_first_turns():
     assert late_low > low - 1e-12
     assert late_high < high + 0.01 * (high - low) + 1e-12
     assert abs(reading.theta) > 1e5  # unwrapped
+
+
+@pytest.mark.parametrize(("theta", "turns"), [(6.28, 0), (6.29, 1), (-1e6, -159_155)])
+def test_whole_turns_are_taken_off_with_all_digits_of_pi(theta, turns):
+    track = _Track(None, (theta, 0.0), 0.0)
+    track.reduce()
+    with mp.workdps(40):
+        rest = float(mp.mpf(theta) - 2 * mp.pi * turns)
+    assert (track.turns, track.phase[0]) == (turns, pytest.approx(rest, abs=1e-15))
 
 
 @given(scene=scenes, changes=changes)
