@@ -117,7 +117,8 @@ def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
     assert (done.returncode, b"?" in done.stdout, b"\r" in done.stdout) == (0, True, False)
 
 
-def test_version():
+def test_help_and_version():
+    assert "what to do (list)" in pendu("recordings", "--help").out
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
 
 

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.cli.options import above_zero, ladder, moment, values
+from pendu_tui.tui.cli.options import above_zero, count, ladder, moment, scale, step_sizes, values
 from pendu_tui.tui.cli.scene import scene_of
 
 
@@ -51,6 +52,30 @@ def test_a_number_is_above_zero_and_below_its_limit(text):
     read = above_zero(number, 2)
     assert read("1.9") == 1.9
     with pytest.raises(ValueError, match="above zero and below 2"):
+        read(text)
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "value"),
+    [
+        (count, "1234567890", 1_234_567_890),
+        (count, "0", None),
+        (scale, "std", ("std", None)),
+        (scale, "2", (2.0, None)),
+        (scale, "kinetic:Ekin", (None, "Ekin")),
+        (scale, "kinetic:", None),
+        (step_sizes, "1,2", [1.0, 2.0]),
+        (units.moment, "-2.5e-1ps", (-0.25, "ps")),
+        (units.moment, "1e999", None),
+        (units.quantity, "0fs", None),
+        (units.split_unit, " Time (ps) ", ("Time", "ps")),
+    ],
+)
+def test_the_text_of_an_option_is_its_value_or_refused(read, text, value):
+    if value is not None:
+        assert read(text) == value
+        return
+    with pytest.raises(ValueError, match=re.escape(repr(text))):
         read(text)
 
 

@@ -35,6 +35,7 @@ def test_a_listed_scene_as_json_or_toml_is_read_to_the_last_bit(mine):
         assert (again, again.speed) == (replace(scene, often_said=""), scene.speed)
         again = read_scene(mine, scene_text(scene))
         assert again == replace(scene, often_said="")
+        assert scene_text(scene).isascii() == scene.watch.isascii()
         assert ("[shot]" in scene_text(scene)) == (scene.shot != Shot())
         assert (again.speed, again.shot) == (scene.speed, scene.shot)
     turned = SCENES["drift"].altered(theta=7.0)  # more than a turn, which needs a unit
@@ -75,9 +76,12 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
         ("[shot]\nreturns = true", "line 2: returns needs a moment; use for example"),
-        (
-            "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\nright = 3",
-            "line 3: a question has 2 to 4 answers, and the number of the right one",
+        *(
+            (
+                f"[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = {answers}\nright = {right}",
+                "line 3: a question has 2 to 4 answers, and the number of the right one",
+            )
+            for answers, right in ((["a", "b"], 3), (["a", "b"], 0), (["a"], 1), ([*"abcde"], 1))
         ),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
         (f"theta = {'9' * 5000}", "is not TOML"),

@@ -3,15 +3,15 @@
 import argparse
 import os
 import sys
-import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.tui.cli import workers
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.cli.workers import Work, received, started, work_of
+from pendu_tui.tui.cli.workers import Work, awaited, received, work_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -60,8 +60,13 @@ class Lost:
 def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monkeypatch):
     monkeypatch.setattr(workers, "ProcessPoolExecutor", Lost)
     monkeypatch.setattr(os, "cpu_count", lambda: 3)
-    outcome = pendu(*RUNS, "--workers", 1000)
-    assert outcome.refused(3, "the workers are lost (RuntimeError: the last of 12).")
+    child = SimpleNamespace(terminate=lambda: ended.append("one"))
+    ended = []
+    monkeypatch.setattr(workers, "active_children", lambda: [child])
+    for asked, count in ((2, 2), (1000, 12)):
+        outcome = pendu(*RUNS, "--workers", asked)
+        assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
+    assert ended == ["one", "one"]
 
 
 @pytest.mark.slow
@@ -81,12 +86,17 @@ def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.Monke
     assert pendu(*RUNS, "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
 
 
-def silent(there):
-    time.sleep(5)
-
-
-def test_a_process_is_awaited_for_so_long():
-    process, here = started(silent)
+def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
+    here = SimpleNamespace(recv=lambda: "done")
+    process = SimpleNamespace(sentinel="ended")
+    ready = iter([[], ["ended"], [here]])
+    waits = []
+    monkeypatch.setattr(workers, "wait", lambda *_: next(ready))
+    for error in (TimeoutError, EOFError):
+        with pytest.raises(error):
+            received(here, process)
+    assert received(here, process) == "done"
+    monkeypatch.setattr(workers, "wait", lambda _, seconds: waits.append(seconds))
     with pytest.raises(TimeoutError):
-        received(here, process, 0.2)
-    process.terminate()
+        awaited(here, process, 4.0, "waiting")
+    assert waits == [1.0] * 4

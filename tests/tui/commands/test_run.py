@@ -7,12 +7,15 @@ import signal
 import subprocess
 import time
 from contextlib import nullcontext
+from types import SimpleNamespace
 
 import pytest
 
+from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.commands import run
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import PENDU, needs_signals, pendu
 
@@ -86,6 +89,20 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
 def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
     assert pendu("run", "--record", tmp_path / "x.mcap", *arguments.split()).refused(2, *words)
     assert not list(tmp_path.iterdir())
+
+
+def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
+    judgements = (
+        Judgement("undecided", reason="it beats"),
+        Judgement("undecided", reason="2 of 8 swings", progress=Progress(2, 8, "swings")),
+        Judgement("chaotic", lyapunov=0.2),
+        Judgement("grows", rests=True),
+    )
+    lockstep = SimpleNamespace(scene=DEFAULT_SCENE, milestones=[], judgements=judgements)
+    assert [*run._notes(lockstep)] == [
+        "Explicit Euler is undecided: it beats.",
+        "Verlet is chaotic: nearby starts separate tenfold every 12 s.",
+    ]
 
 
 def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, monkeypatch):
