@@ -153,7 +153,7 @@ LAYOUTS = (
 """The layouts, in the order in which they are tried on a line."""
 
 ROLES = (
-    ("time", r"sim(ulat(ion|ed))?time|mdtime|currenttime"),
+    ("time", r"(sim(ulat(ion|ed))?|model|md|current)time|t(ime)?sim"),
     ("time", r"time|t"),  # of the wall clock, beside these
     ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle|row"),
     ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),

@@ -30,7 +30,8 @@ NOT_LATER = (
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
 OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N"}}
-"""Columns that are no counts, beside which it is an eccentricity, or East."""
+"""Columns beside which it is an eccentricity, or East."""
+COUNTS = ("N", "i", "n")  # if they are whole numbers
 Group = tuple[int, ...]
 """Columns to add up."""
 
@@ -157,7 +158,8 @@ def _energy(
     has_parts = len(kinetic) == 1 and len(parts) == 2
     if found := best.get("energy"):
         bare = [split_unit(name)[0] for name in names]
-        others = {bare[n] for n, sample in enumerate(samples) if np.mod(sample, 1).any()}
+        values = zip(bare, samples, strict=True)
+        others = {name for name, some in values if name not in COUNTS or np.mod(some, 1).any()}
         is_other = others & OTHER_E.get(bare[found[0]], set())
         is_sum = not has_parts or _is_sum(samples, found + parts)
         is_certain = is_sum and not is_other and not _lacks(samples, found, kinetic)

@@ -69,7 +69,7 @@ def columns(series: Series) -> str | None:
         ("x,E", "{t},{e}", "x, E"),  # evenly
         ("x,E", "{k},{e}", "row, E"),  # no column increases
         ("t,total,Total Energy", "{t},{k},{e}", "t, Total Energy"),
-        ("time,sim_time,energy", "{s},{t},{e}", "sim_time, energy"),
+        ("time,t_sim,energy", "{s},{t},{e}", "t_sim, energy"),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
         ("t,KE (kJ/mol),PE (kJ/mole)", "{t},{k},{p}", "t, KE+PE kJ/mol"),
         ("t,x,KE,PE,pair energy", "{t},{k},{k},{p},{k}", "t, KE+PE"),
@@ -79,7 +79,7 @@ def columns(series: Series) -> str | None:
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
         ("t,KE,energy", "{t},{k},{p}", None),
-        ("t,a,e,inc", "{t},1.5,{e},0.1", None),  # eccentricity
+        ("t,a,e", "{t},1,{e}", None),  # eccentricity
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,energy (ps)", "{t},{e}", None),
