@@ -517,7 +517,6 @@ class LabScreen(SizedScreen[None]):
         self.view = name
         self._view_in_front = self.query_one(f"#{name}", View)
         self._view_in_front.retry()
-        self.refresh_bindings()
         self.show_now()
 
     def _show_text(self, title: str, lines: Iterable[str]) -> None:

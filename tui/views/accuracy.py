@@ -263,7 +263,6 @@ class AccuracyPane(Chooser[Point]):
 
     def action_all(self) -> None:
         self.all = not self.all
-        self._chosen = None
         self.draw()
 
     def action_move(self, right: int, up: int) -> None:
