@@ -36,6 +36,7 @@ def drawn(draw, columns=COLUMNS, rows=ROWS):
     return canvas.picture()
 
 
+@example([(2 * COLUMNS, 0.0), (0.0, 4 * ROWS)])
 @given(st.lists(st.tuples(ANY, ANY)))
 def test_points_outside_or_not_finite_are_the_only_ones_not_drawn(points):
     x, y = np.array(points).reshape(-1, 2).T

@@ -42,6 +42,7 @@ async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew(
         cells.show(Picture([[(letter, TEXT)] for letter in "abC"]))
         await pilot.pause()
         assert cells.text == "a\nb\nC"
+        assert [each.text for each in cells.painted] == ["a   ", "b   ", "C   ", "    "]
         kept = [old is new for old, new in zip(before, cells.painted, strict=True)]
         assert kept == [True, True, False, False]
         # a row may bring its own style

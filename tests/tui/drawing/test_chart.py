@@ -67,6 +67,7 @@ def test_charts_as_they_are_stored(snapshot):
         plot(window(t, -grows, -grows / 2, turned=True), 72, 12, log=False, names=names),
         plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=names),
         plot(window(t, grows[:, 2]), 40, 5),
+        plot(window(t[-9:], grows[-9:]), 72, 9, names=names, seconds=20),  # nothing before
         # no error is torn by zeros, and neither the first nor the smallest fortieth is on the axis
         plot(window(t, np.sin(6 * t) ** 2, repeats=1.0), 60, 8, places=[0], seconds=20),
         plot(window(np.arange(41), [0, 1e-12, 1e-8, *[0.1] * 38]), 51, 8, places=[0], seconds=41),

@@ -214,6 +214,9 @@ def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     history.add(back._replace(step=399, t=0.05, run=2))
     history.add(back._replace(step=450, t=0.1, run=2))
     assert history.returned is None
+    history = run(DRIFT, (20, 0.05), (25, -0.05))
+    history.add(back._replace(step=41, t=-0.05, run=2))  # also in the past of this run
+    assert history.returned.step == 40
 
 
 def test_the_last_angles_before_a_row_are_known_without_numpy():

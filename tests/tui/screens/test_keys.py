@@ -114,7 +114,7 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         await theatre.press("escape", "r")
         theatre.stage.action_go_to(1, first)
         await theatre.pilot.pause()
-        assert "run 1" in [each.message for each in theatre.app._notifications][-1]
+        assert "run 1;" in [each.message for each in theatre.app._notifications][-1]
         await theatre.pilot.click("PhasePane", offset=(5, 0))
         await theatre.pilot.pause()
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", 2)

@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -40,6 +40,11 @@ def test_the_guides_have_the_measured_orders_of_the_error_on_the_chart(kind, ord
     points = [*measured(SCENES["drift"], 5.0, RUNGS)]
     series = accuracy_series(points, kind, "evaluations", USUAL_CAST)
     assert {one.mark for one in series if one.dotted} == {f"slope {order}" for order in orders}
+
+
+def test_a_point_is_found_within_six_columns_or_three_rows():
+    cells = (16, 5), (17, 5), (10, 2), (10, 1)
+    assert [nearest([(10, 5, "here")], *cell) for cell in cells] == ["here", None] * 2
 
 
 @asynccontextmanager

@@ -6,7 +6,7 @@ import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.views.viewport import reach
+from pendu_tui.tui.views.viewport import amplitude, reach
 from tests.tui.harness import Lab
 
 
@@ -29,6 +29,8 @@ def test_the_swing_decides_and_explicit_euler_leaves_it_until_it_needs_the_whole
     assert all(low <= each.frame <= high for each in found)
     widest = [each.widest for each in found]
     assert widest == sorted(widest)  # so the picture never jumps back
+    scene = SCENES[name]
+    assert amplitude(scene.equations, scene.theta, 0.0) == pytest.approx(scene.theta, abs=1e-9)
     assert low <= widest[0] <= widest[-1] == math.pi
 
 

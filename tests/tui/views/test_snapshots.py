@@ -4,8 +4,10 @@ import pytest
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import ladder
+from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.terminal.options import SMALLEST
-from pendu_tui.tui.views.lab import TimeChart
+from pendu_tui.tui.views.lab import EventList, TimeChart
+from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held, Pane
 from tests.tui.drawn import looks
 from tests.tui.harness import Theatre, lab
@@ -85,5 +87,14 @@ async def test_panes_after_keys_and_pointers(snapshot):
         await note("small swings but for explicit Euler's")
         await theatre.stage.start(SCENES["stiff-slow"])
         await theatre.run(2)
+        for _ in range(3):  # more events than rows
+            theatre.source.step(1)
+            theatre.source.mark()
         await note("springs")
+        assert theatre.stage.query_one(EventList)._picture.rows[-1][0][1] == TEXT
+        stage = theatre.stage.query_one(Stage)
+        before = stage.text
+        theatre.source.start(SCENES["drift"])
+        stage.draw()  # as the pointer asks for it before the next frame
+        assert stage.text == before
     snapshot("panes.txt", "\n".join(texts) + "\n")
