@@ -1,3 +1,4 @@
+import gc
 import os
 import signal
 import sys
@@ -22,6 +23,9 @@ if TESTED != CHECKOUT:
 # Many tests start a process, which would compile the program again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+# Tests leave little garbage; looking for it would take a tenth of the time of those of screens.
+gc.set_threshold(20_000)
 
 # No deadline, which a busy machine would miss.  CI tries the same examples each time, so that only a
 # change of the code can make it fail.

@@ -3,7 +3,9 @@
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from textual.pilot import Pilot
@@ -82,8 +84,13 @@ def recorded(
 
 def eventful(path: Path) -> Path:
     """Record two runs with changes, a mark and steps back: 12 s of the recording clock."""
-    return recorded(
-        path,
+    path.write_bytes(_eventful())
+    return path
+
+
+@cache
+def _eventful() -> bytes:
+    acts = (
         2.0,
         lambda live: live.change(Stepping(0.1)),
         2.0,
@@ -97,6 +104,8 @@ def eventful(path: Path) -> Path:
         lambda live: live.pause(False),
         3.0,
     )
+    with TemporaryDirectory() as folder:
+        return recorded(Path(folder, "eventful.mcap"), *acts).read_bytes()
 
 
 class Theatre:
