@@ -41,8 +41,10 @@ if hasattr(signal, "SIGHUP"):  # which nohup ignores
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-def pytest_xdist_auto_num_workers() -> int:
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     """Return twice the number of processors, as tests of screens wait half of their time."""
+    if config.getoption("--snapshot-update"):
+        return 0  # some tests write to the same file
     return 2 * (os.cpu_count() or 1)
 
 
@@ -50,8 +52,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--snapshot-update",
         action="store_true",
-        help="store snapshots as they are now",
+        help="run what compares with stored files, and store them as they are now",
     )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--snapshot-update"):
+        items[:] = [
+            each for each in items if "snapshot" in each.fixturenames or "json_field" in each.name
+        ]
 
 
 @pytest.fixture(autouse=True)

@@ -40,7 +40,8 @@ def test_every_chart_has_a_title_and_the_charted_are_those_with_one():
 
 
 def test_quantities_have_the_units_of_their_equations():
-    measured = {each.name: each.unit for each in QUANTITIES if each.unit}
+    found = {each.name: each.unit for each in QUANTITIES}
     per_second = dict.fromkeys(("drift_per_second", "slope", "bound"), "1/s")
     angles = {"theta": "rad", "omega": "rad/s", "theta_error": "rad"}
-    assert measured == {**angles, "energy": "s⁻²", "diverged_at": "s", **per_second}
+    known = {**angles, "energy": "s⁻²", "diverged_at": "s", **per_second}
+    assert known.items() <= found.items()
