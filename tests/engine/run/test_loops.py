@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from importlib.util import find_spec
 from itertools import islice, takewhile
 
 import pytest
@@ -16,7 +15,6 @@ from pendu_tui.engine.run.loops import (
     CompiledLoops,
     PlainLoops,
     TieredLoops,
-    available,
     compiled,
     count_evaluations,
 )
@@ -190,7 +188,3 @@ def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
     assert not isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)
     monkeypatch.setattr(loops_module, "import_module", lambda name: OtherSine)
     assert isinstance(compiled(GENERAL[0], PENDULUM), PlainLoops)
-
-
-def test_methods_are_compiled_where_numba_is_installed():
-    assert available() == (find_spec("numba") is not None)

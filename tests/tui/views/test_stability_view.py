@@ -31,7 +31,6 @@ async def stability_view(scene: Scene = SCENES["drift"], size: tuple[int, int] =
         yield *view, live
 
 
-@pytest.mark.other_process
 async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen():
     async with stability_view() as (_, pane, live):
         assert (pane.cells["fate"] != UNKNOWN).all()
@@ -91,7 +90,6 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
         assert "4 r" not in pane.text
 
 
-@pytest.mark.other_process
 async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
     async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, _live):
         assert pane.text.startswith("3 v held elsewhere\n")
