@@ -116,7 +116,7 @@ RK4_LEARNED_FIELD = _by_rk4(
     formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
     note="It conserves nothing: within 100 s the true energy of a swing is off by 36 % from 1 rad, "
-    "60 % from 1.5, ninefold from 0.2.",
+    "by 60 % from 1.5, and nine times as large from 0.2.",
 )
 
 RK4_LEARNED_HAMILTONIAN = _by_rk4(
@@ -190,7 +190,7 @@ LEARNED_MAP = _learned(
     other_names=("plain learned map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy of a swing is off by "
-    "35 % from 1 rad, 61 % from 1.5, ninefold from 0.2.",
+    "35 % from 1 rad, by 61 % from 1.5, and nine times as large from 0.2.",
 )
 
 LEARNED_SYMPLECTIC_MAP = _learned(

@@ -167,7 +167,7 @@ def _examine(phases: Phases, who: str) -> None:
     if _path(phases, path[CUT - 1])[STEPS - CUT - 1] != path[-1]:
         raise OwnMethodError(
             f"{who} gives other numbers when it begins again after {CUT} of {STEPS} steps; a run "
-            "may be cut anywhere, so a step may use theta and omega alone."
+            "may stop and go on after any step, so a step may use only theta and omega."
         )
     for kind, are_same in (("NumPy arrays", _are_same_arrays), ("complex numbers", _are_complex)):
         try:

@@ -176,8 +176,8 @@ _STABILITY = (
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
         watch="4 steps a swing: Verlet's energy doubles and comes back. Press - to avoid this.",
-        often_said="h over the golden ratio avoids resonances because that is irrational. So does "
-        "5/8 of h: it is far from the resonance that counts.",
+        often_said="h over the golden ratio avoids resonances because the ratio is irrational. So "
+        "does 5/8 of h: it is far from the resonance that counts.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )

@@ -44,8 +44,7 @@ def cast_of(
         known = (*METHODS, *own)
         if options.cost == "seconds":
             known = (*known, TAYLOR_20)
-        with given_by("--methods"):
-            cast = all_named(options.methods.split(","), known, model)
+        cast = all_named(options.methods.split(","), known, model)
     return (*cast, *(method for method in own if method not in cast))
 
 
