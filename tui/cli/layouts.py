@@ -159,11 +159,7 @@ ROLES = (
     ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
     ("conserved", r"conserved(en(ergy)?)?"),
     ("conserved", r"econs"),
-    (
-        "total",
-        r"e?tote|etot|etotal|e?total(e|ene|energy)|energytot(al)?|tote(ng|ner|nergy)"
-        r"|etot(al)?(n|peratom)",
-    ),
+    ("total", r"e?tote(ng|ner|nergy)?|e?total(e|ene|energy)|e(nergy)?tot(al)?(n|peratom)?"),
     ("energy", r"e|ener(gy)?|tot(al)?|mechanical(energy)?"),  # or another quantity
     (
         "kinetic",
