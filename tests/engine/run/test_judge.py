@@ -148,8 +148,10 @@ def test_a_damped_energy_is_judged_only_where_it_is_above_rounding():
     scene = SCENES["damped"].altered(theta=2.0, omega=9.0, friction=0.5)
     found = words(moved(scene, [round(160 / scene.h)]))
     assert found == ["grows", "loses", "undecided", "grows"]
-    precise = SCENES["damped"].altered(h=0.002).with_cast((R,))  # to the reference's own errors
-    assert words(moved(precise, [15_000])) == ["undecided"]
+    precise = SCENES["damped"].with_cast((R,))
+    # 1e-10, as the reference's own errors, and 3e-8
+    for h, word in ((0.002, "undecided"), (0.01, "grows")):
+        assert words(moved(precise.altered(h=h), [round(30 / h)])) == [word]
 
 
 @pytest.mark.parametrize(("share", "peak"), [(0.99, 0.0), (1.01, 0.5)])
@@ -238,6 +240,13 @@ def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, ver
     orbit.steps = steps
     orbit.log = math.log(steps) + parted
     assert orbit.verdict("undecided", peak, periods=100.0) == verdict
+
+
+@pytest.mark.parametrize(("every", "reason"), [(4, levels.BEATS), (20, "")])
+def test_an_error_that_beats_must_go_one_way_nine_times_in_ten(every, reason):
+    moves = np.where(np.arange(1, 49) % every, 2.0, -1.0)  # of blocks of look points
+    errors = np.repeat(moves.cumsum(), 128)
+    assert judge_of([0.0, *errors], h=0.401).judgement.reason == reason
 
 
 def test_growth_is_that_of_the_logarithm_where_energy_is_multiplied_each_step():

@@ -198,6 +198,20 @@ def test_an_end_is_unlike_the_rest_at_a_chance_of_1e_3():
         assert core.judge_bins(bins).reason == reason
 
 
+def test_a_start_is_unlike_the_rest_at_a_chance_of_1e_4():
+    values = np.random.default_rng(3).standard_normal(64)
+    blocks = core.blocks_of(values[16:], 4)
+    spread = np.std(blocks) * math.sqrt(13 / 11)
+    shifts = np.linspace(0, 10, 2000) * spread
+    chances = np.array([2 - 2 * student(shift, spread, 11) for shift in shifts])
+    half = np.full(64, 0.5)
+    for chance, has_left in ((1.4e-4, False), (0.7e-4, True)):
+        values[:16] = np.mean(blocks) - shifts[np.argmin(abs(chances - chance))]
+        bins = core.Bins(np.arange(64.0), values, values - half, values + half, half, 1e-12)
+        whole = core.Part(bins, values)
+        assert bool(core._way_from_start(whole, whole.last(0.75))) == has_left
+
+
 @pytest.mark.parametrize(
     ("before", "length", "move", "new", "old"),
     [(8, 32, 1.0, 0.69, 0.71), (32, 64, 0.65, 0.71, 0.74)],
