@@ -172,6 +172,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: limits(omega=20), "a pendulum that swings"),
         (lambda: limits("linear"), "a pendulum that swings"),
         (lambda: limits(steps=0), "steps = 0"),
+        (lambda: limits(steps=1.5), "steps = 1.5"),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_a_sentence(call, word):

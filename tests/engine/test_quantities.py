@@ -28,6 +28,7 @@ def test_what_has_a_column_is_explained_and_fits_its_width():
         assert bool(each.head.wide) == bool(each.sentence), each.name
         assert len(each.head.narrow) <= each.head.width
         assert len(each.head.wide) <= each.head.wide_width
+    assert sum(each.head.wide_width + 1 for each in QUANTITIES) < 120  # columns
 
 
 def test_every_chart_has_a_title_and_the_charted_are_those_with_one():

@@ -46,6 +46,8 @@ def test_a_scene_keeps_its_name_only_while_nothing_is_changed():
     assert (changed.name, changed.watch, changed.omega, changed.h) == ("custom", "", 9.0, scene.h)
     assert changed.shot == Shot() != scene.shot
     assert SCENES["damped"].altered(theta=1.0).often_said == ""
+    fields = {"name": "spin", **scene.numbers, "watch": scene.watch, "model": "pendulum"}
+    assert scene.fields() == {**fields, "methods": [method.key for method in scene.cast]}
     assert SCENES["damped"].altered(model="pendulum", cast=scene.cast).parameters == {}
 
 

@@ -9,6 +9,7 @@ from mcap.reader import make_reader
 
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings import events
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
@@ -58,6 +59,8 @@ def path(made, tmp_path, monkeypatch):
 def test_without_the_file_all_is_kept_but_only_the_other_methods_verify(path):
     assert pendu("verify", path, "--methods", "rk4").code == 0
     pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun")
+    with pytest.raises(RecordingError, match="my_heun"):
+        verify(path, only={"my_heun"})
     assert "my_heun" in pendu("recordings", "show", path).out
     assert "my_heun" in pendu("export", path).out
     assert pendu("recordings", "recover", path, "-o", "copy.mcap").code == 0

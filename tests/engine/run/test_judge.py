@@ -242,6 +242,11 @@ def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, ver
     assert orbit.verdict("undecided", peak, periods=100.0) == verdict
 
 
+@pytest.mark.parametrize(("z", "word"), [(1.99, "bounded"), (2.01, "grows")])
+def test_a_linear_swing_is_bounded_up_to_the_limit_of_the_method(z, word):
+    assert words(moved(Scene(model="linear", h=z / W0, cast=(V,)), [100], PlainLoops)) == [word]
+
+
 @pytest.mark.parametrize(("every", "reason"), [(4, levels.BEATS), (20, "")])
 def test_an_error_that_beats_must_go_one_way_nine_times_in_ten(every, reason):
     moves = np.where(np.arange(1, 49) % every, 2.0, -1.0)  # of blocks of look points

@@ -313,6 +313,7 @@ def test_a_digit_is_a_jump_that_comes_three_times():
     assert resolution(energies) < 1e-14
     energies[60:] = 1
     assert resolution(energies) == 1
+    assert resolution(np.tile([0.0, 3.0, 1.0], 30)) == 1
 
 
 def test_64_samples_are_needed():

@@ -127,6 +127,12 @@ def test_extremes_after_going_back_count_from_the_furthest_step():
     ahead.forward(40)
     returning.forward(90)
     assert returning.sample() == ahead.sample()
+    returning.go_to(520)
+    returning.branch(2)  # of which nothing has been sampled
+    returning.forward(40)
+    whole = RewindableRun(SCENE, 2)
+    whole.forward(560)
+    assert returning.sample() == whole.sample()
 
 
 def test_copies_are_few_and_closer_the_more_recent_they_are():
@@ -134,6 +140,7 @@ def test_copies_are_few_and_closer_the_more_recent_they_are():
     for _ in range(80):
         course.forward(1000)
     steps = [place.lockstep.step for place in course._copies]
+    assert (steps[0], steps[-1]) == (0, course.step)
     assert len(steps) < 45  # 80 without thinning; 8 an octave of age with it
     for at, following in itertools.pairwise(steps):
         assert following - at <= max(1000, (steps[-1] - at) / 4)
