@@ -63,7 +63,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="GROMACS md.log",
-        line=r"^(?P<over> {11}Step {11}Time\b.*|(?=.*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
+        line=r"^(?P<over> {11}Step {11}Time\b.*|(?= .*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
         r"|(?P<end><=+  A V E R A G E S)|^(?P<again>Started mdrun)",
         cells=".{15}",
         units=("ps", "kJ/mol"),
@@ -91,7 +91,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="CP2K's output",
-        line=rf"^ *MD\| +(?P<name>[A-Z][\w ]*?(?: \[\w+\])?) {{2,}}{VALUE}",
+        line=rf"^ *MD\| +(?P<name>[A-Z].*?) {{2,}}{VALUE}",
     ),
     Layout(
         programs="Quantum ESPRESSO .evp",
@@ -105,7 +105,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="VASP OSZICAR",
-        line=r"^ *(?P<value>\d+)(?= +T= )",
+        line=r"^ *(?P<value>\d+) +T= ",
         units=("", "eV"),
     ),
     Layout(

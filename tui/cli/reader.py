@@ -45,6 +45,7 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
 _NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)")
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
+_BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
@@ -225,6 +226,8 @@ def number(text: str) -> float | None:
         return float(text)
     if _IS_FAILED.fullmatch(text):
         return float("nan")
+    if not _BEGINS.match(text):
+        return None
     match = _WITH_UNIT.fullmatch(text)
     if match and is_unit(match[2]):
         text = match[1]
@@ -348,16 +351,15 @@ class _Text:
         delimiter, width, opening = self._form
         if self._heads or self._begins or width < 0:
             return sheet, [], (), []
-        if opening and _GLUED.search("\n".join(lines.values())):
-            for at, line in lines.items():
-                if line.startswith(opening):
-                    lines[at] = _GLUED.sub(r" \g<0>", line)
+        if opening:
+            lines = {at: line for at, line in lines.items() if line.startswith(opening)}
+            if _GLUED.search("\n".join(lines.values())):
+                lines = {at: _GLUED.sub(r" \g<0>", line) for at, line in lines.items()}
         rows = {
             at: line
             for at, line in lines.items()
             if len(_split(line, delimiter)) == width
             and (delimiter or "," not in line)
-            and line.startswith(opening)
             and line.lstrip()[:1] not in _COMMENTS
         }
         fields = _split((delimiter or " ").join(rows.values()), delimiter)
@@ -494,10 +496,11 @@ class _Text:
         is_comment = bare != text and number(text.split()[0]) is None
         fields, delimiter = self._fields(bare)
         is_like = (len(fields), "") == self._form[1:]
-        if [*map(number, fields)].count(None) < len(fields):
+        numbers = _numbers(fields)
+        if numbers.count(None) < len(fields):
             if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
                 return False
-            return not is_like and (is_comment or number(fields[0]) is None)
+            return not is_like and (is_comment or numbers[0] is None)
         ways = _ways(bare)
         is_row = is_like and delimiter and not is_comment and not self._begins
         if is_row and not any(map(self._worth, chain(ways, *self._heads.values()))):
