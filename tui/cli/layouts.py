@@ -63,7 +63,8 @@ LAYOUTS = (
     ),
     Layout(
         programs="GROMACS md.log",
-        line=r"^(?P<over> {11}Step {11}Time\b.*|(?= .*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
+        line=r"^(?P<over> {11}Step {11}Time\b.*"
+        r"|(?= .*(?:Kinetic|Total|Conserved) En)(?: .{13}\S)+)$"
         r"|(?P<end><=+  A V E R A G E S)|^(?P<again>Started mdrun)",
         cells=".{15}",
         units=("ps", "kJ/mol"),

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import accumulate, chain, compress, islice
 from statistics import mode
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -255,8 +255,25 @@ Form = tuple[str | None, int, str]
 """The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
 
 
-Found = tuple[Sheet, list[int], Group, list[Sequence[float | None]]]
-"""Values for some columns of a sheet, found at these lines."""
+class Found(NamedTuple):
+    """Values for some columns of a sheet, found at these lines."""
+
+    sheet: Sheet
+    lines: list[int]
+    places: Group = ()
+    columns: Sequence[Sequence[float | None]] = ()
+    needed: int | None = None  # how many columns need a value, from the first; None: all
+
+    def blanks(self) -> list[int]:
+        """Return where the columns that need a value have their first blank."""
+        columns = self.columns[: self.needed]
+        return [self.lines[values.index(None)] for values in columns if None in values]
+
+    def put(self, end: int) -> None:
+        """Add what is above this line to the sheet."""
+        if count := bisect_left(self.lines, end):
+            columns = [values[:count] for values in self.columns]
+            self.sheet.put(self.lines[:count], self.places, columns)
 
 
 class _Text:
@@ -315,42 +332,39 @@ class _Text:
         if self._is_over:
             return 0
         start = self._line + 1
-        others = {at: line for at, line in enumerate(lines, start) if line not in self._heads}
-        if self._over:
-            others[start] = self._over + lines[0]
-        for at in [at for at, line in others.items() if line in self._above and at + 1 in others]:
-            others[at] += others.pop(at + 1)
-        heads = [at for at, line in others.items() if line in self._page]
+        texts = self._joined(start, lines)
+        heads = [at for at, text in texts.items() if text in self._page]
         for at in heads:
-            del others[at]
-        found = [self._rows_in(others)]
-        rows = found[0][1]
-        for at in rows:
-            del others[at]
-        if others:
-            found += self._prints_in(others)
-        ends = [start + len(lines)]
-        for sheet, here, _, columns in found:
-            if sheet is self._tables[-1] and self._form[0]:
-                columns = columns[:1]  # others may have blanks
-            ends += [here[values.index(None)] for values in columns if None in values]
-        last = max([0, *rows[: bisect_left(rows, min(ends))]])
-        ends += [head for head in heads if head > last]  # no row is below it
-        end = min(ends)
-        for sheet, here, places, columns in found:
-            if count := bisect_left(here, end):
-                sheet.put(here[:count], places, [values[:count] for values in columns])
+            del texts[at]
+        rows = self._rows_in(texts)
+        for at in rows.lines:
+            del texts[at]
+        found = [rows, *self._prints_in(texts)]
+        end = min([start + len(lines), *chain(*(each.blanks() for each in found))])
+        last = max([0, *rows.lines[: bisect_left(rows.lines, end)]])
+        end = min([end, *(head for head in heads if head > last)])  # no row is below it
+        for each in found:
+            each.put(end)
         if end > start:
             self._over = ""
         self._tables[-1].heads += heads[: bisect_left(heads, end)]
         return end - start
+
+    def _joined(self, start: int, lines: list[str]) -> dict[int, str]:
+        """Return these lines but for words, those of names with the line of numbers below them."""
+        texts = {at: line for at, line in enumerate(lines, start) if line not in self._heads}
+        if self._over:
+            texts[start] = self._over + lines[0]
+        for at in [at for at, text in texts.items() if text in self._above and at + 1 in texts]:
+            texts[at] += texts.pop(at + 1)
+        return texts
 
     def _rows_in(self, lines: dict[int, str]) -> Found:
         """Return the rows of the last table in these lines."""
         sheet = self._tables[-1]
         delimiter, width, opening = self._form
         if self._heads or self._begins or width < 0:
-            return sheet, [], (), []
+            return Found(sheet, [])
         if opening:
             lines = {at: line for at, line in lines.items() if line.startswith(opening)}
             if _GLUED.search("\n".join(lines.values())):
@@ -364,16 +378,20 @@ class _Text:
         }
         fields = _split((delimiter or " ").join(rows.values()), delimiter)
         if len(fields) != len(rows) * width:  # a quotation mark is left open
-            return sheet, [], (), []
-        return sheet, [*rows], sheet.kept, [_numbers(fields[place::width]) for place in sheet.kept]
+            return Found(sheet, [])
+        columns = [_numbers(fields[place::width]) for place in sheet.kept]
+        needed = 1 if delimiter else None  # others may have blanks
+        return Found(sheet, [*rows], sheet.kept, columns, needed)
 
     def _prints_in(self, lines: dict[int, str]) -> Iterator[Found]:
         """Yield what lines of known shapes hold, and None for the first of another shape."""
+        if not lines:
+            return
         fields = _NUMBERS.split("\n".join(lines.values()))
         shapes = "\0".join(fields[::2]).split("\n")
         unknown = (at for at, shape in zip(lines, shapes, strict=True) if shape not in self._shapes)
         for at in islice(unknown, 1):
-            yield self._prints[-1], [at], (), [[None]]
+            yield Found(self._prints[-1], [at], (), [[None]])
         starts = [0, *accumulate(2 * shape.count("\0") for shape in shapes)]
         for shape in {*shapes} & self._shapes.keys():
             places, picks = self._shapes[shape]
@@ -381,7 +399,8 @@ class _Text:
             first = [*compress(starts, here)]
             texts = ([fields[at + pick] if pick else "nan" for at in first] for pick in picks)
             if places:
-                yield self._prints[-1], [*compress(lines, here)], places, [*map(_numbers, texts)]
+                columns = [*map(_numbers, texts)]
+                yield Found(self._prints[-1], [*compress(lines, here)], places, columns)
 
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
