@@ -105,6 +105,13 @@ def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
     ]
 
 
+def test_a_worker_has_a_watchdog_of_its_own(monkeypatch):
+    begun = []
+    monkeypatch.setattr(run, "watchdog", lambda: begun.append("here"))
+    assert len(run._rows_of_list(0.1, 0, DEFAULT_SCENE)) == 4
+    assert begun == ["here"]
+
+
 def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, monkeypatch):
     def requests():
         asked = iter([False, False, True])

@@ -4,7 +4,7 @@ from importlib.util import find_spec
 from types import ModuleType, SimpleNamespace
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 from rich.segment import Segment
@@ -52,6 +52,7 @@ def test_half_blocks_change_only_braille_and_in_ascii_frames_and_words_are_read_
     assert written("Störmer, 2√2, ±57°, ½ µs ⣀⡀⠁", "ascii") == "Stormer, 2V2, ~57o, _ us ..'"
 
 
+@example("Ａ", "ascii")  # which is wide
 @given(st.text(st.characters(exclude_categories=("Cc", "Cs"))), st.sampled_from(CHARACTER_SETS))
 def test_whatever_is_written_keeps_its_width_and_ascii_is_ascii(text, character_set):
     assert cell_len(written(text, character_set)) == sum(map(cell_len, text))

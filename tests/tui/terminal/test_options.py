@@ -79,6 +79,20 @@ def test_the_background_is_what_the_terminal_answers(colour, ground, monkeypatch
     assert options.background() == ground
 
 
+def test_a_terminal_that_does_not_answer_is_awaited_for_a_second(monkeypatch):
+    waits = []
+
+    def select(*asked):
+        waits.append(asked[-1])
+        return [], [], []
+
+    monkeypatch.setattr(options, "os", SimpleNamespace(write=lambda *_: None))
+    monkeypatch.setattr(options, "select", SimpleNamespace(select=select))
+    monkeypatch.setattr(options, "key_by_key", lambda _: nullcontext(True))
+    assert options.background() is None
+    assert waits == [pytest.approx(1.0, abs=0.2)]
+
+
 def test_the_screen_has_the_frames_that_were_asked_for():
     screen = LabScreen(Live(DEFAULT_SCENE))
     PenduApp(screen, chosen("--fps 5"))
