@@ -209,7 +209,8 @@ def test_a_start_is_unlike_the_rest_at_a_chance_of_1e_4():
         values[:16] = np.mean(blocks) - shifts[np.argmin(abs(chances - chance))]
         bins = core.Bins(np.arange(64.0), values, values - half, values + half, half, 1e-12)
         whole = core.Part(bins, values)
-        assert bool(core._way_from_start(whole, whole.last(0.75))) == has_left
+        way = has_left * (values[16:].mean() - values[0])
+        assert core._way_from_start(whole, whole.last(0.75)) == pytest.approx(way)
 
 
 @pytest.mark.parametrize(
