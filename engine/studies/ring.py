@@ -78,8 +78,7 @@ class Neighbourhood:
                 ring = next(rings)
                 log_area = carried.log_area + math.log(abs(determinant))
                 if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):
-                    carried.lost = True
-                    return
+                    raise OverflowError
                 carried.phase = phase
                 carried.ring = ring
                 carried.log_area = log_area

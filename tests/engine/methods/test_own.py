@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
-from pendu_tui.engine.methods.own import MAX_SOURCE, OwnMethodError
+from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.engine.studies.stability import Grid, Part
@@ -143,6 +143,11 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     printed = capsys.readouterr()
     assert not printed.out
     assert "here\nthere" in printed.err
+    with USER_CODE:
+        with USER_CODE:  # as one's own method that calls another
+            pass
+        print("still there")
+    assert capsys.readouterr() == ("", "still there\n")
 
 
 def test_an_exception_after_many_steps_is_a_sentence_with_the_line():

@@ -48,7 +48,10 @@ def test_a_small_ring_encloses_the_area_of_the_jacobians():
 def test_a_method_that_overflows_keeps_its_last_ring():
     neighbourhood = Neighbourhood(Scene(theta=1.0, omega=1e9, h=15.0), radius=1e308 / 1e3)
     neighbourhood.advance(500, Stepping(15.0))
-    assert all(np.isfinite(ring).all() for ring in neighbourhood.rings)
+    rings = np.array(neighbourhood.rings)
+    assert np.isfinite(rings).all()
+    neighbourhood.advance(1, Stepping(1e-9))  # which would be a finite step again
+    assert np.array_equal(neighbourhood.rings, rings)
     for log_area, ratio in ((700, np.exp(700)), (710, np.inf)):
         neighbourhood._carried[0].log_area = log_area
         assert neighbourhood.area_ratios[0] == pytest.approx(ratio)
