@@ -91,8 +91,10 @@ def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_th
     monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
     seconds = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.05:2")
     asked = (*seconds, "--methods", "taylor_20,verlet,rk4", "--target", "1e-3")
-    assert re.search(r" in \d+(\.\d+)? [µm]s +\d", pendu(*asked[:-2]).out)
+    out = pendu(*asked[:-2]).out
     assert timed == ["taylor_20", "velocity_verlet", "rk4"] * 2
+    assert re.search(r" in \d+(\.\d+)? [µm]s +\d", out)
+    assert re.search(r" evaluations +seconds +theta error +times the cheapest", pendu(*asked).out)
     answer = pendu(*asked, "--json").json
     series, _, rk4 = answer["points"][:3]
     assert (series["h"], series["force_evaluations"]) == (0.1, None)

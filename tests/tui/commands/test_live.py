@@ -135,8 +135,6 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
 class App(SimpleNamespace):
     """An app that ends at once."""
 
-    return_code = 0
-
     def run(self, mouse: bool):
         return self.result
 
@@ -145,10 +143,10 @@ class App(SimpleNamespace):
 
 
 def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_command(monkeypatch):
-    def shown(result: object = None, **environment: str) -> int:
+    def shown(result: object = None, code: int = 0, **environment: str) -> int:
         nonlocal app
         monkeypatch.setattr(lab, "environment", lambda: {"TERM": "xterm-256color"} | environment)
-        app = App(result=result)
+        app = App(result=result, return_code=code)
         return lab.show(LabScreen(Live(DEFAULT_SCENE)), options)
 
     def made(screen: LabScreen, terminal: TerminalOptions) -> App:
@@ -166,7 +164,7 @@ def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_comm
     ):
         assert shown(**environment) == 0
         assert (app.theme, app.finished) == (theme, True)
-    assert shown(130) == 130
+    assert (shown(130), shown(code=1)) == (130, 1)
     with pytest.raises(ZeroDivisionError):
         shown(ZeroDivisionError())
 

@@ -32,6 +32,7 @@ def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_
     (tmp_path / "a").mkdir()
     record(tmp_path / "one.mcap", two_runs())
     record(tmp_path / "a" / "two.mcap", two_runs())
+    (tmp_path / "being made.mcap.part").touch()
     ours = pendu("verify", tmp_path)
     assert first_words(ours) == ["identical", "identical", "2"]
     assert "differently" not in ours.out
