@@ -173,5 +173,6 @@ def test_what_cannot_be_judged_does_not_pass_and_says_what_would_help():
     row = {"max_energy_error": 0.1, "verdict": "undecided", "reason": "short"}
     assert "short" in gate({"": row | {"slope": None}})
     assert gate({"": row | {"slope": 0.0}}) == ""
+    assert gate({"": row | {"slope": None, "verdict": "bounded"}}) == ""
     gate = parse("trend > 1e-5", ["trend"])
     assert "4 times as long" in gate({"": {"trend": 0.0, "bound": 8e-5}})

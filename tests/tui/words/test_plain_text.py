@@ -122,6 +122,7 @@ def test_a_replay_ends_at_its_end():
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         replay = Replay(recording)
         assert description(replay)[0].startswith("The replay runs at 1× speed and is at 0.00 s")
+        assert description(replay)[-1] == "The recording drift.mcap is 15.00 s long."
         assert len(said(replay, 1000)) < recording.length + 30
         assert replay.playhead.position == recording.length
 
