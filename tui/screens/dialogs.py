@@ -136,9 +136,9 @@ def entries(scenes: Iterable[Scene], bindings: Iterable[ActiveBinding]) -> Itera
     for scene in scenes:
         yield Entry(f"start_scene({scene.name!r})", f"scene {scene.name}", about=scene.watch)
     done = {"find"}
-    for node, binding, enabled, _ in bindings:
+    for node, binding, *_ in bindings:
         ours = {each.action for each in bindings_of(type(node))}
-        if enabled and binding.action in ours - done:
+        if binding.action in ours - done:
             done.add(binding.action)
             press = f"app.simulate_key({binding.key!r})"
             yield Entry(press, purpose(binding), key_text(binding))

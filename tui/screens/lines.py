@@ -302,8 +302,8 @@ class KeyLine(CellWidget):
     def _needed(self) -> list[Binding]:
         own: dict[str, Binding] = {}
         panes: dict[str, Binding] = {}
-        for node, binding, enabled, _ in self.screen.active_bindings.values():
-            if binding.show and enabled:
+        for node, binding, *_ in self.screen.active_bindings.values():
+            if binding.show:
                 bindings = own if node is self.screen else panes
                 bindings[binding.action] = binding
         listed = [*own.values()]
