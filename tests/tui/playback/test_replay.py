@@ -297,11 +297,12 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
             if value.run > 1:
                 break
             if isinstance(value, Event) and value.milestone == said:
-                value = value._replace(milestone=said._replace(verdict="chaotic"))
+                value = value._replace(milestone=said._replace(verdict="chaotic", lyapunov=0.5))
             recorder.add(value, clock)
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
-    assert table.verdicts[table.replay.scene.cast.index(said.method)] == "chaotic"
+    judgement = table.replay.judgements[table.replay.scene.cast.index(said.method)]
+    assert (judgement.verdict, judgement.lyapunov) == ("chaotic", 0.5)
 
 
 def test_no_lab_goes_on_without_the_users_own_method(tmp_path):

@@ -52,6 +52,14 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         assert pane.border_title == "Own map of Velocity Verlet: h 0.348011 s, z 1.09"
         words = "start: A chain of islands: 1 turn in every 6 steps, 1:6."
         assert pane.text.splitlines()[-1] == words
+        pane._orbits = 20
+        pane.draw()
+        assert str(pane.border_title).endswith(", computing 50%")
+        await theatre.press("n")
+        pane.draw()
+        own = theatre.source.stepping.own[2]
+        assert own < theatre.source.stepping.h
+        assert f"h {own:g} s" in str(pane.border_title)
         await theatre.press("x")
         assert str(pane.border_title).startswith("Phase space")
         assert "E/Es" in pane.text

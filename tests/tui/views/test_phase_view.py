@@ -107,6 +107,9 @@ async def test_the_wheel_zooms_around_the_pointer():
         after = pane.viewport.at_cell(30 - LEFT, 5)
         assert after.theta == pytest.approx(state.theta, abs=pane.viewport.theta_per_dot)
         assert after.omega == pytest.approx(state.omega, abs=pane.viewport.omega_per_dot)
+        nearer = pane.viewport
+        await theatre.press("right", "escape")  # leaves the crosshair alone
+        assert pane.viewport == nearer
         await theatre.press("escape")
         assert pane.viewport == before
 

@@ -72,6 +72,7 @@ async def test_panes_after_keys_and_pointers(snapshot):
         theatre.stage.post_message(Held(1.0))
         await note("held")
         theatre.stage.post_message(Held(None))
+        await theatre.pilot.hover(Stage)
         await theatre.press("+", "2", "e", "y", "o", "r")
         await theatre.run(5)
         await note("ghost")

@@ -64,8 +64,9 @@ async def test_a_click_starts_with_what_was_clicked_on():
         lowest = max(
             y for y, line in enumerate(pane.text.splitlines()) if line.startswith("   90┤")
         )
-        await pilot.hover(StabilityPane, offset=(4, 1 + lowest))  # on a label
-        assert pane.pointer is None
+        for column in (4, 1 + 38):  # on a label, and beside the map
+            await pilot.hover(StabilityPane, offset=(column, 1 + lowest))
+            assert pane.pointer is None
         await pilot.press("right")
         await pilot.click(StabilityPane, offset=(1 + 38 + 2 + 6 + 16, 1 + lowest))
         assert pane.cursor is None

@@ -113,7 +113,10 @@ def test_phase_space(snapshot):
         texts.append(look(section.picture(orbit, State(1.8, 0.0), state)))
     for aim, width in product((None, state, State(math.pi, 1 / 3)), (80, 110, 140)):
         texts.append("".join(text for text, _ in caption(live, aim, width)))
-    texts.append(place_text(SCENES["damped"].equations, State(-1e-3, 2.0), 80))
+    texts.append(place_text(SCENES["damped"].equations, State(-1 / 3000, 2.0), 80))
+    alone = Shown(exact=True, hidden=frozenset(method.key for method in DRIFT.cast))
+    points = method_points(live, live.sample, alone, None)
+    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
     snapshot("phase.txt", "\n".join(texts) + "\n")
 
 
