@@ -261,7 +261,7 @@ GROUPS = (noises, drifts, waves, narrow_bands, changes, relaxations, roundings)
 def all_series(share: float, seed: int = SEED) -> Iterator[tuple[Series, Any, Any]]:
     """Yield each series with times and energies, in random units with a random zero."""
     random = np.random.default_rng(seed)
-    makers = (Maker(count, random) for count in SIZES for _ in range(round(22 * share)))
+    makers = (Maker(count, random) for count in SIZES for _ in range(max(1, round(22 * share))))
     for series in (Series(*made) for make in makers for group in GROUPS for made in group(make)):
         length = len(series.energies)
         times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length

@@ -237,7 +237,7 @@ async def still(
 
 async def settled(app: PenduApp) -> None:
     panes = app.lab.query("#views *").results
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(300):  # s; a busy machine takes a minute for a study
         while not all(map(_is_settled, panes(Widget))):
             await asyncio.sleep(0.01)
     for pane in panes(CellWidget):
