@@ -66,8 +66,6 @@ def printable(text: str, limit: int = MAX_TEXT) -> str:
     """Return at most `limit` characters of the text, without those that control a terminal."""
     if len(text) > limit:
         text = text[: limit - 1] + "…"
-    if text.isprintable():
-        return text
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 

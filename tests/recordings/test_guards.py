@@ -208,6 +208,8 @@ def test_several_verdicts_may_pass_and_a_drift_is_compared_with_its_bound(energy
     drifting = energies * (1 + 0.01 * times)
     with pytest.raises(pytest.fail.Exception, match=r"the drift is 0\.01, above 0\.005\n"):
         energy_gate.check(times, drifting, "grows", max_drift=0.005)
+    with pytest.raises(pytest.fail.Exception, match=r"the drift is 0\.01, above 0\.005\n"):
+        energy_gate.check(times, 2 * energies - drifting, "loses", max_drift=0.005)
     assert energy_gate.check(times, drifting, ["bounded", "grows"]).verdict == "grows"
     with pytest.raises(pytest.fail.Exception, match="not bounded or loses"):
         energy_gate.check(times, drifting, ["bounded", "loses"])

@@ -200,6 +200,12 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(path, o
     assert verify(out).identical
 
 
+def test_without_its_first_chunk_a_later_run_is_read(path):
+    for check in (False, True):
+        with Recording.open(spoil(path, 0) if check else path, check) as read:
+            assert [run.number for run in read.runs] == ([2] if check else [1, 2])
+
+
 @pytest.mark.parametrize("number", [1, 3, 5])
 def test_each_entry_of_a_lost_chunk_is_counted(path, number):
     with path.open("rb") as stream:

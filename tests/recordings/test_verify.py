@@ -186,6 +186,7 @@ def test_no_more_steps_are_simulated_than_samples_need(verified):
 
 def test_without_a_limit_a_hundred_steps_a_sample_are_simulated(verified, monkeypatch):
     monkeypatch.setattr("pendu_tui.recordings.verification.MAX_STEPS", 1)
+    monkeypatch.setattr("pendu_tui.recordings.verification.STEPS_AT_ONCE", 70)
     assert verified(entries_of(SCENE, 0, 1, 300)).identical
     with pytest.raises(RecordingError, match="claims 301 steps"):
         verified(entries_of(SCENE, 0, 1, 301))

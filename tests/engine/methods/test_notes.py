@@ -144,6 +144,7 @@ def test_taylors_series_has_the_same_bits_when_compiled():
         for loops in (compiled, PlainLoops)
     ]
     assert ends[0] == ends[1]
+    assert not isinstance(compiled(TAYLOR_20, PENDULUM), PlainLoops)
 
 
 @pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=by_key)

@@ -147,7 +147,8 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
         with USER_CODE:  # as one's own method that calls another
             pass
         print("still there")
-    assert capsys.readouterr() == ("", "still there\n")
+    print("here again")
+    assert capsys.readouterr() == ("here again\n", "still there\n")
 
 
 def test_an_exception_after_many_steps_is_a_sentence_with_the_line():

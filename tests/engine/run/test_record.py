@@ -180,6 +180,17 @@ def test_students_distribution_is_that_of_tables(freedom, t, chance):
     assert student(-2 * t, 2.0, freedom) == pytest.approx(1 - chance, abs=2e-4)
 
 
+@pytest.mark.parametrize(
+    ("widths", "reason"),
+    [((1, 2, 3, 4), levels.WIDENS), ((1, 3, 2, 4), ""), ((1, 2, 2.5, 2.9), "")],
+)
+def test_a_band_widens_from_quarter_to_quarter_to_three_times_its_width(widths, reason):
+    half = np.repeat(widths, 16) / 2
+    flat = NOISE[:64] * 0.1
+    bins = core.Bins(np.arange(64.0), flat, flat - half, flat + half, half, 1e-12)
+    assert core.Part(bins, flat).why_not_bounded() == reason
+
+
 @pytest.mark.parametrize(("rise", "verdict"), [(0.45e-12, "bounded"), (0.6e-12, "grows")])
 def test_what_roundings_may_add_up_to_is_no_trend(rise, verdict):
     assert judge_record(T, 1 + rise * T / T[-1]).verdict == verdict

@@ -180,6 +180,7 @@ def test_an_error_that_no_useful_point_reaches_has_no_cost():
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
     assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
     assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
+    assert cost_at(lost, "theta", "evaluations", 1e-2) == 4 * 20  # not between lost and found
 
 
 def test_the_order_decides_which_method_is_cheapest_and_by_how_much():

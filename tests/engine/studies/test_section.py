@@ -126,6 +126,7 @@ def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
 def test_at_rest_and_in_few_steps_nothing_turns():
     rest = kind(VERLET, 0.0, 0.5)
     assert (rest.moves, rest.rotation, rest.fraction, rest.chaotic) == (False, None, None, False)
+    assert kind(EXPLICIT, 1.0, 0.3, steps=1).moves  # only omega, at first
     for steps in (1, 2, 5):
         found = kind(VERLET, 1.0, 0.3, steps)
         assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
