@@ -1,6 +1,7 @@
 import pytest
 
 from pendu_tui.recordings.files import golden_names
+from pendu_tui.tui.commands import verify
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import Outcome, own_method, pendu
@@ -106,3 +107,10 @@ def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
         earlier.setattr("pendu_tui.recordings.events.NUMERICS", 1)
         path = record(tmp_path / "earlier.mcap", two_runs())
     assert "made with version 1 of the numerics, this is version" in pendu("verify", path).out
+
+
+def test_other_functions_of_the_machine_and_a_changed_source_are_told(whole):
+    row = verify._row(whole, None, None)
+    told = verify._sentence(row | {"other_functions": ["sin", "sqrt"], "changed_sources": ["mine"]})
+    assert "this machine computes sin() and sqrt() differently" in told
+    assert told.endswith("; the source of mine is not the recorded one")
