@@ -40,6 +40,11 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert advice not in pendu("live", "--plain", "--record", path).err
 
 
+@pytest.mark.parametrize("command", ["live", "tour", "replay drift"])
+def test_without_a_terminal_there_is_no_screen(command):
+    assert pendu(*command.split(), "--no-record").refused(4, "not a terminal")
+
+
 def test_labs_that_begin_at_once_record_under_names_of_their_own(tmp_path, monkeypatch):
     path = tmp_path / "library" / "now.mcap"
     monkeypatch.setattr("pendu_tui.recordings.files.new_path", lambda _: path)
