@@ -25,7 +25,7 @@ CEILINGS = {
     "characters_of_engine": 260_000,
     "characters_of_recordings": 69_200,
     "characters_of_tui": 520_900,
-    "characters_of_tests": 726_500,
+    "characters_of_tests": 739_000,
     "characters_of_bench": 69_200,
     "files": 127,
     "long_lines": 0,
