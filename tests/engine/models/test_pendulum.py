@@ -94,6 +94,7 @@ def test_the_swing_is_exact_from_any_start(theta, omega, phase, gravity):
 def test_at_rest_it_stays_and_the_separatrix_climbs_forever():
     rest = Scene(theta=0.0).exact()
     assert (rest.regime, rest.period, rest.at(1e5)) == ("equilibrium", None, State(0.0, 0.0))
+    assert Scene(theta=1e-200).exact().regime == "libration"
     exact = Scene(theta=0.0, omega=-2.0, gravity=1.0).exact()  # w0 = 1: the one start exactly on it
     assert (exact.regime, exact.period) == ("separatrix", None)
     for t in (-3.0, 0.5, 3.0):
