@@ -85,6 +85,9 @@ def test_a_question_stays_asked_when_the_user_goes_back_before_its_moment(lesson
     before = live.sample
     live.step(-2)
     assert not lesson.follow(live, before)
+    before = live.sample
+    live.step(5)
+    assert not lesson.follow(live, before)
     assert lesson.stage == "asked"
     lesson.begin(live, 1)
     lesson.forward(live)

@@ -26,6 +26,7 @@ def test_red_is_for_failures_alone_and_signs_stand_for_colours():
     readings = (*others, rk4._replace(diverged_at=0.8))
     live.history.sample = live.sample._replace(readings=readings)
     assert verdicts(live) == [*words[:3], ("! failed", WARN)]
+    assert {ink for _, ink in table(live, live.sample, Shown(), 80)[4][2:]} == {QUIET}
     assert [ink for words, ink in verdicts(lab(1.0))] == [QUIET] * 4
 
 

@@ -57,3 +57,5 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     assert [theta == 0 for theta in near] == [True, False]
     lowest = before.stepped(State(0.0, before.omega_at(47.0)), 0.0, -9.0)
     assert before.y(lowest.omega) == pytest.approx(47, abs=0.5)
+    rightmost = before.stepped(State(before.theta_at(79.0), 0.0), 9.0, 0.0)
+    assert before.x(rightmost.theta) == pytest.approx(79, abs=0.5)
