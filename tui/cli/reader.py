@@ -23,7 +23,7 @@ import numpy as np
 
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
 from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names, unreadable
-from pendu_tui.tui.cli.units import is_unit, plain, split_unit
+from pendu_tui.tui.cli.units import UNIT, is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # characters
 MAX_LINES_BEFORE = 100_000  # the first row
@@ -46,7 +46,7 @@ _NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+|[-+]\d
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
-_WITH_UNIT = re.compile(rf"({NUMBER})\s?([^\W\d]\S*)")
+_WITH_UNIT = re.compile(rf"({NUMBER})\s?({UNIT})", re.IGNORECASE)
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
 _COMMENTS = "#@!%;"
@@ -111,8 +111,7 @@ def _uncut(line: str, above: list[str]) -> str:
     shape = _NUMBERS.sub("0", line).split()
     like = [each for each in above if _NUMBERS.sub("0", each).split() == shape]
     numbers = [_NUMBERS.findall(each)[-1] for each in like]
-    has_exponent = ["e" in each.lower() for each in (number, "".join(numbers))]
-    has_grown = has_exponent == [True, False]  # to 1e+300, for example
+    has_grown = "e" in number.lower() and "e" not in "".join(numbers).lower()  # to 1e+300
     if has_grown or len(like) < MIN_ABOVE or len(number) >= min(map(len, numbers)):
         return line
     return f"{line.removesuffix(number)}cut"
@@ -228,8 +227,7 @@ def number(text: str) -> float | None:
         return float("nan")
     if not _BEGINS.match(text):
         return None
-    match = _WITH_UNIT.fullmatch(text)
-    if match and is_unit(match[2]):
+    if match := _WITH_UNIT.fullmatch(text):
         text = match[1]
     text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
     # Fortran's exponents from 100 on
@@ -654,7 +652,7 @@ class _Text:
                 units = bare if any(map(is_unit, bare)) else units
         for place, field in enumerate(fields):
             match = _WITH_UNIT.fullmatch(field)
-            if not units[place] and match and is_unit(match[2]):
+            if match and not units[place]:
                 units[place] = match[2]
             if place:
                 units[place] = units[place] or self._shared
