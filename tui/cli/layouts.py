@@ -25,7 +25,8 @@ class Layout:
     columns below; a `row`, which may begin with words; a `value`, its `name`, which is Step if
     there is none, and perhaps its `unit`; `over`, names above a line of numbers; the `place` of a
     column, from 1, or the `set` of xmgrace, from 0, and its `label`; the `units` of its other axis;
-    the beginning of a new run (`part`); the `end` of the data, until they begin `again`.
+    the beginning of a new run (`part`); the `end` of the data, until they begin `again`; the
+    `error` with which a program ended, if no row follows it.
     """
 
     programs: str
@@ -131,6 +132,10 @@ LAYOUTS = (
         programs="GPUMD, which writes neither names nor times",
         file=r"thermo\.out",
         columns=("temperature (K)", "kinetic (eV)", "potential (eV)"),
+    ),
+    Layout(
+        programs="LAMMPS, GROMACS, NAMD and others that end with an error",
+        line=rf"^(?P<error>(?:fatal )?error(?: on proc \d+)?:(?! *(?:{FAILED}|{NUMBER})).*)",
     ),
     Layout(
         programs="JSON, an object a line",

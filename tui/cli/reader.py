@@ -452,6 +452,9 @@ class _Text:
                 self._begin_run()
             case {"end": _} | {"again": _}:
                 self._is_over = "end" in groups
+            case {"error": text}:
+                self._tables[-1].error = text
+                self._prints[-1].error = text
             case _ if self._is_over:
                 pass
             case {"value": value}:
@@ -464,13 +467,11 @@ class _Text:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
                 if len(self._above) < MAX_HEADS:
-                    names = [name.strip() for name in re.findall(layout.cells, text)]
-                    self._above[line] = names
+                    self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
                 self._over = line if line in self._above else ""
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
-                opening = fields[0] * (number(fields[0]) is None)
-                self._row(fields, delimiter, opening)
+                self._row(fields, delimiter, fields[0] * (number(fields[0]) is None))
             case {"set": place, "label": label}:
                 self._labels[int(place) + 1] = label
             case {"label": label}:

@@ -223,6 +223,7 @@ class Sheet:
         self.skipped = 0  # rows of another width
         self.puts = 0
         self.last = 0  # the line of the last row
+        self.error = ""  # the line of an error below it
         self.heads: list[int] = []  # lines of its head, where it is repeated
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
@@ -254,6 +255,7 @@ class Sheet:
             self._lines[place].extend(here)
             self._values[place].extend(values)  # type: ignore[arg-type]
         self.last = lines[-1]
+        self.error = ""
         is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
         if self.puts >= SAMPLE and not is_sampled:

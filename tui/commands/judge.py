@@ -212,6 +212,7 @@ def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
         "first_time": series.times[0],
         "last_time": series.times[-1],
         "skipped": series.skipped,
+        "log_error": printable(series.sheet.error, 100),
     }
     absolute = {
         "absolute_trend": judged.slope,
@@ -278,6 +279,8 @@ def lines_of(answer: Answer) -> list[str]:
     step = fields["time"].casefold() if role(fields["time"])[0] == "step" else ""
     lines = answer.judged.lines(fields["time_unit"], energy_unit, step)
     lines = [_title(fields), *_listed(fields), *lines]
+    if fields["log_error"]:
+        lines.append(_line("log ends", f"with {fields['log_error']}"))
     if fields.get("energy_per_ns_per_atom") is not None:
         text = f"{fields['energy_per_ns_per_atom']:+.2e}{_spaced(energy_unit)} per ns"
         if "temperature" in fields:

@@ -129,6 +129,12 @@ CASES = {
         "[{n}/90] step {s}, time {t}, total energy {e} kinetic energy {k}",
         "",
     ),
+    "LAMMPS, GROMACS, NAMD and others that end with an error": (
+        "t, E",
+        "",
+        "t = {t}, E = {e}\nError: {k}",
+        "ERROR: Lost atoms: original 648 current 612\n",
+    ),
     "prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8": (
         "time ps, Ekin + Etot (const) Ry",
         "",

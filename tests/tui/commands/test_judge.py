@@ -93,6 +93,13 @@ def test_where_the_time_is_not_certain_nothing_is_judged():
     assert (outcome.code, "which column is the time;" in outcome.err) == (2, True)
 
 
+def test_an_error_below_the_last_row_is_shown():
+    log = LOG + "ERROR: Lost atoms: original 648 current 612\n"
+    assert "log ends      with ERROR: Lost atoms: original 648" in guess(log).out
+    for more in (LOG, "  30.0 100.5 300.\n"):
+        assert guess(log + more, "--json").json["log_error"] == ""
+
+
 def test_only_rows_in_the_range_of_time_are_judged():
     answer = judge(TABLE, "--json", "--from", 5, "--to", 20).json
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)
