@@ -65,7 +65,7 @@ def energy_gate():
         (kicks(second=0.0), "no order: its error stays above"),
         (kicks(first=0.5001), "order 0.008: the error does not fall with h"),
         (kicks(rounded=float32), "float"),
-        (kicks(dropped=40), "theta and omega alone"),
+        (kicks(dropped=40), "begins again after"),
         (kicks(dropped=1000), "the error does not fall with h"),
     ],
     ids=["stale", "no second kick", "0.5001", "float32", "1 of 40 dropped", "1 of 1000"],
