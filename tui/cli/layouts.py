@@ -10,7 +10,9 @@ from functools import cached_property, lru_cache
 
 from pendu_tui.tui.cli.units import UNIT, split_unit
 
-NUMBER = r"[-+]?(?:\d*\.\d+[-+]\d{3}(?!\d)|(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)"
+_DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.,])"  # of many languages
+_DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+NUMBER = rf"[-+]?(?:\d*\.\d+[-+]\d{{3}}(?!\d)|{_DECIMALS}|{_DIGITS})"
 """-4.52-107 is Fortran's -4.52e-107."""
 FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
@@ -144,16 +146,17 @@ LAYOUTS = (
     Layout(
         programs="prints of name value",
         line=rf"(?<!\S)(?!{FAILED}(?!\S))(?:(?:INFO|DEBUG|and|has|with) +)?"
-        rf"(?P<name>[A-Z]\w{{,40}}(?: [A-Z]\w{{,40}}){{,2}}) +{VALUE},?"
+        rf"(?P<name>[A-Z]\w{{,40}}(?: [A-Z]\w{{,40}}){{,2}}) +{VALUE}[,:]?"
         r"(?=\s*$| +(?:(?:[A-Z]\w* +){1,3}(?=(?:e|energy|quantity|time|step) ))?[A-Z]\w*"
         rf" +{NUMBER},?(?:\s*$| +(?![^\d=:]{{,60}}[=:])[A-Z]))",
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
-        line=rf"(?<![\w.])(?:(?:INFO|DEBUG):? +)?(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{{,40}}"
-        rf"(?: (?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
-        rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])){VALUE}"
-        rf" *[\[(]?(?P<unit>{UNIT}|[mk]J)?(?![\w/.:]| *[=:])",
+        line=r"(?<![\w.])(?:(?:INFO|DEBUG):? +|X {2,})?"
+        r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
+        rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
+        rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s)){VALUE}"
+        rf" *[\[(]?(?P<unit>{UNIT}|[mk]J)?(?![\w/.]|:\S|,\d| +:| *=)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

@@ -14,6 +14,7 @@ import zlib
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
+from datetime import UTC, datetime
 from itertools import accumulate, chain, compress, islice
 from statistics import mode
 from typing import Any, NamedTuple
@@ -42,11 +43,14 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"BZh": bz2.open,
     b"\xfd7zXZ": lzma.open,
 }
-_NUMBERS = re.compile(r"([-+.\d](?<!\w.)[\d.]*(?<=\d)\.?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)")
+_NUMBERS = re.compile(
+    r"([-+.\d](?<!\w.)[\d.]*(?<=\d)(?:\.|,\d+(?![\d.,]))?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)"
+)
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?({UNIT})", re.IGNORECASE)
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
 _COMMENTS = "#@!%;"
@@ -227,6 +231,8 @@ def number(text: str) -> float | None:
         return float("nan")
     if not _BEGINS.match(text):
         return None
+    if _DATE.match(text):
+        return _seconds(text)
     if match := _WITH_UNIT.fullmatch(text):
         text = match[1]
     text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
@@ -234,6 +240,14 @@ def number(text: str) -> float | None:
     text = re.sub(r"(\.\d+)([-+](?:[12]\d\d|3[0-2]\d))$", r"\1e\2", text)
     with suppress(ValueError):
         return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
+    return None
+
+
+def _seconds(date: str) -> float | None:
+    """Return the time of an ISO date since 1970, in s; UTC, unless it has a zone."""
+    with suppress(ValueError):
+        moment = datetime.fromisoformat(date)
+        return moment.replace(tzinfo=moment.tzinfo or UTC).timestamp()
     return None
 
 
@@ -538,7 +552,8 @@ class _Text:
         bare = re.sub(r'"[^"]*"', "", text)
         for sign in filter(bare.__contains__, _DELIMITERS):
             fields = _split(text, sign)
-            if fields and not any(re.search(r"\d\s+(?:[-+.\d]|\(nan)", field) for field in fields):
+            undated = [_DATE.sub("", field) for field in fields]
+            if fields and not any(re.search(r"\d\s+(?:[-+.\d]|\(nan)", each) for each in undated):
                 return fields, sign
         divided = _GLUED.sub(r" \g<0>", text).split()
         if is_row or len(divided) == width or re.search(r"\d\*{2,}$", text):
@@ -653,6 +668,8 @@ class _Text:
                 units = bare if any(map(is_unit, bare)) else units
         for place, field in enumerate(fields):
             match = _WITH_UNIT.fullmatch(field)
+            if _DATE.match(field.strip("\"' ")):
+                units[place] = "s"
             if match and not units[place]:
                 units[place] = match[2]
             if place:

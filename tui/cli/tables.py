@@ -136,10 +136,18 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         if kind in best:
             return best[kind][:1]
     if not rising:
-        return ()
+        return None if any(map(_is_in_turn, samples)) else ()
     steps = np.diff(samples[rising[0]])
     is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
     return _only(rising) if is_even or not names[rising[0]] else None
+
+
+def _is_in_turn(sample: Any) -> bool:
+    """Return whether a column counts bodies, methods or processes again and again."""
+    again = np.flatnonzero(np.asarray(sample[1:]) == sample[:1]) + 1
+    if not len(again) or again[0] < 2 or len(sample) < 3 * again[0] or np.mod(sample, 1).any():
+        return False
+    return np.array_equal(sample[again[0] :], sample[: -again[0]])
 
 
 def _energy(
@@ -150,27 +158,34 @@ def _energy(
     if not any(names[place] for place in places):
         return _only(places)
     best = _by_role(names, [place for place in places if not is_of_another_kind(units[place])])
-    for kind in ("conserved", "total"):
-        if kind in best:
-            return _only(best[kind])
+    if certain := best.get("conserved") or best.get("total"):
+        return _only(certain)
     kinetic = best.get("kinetic", ())
     parts = kinetic + best.get("potential", ())
     has_parts = len(kinetic) == 1 and len(parts) == 2
+    further = best.get("", ())
+    bare = [split_unit(name)[0] for name in names]
+    has_more = any(key(bare[place]).endswith(("energy", "energie")) for place in further)
     if found := best.get("energy"):
-        bare = [split_unit(name)[0] for name in names]
-        values = zip(bare, samples, strict=True)
-        others = {name for name, some in values if name not in COUNTS or np.mod(some, 1).any()}
-        is_other = others & OTHER_E.get(bare[found[0]], set())
+        is_other = _is_other(bare, samples, found[0]) or (bare[found[0]] == "e" and "error" in best)
+        if not units[found[0]]:
+            name = key(bare[found[0]])
+            is_other |= name == "e" and has_more and not has_parts
+            is_other |= name.startswith("tot") and bool(further) and not parts
         is_sum = not has_parts or _is_sum(samples, found + parts)
         is_certain = is_sum and not is_other and not _lacks(samples, found, kinetic)
         return _only(found) if is_certain else None
     if has_parts:
-        further = best.get("", ())
-        is_whole = len({shown("energy", units[place]) for place in parts}) == 1
-        if any("energ" in key(names[place]) for place in further):
-            is_whole &= _lacks(samples, kinetic, parts[1:])  # they balance
+        is_whole = len({shown("energy", units[place]) for place in parts}) == 1 and not has_more
         return parts if is_whole and not _lacks(samples, parts, further) else None
     return _only(best.get("error", ()))
+
+
+def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
+    """Return whether e is an eccentricity, or E the east, by the columns beside it."""
+    values = zip(names, samples, strict=True)
+    others = {each for each, some in values if each not in COUNTS or np.mod(some, 1).any()}
+    return bool(others & OTHER_E.get(names[place], set()))
 
 
 def _is_sum(samples: Sequence[Any], places: Group) -> bool:
@@ -424,14 +439,7 @@ class Series:
         times = self.times * step
         is_later = times > np.fmax.accumulate(np.append(-np.inf, times[:-1]))
         skipped = len(times) - int(is_later.sum())
-        in_turn = ((np.diff(times) == 0) & (np.abs(np.diff(self.energies)) > 0)).sum()
-        if in_turn > len(times) / 3:
-            raise unreadable(
-                f"{in_turn} of {len(times)} rows have the time of the row before, but another "
-                "energy; keep one body or method, for example with grep, or print more digits."
-            )
-        if skipped > len(times) / 2 and not (self.has_ended and np.isnan(times[~is_later]).all()):
-            raise unreadable(NOT_LATER)
+        self._check_order(times, is_later)
         self.skipped += skipped
         used = np.flatnonzero(is_later & (times >= begin) & (times <= last))
         sizes = np.abs(self.energies) + np.abs(self.kinetic)
@@ -452,6 +460,24 @@ class Series:
         self.times = times[used]
         self.energies = self.energies[used]
         self.kinetic = self.kinetic[used]
+
+    def _check_order(self, times: Any, is_later: Any) -> None:
+        """Raise UserError where rows of several bodies or runs are mixed."""
+        in_turn = ((np.diff(times) == 0) & (np.abs(np.diff(self.energies)) > 0)).sum()
+        if in_turn > len(times) / 3:
+            raise unreadable(
+                f"{in_turn} of {len(times)} rows have the time of the row before, but another "
+                "energy; keep one body or method, for example with grep, or print more digits."
+            )
+        is_dead = self.has_ended and np.isnan(times[~is_later]).all()
+        if (~is_later).sum() > len(times) / 2 and not is_dead:
+            raise unreadable(NOT_LATER)
+        behind = np.isfinite(times[np.flatnonzero(is_later)[-1] + 1 :]).sum()
+        if behind > len(times) / 10:
+            raise unreadable(
+                f"its last {behind} rows are not later than {np.nanmax(times):g}; keep one run, "
+                "and print numbers without marks between thousands."
+            )
 
     def _units(self) -> tuple[str, str]:
         """Return the units of time and energy.

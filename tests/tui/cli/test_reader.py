@@ -72,13 +72,18 @@ def columns(series: Series) -> str | None:
         ("time,t_sim,energy", "{s},{t},{e}", "t_sim, energy"),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
         ("t,KE (kJ/mol),PE (kJ/mole)", "{t},{k},{p}", "t, KE+PE kJ/mol"),
-        ("t,x,KE,PE,pair energy", "{t},{k},{k},{p},{k}", "t, KE+PE"),
-        ("t,KE,PE,internal energy", "{t},{k},-9,{e}", None),  # KE and PE do not balance
+        ("t,x,KE,PE", "{t},{k},{k},{p}", "t, KE+PE"),
+        ("t,KE,PE,internal energy", "{t},{k},{p},9", None),
+        ("Zeit [s],Ekin [J],Epot [J],Gesamtenergie [J]", "{t},{k},{p},{e}", None),
         ("t,KE,PE,spring", "{t},{k},-9,{p}", None),
         ("t,KE,PE,spring,total", "{t},{k},-9,{p},{e}", "t, total"),
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
         ("t,KE,energy", "{t},{k},{p}", None),
+        ("t,strain energy,E", "{t},{k},{e}", None),  # a modulus
+        ("t,alive,total", "{t},{k},{e}", None),
+        ("t,Hartree [H],Total [H]", "{t},{k},{e}", "t, Total hartree"),
+        ("t,e,dE/E", "{t},{k},{e}", None),
         ("t,a,e", "{t},1,{e}", None),  # eccentricity
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
@@ -108,6 +113,9 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ("Step {n}: time: {t} ps, energy: {e} eV", "ps, eV"),
         ("Time (ps): {t} | Energy (eV): {e} | dE = 1e-3", "ps, eV"),
         ("INFO t={t}s E={e}J", "s, J"),
+        ("t={t}: KE={k} E={e}", ", "),
+        ("Step {s}/4500 (t={t}): energy = {e}", ", "),
+        ("Time:  {t}\n  Total     energy: {e}\n  Kinetic   energy: {k}", ", "),
         ("t={t} ms K=3.5 E={e} mJ t={s}", "ms, mJ"),  # K is no kelvin
         ("Step {s}\n  time = {t}\n  kinetic = {k}\n  total energy = {e} Ry", ", Ry"),
         ("E = {e}\nt = {t}", ", "),
@@ -122,6 +130,21 @@ def test_printed_values_are_rows(form, units):
     assert ", ".join(series.units) == units
     assert list(series.times) == TIMES
     assert list(series.energies) == ENERGIES
+
+
+@pytest.mark.parametrize("form", ["t={t} E={e} J", "t;E\n", "Time: {t}; Total energy: {e}"])
+def test_decimals_may_follow_a_comma(form):
+    text = form + rows("{t};{e}") if form.endswith("\n") else rows(form)
+    (series,) = tables(text.replace(".", ","))
+    assert list(series.times) == TIMES
+    assert list(series.energies) == ENERGIES
+
+
+@pytest.mark.parametrize("form", ["2024-05-01T12:00:{n:02}", '"2024-05-01 14:00:{n:02}+02:00"'])
+def test_dates_are_times_in_seconds(form):
+    (series,) = tables("time,energy\n" + rows(form + ",{e}", last=60))
+    assert columns(series) == "time s, energy"
+    assert list(series.times) == [1_714_564_800 + second for second in range(60)]
 
 
 def array(*unnamed: object, **named: object) -> bytes:
@@ -165,7 +188,7 @@ def test_documents_arrays_and_compressed_files_are_tables(data):
         "t,E\n" + rows("{t},{e}\n#{n},5\nwriting {s} to file"),
         "ETITLE: TS TOTAL\n" + rows("ENERGY: {t} {e}\nInfo: {n} 1"),
         rows(" time = {t}\n kinetic = {k}\n total energy = {e}"),
-        rows('{{"t": {t}, "E": [1, {n}], "a": {{"total": {e}}}}}'),
+        rows('{{"t": {t}, "E": [1, {n}], "a": {{"total_energy": {e}}}}}'),
         "".join(rows("t = {t}, E = {e}" + ", x = 1" * (n % 2), n, n + 1) for n in range(90)),
     ],
 )

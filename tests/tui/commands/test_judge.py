@@ -88,8 +88,12 @@ def test_what_is_not_certain_is_listed_and_asked_for(text):
     assert guess(text, "--energy", "E2").code == 0
 
 
-def test_where_the_time_is_not_certain_nothing_is_judged():
-    outcome = guess("x,y,E\n" + lines("{t},{t},{e}"))
+BODIES = "body,E\n" + "".join(f"{n % 3},-1.{n % 7}\n" for n in range(30))
+
+
+@pytest.mark.parametrize("text", ["x,y,E\n" + lines("{t},{t},{e}"), BODIES])
+def test_where_the_time_is_not_certain_nothing_is_judged(text):
+    outcome = guess(text)
     assert (outcome.code, "which column is the time;" in outcome.err) == (2, True)
 
 
@@ -247,6 +251,7 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is already nan"),
         ("t,E\n3,1\n2,1\n1,1\n", "t E", 3, "name the column of times"),
         ("t,E\n" + "".join(f"{t},{e}\n" for t in range(5) for e in "12"), "t E", 3, "grep"),
+        ("t,E\n" + "".join(f'"{t:,}",{t}\n' for t in range(0, 1500, 99)), "t E", 3, "thousands"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
         (b"\x89MCAP0\r\n\0", "1 2", 3, "not text"),
         (b"x" * (1 << 21), "1 2", 3, "longer than 1 MB"),
