@@ -22,6 +22,8 @@ from pendu_tui.engine.methods import (
 )
 from pendu_tui.engine.methods.learned import (
     FAMILY,
+    LEARNED_SYMPLECTIC_MAP,
+    RK4_LEARNED_HAMILTONIAN,
     stored,
 )
 from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET
@@ -247,6 +249,34 @@ def test_the_learned_numbers_are_those_that_the_script_learns():
     assert list(learned) == list(stored())
     for name, expected in learned.items():
         assert rows(name) == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
+
+
+def true_energy_errors(method, start):
+    """The largest relative errors of the true energy in 50 s and in 100 s, w0 h being 0.1."""
+    energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
+    _, phase, _, low, high = advance((start, 0.0), 0.032, 1562, math.inf)
+    _, _, _, lowest, highest = advance(phase, 0.032, 1563, math.inf)
+    early = max(high / energy - 1, 1 - low / energy)
+    return early, max(early, highest / energy - 1, 1 - lowest / energy)
+
+
+@pytest.mark.parametrize(
+    ("start", "figures"),
+    [
+        (0.2, (8.4, 0.12, 8.7, 0.030)),
+        (1.0, (0.36, 0.012, 0.35, 0.0059)),
+        (1.5, (0.60, 0.0056, 0.61, 0.0039)),
+        (2.0, (0.15, 0.0033, 0.17, 0.0032)),
+    ],
+)
+def test_learned_energy_errors_are_those_of_the_cards_and_bounded_by_structure(start, figures):
+    errors = {method: true_energy_errors(method, start) for method in FAMILY}
+    assert [late for _, late in errors.values()] == pytest.approx(figures, rel=0.1)
+    for method, (early, late) in errors.items():
+        if method in (RK4_LEARNED_HAMILTONIAN, LEARNED_SYMPLECTIC_MAP):
+            assert late == pytest.approx(early, rel=0.005)
+        else:
+            assert late > 1.1 * early
 
 
 @pytest.mark.parametrize("method", FAMILY, ids=by_key)
