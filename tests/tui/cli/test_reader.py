@@ -79,6 +79,8 @@ def columns(series: Series) -> str | None:
         ("t,KE,PE,spring,total", "{t},{k},-9,{p},{e}", "t, total"),
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
+        ("t,KE,PE,total", "{t},20,-366.8,{e}", "t, total"),  # 0.5 % from their sum
+        ("t,KE,PE,total", "{t},20,-383,{e}", None),  # 5 %
         ("t,KE,energy", "{t},{k},{p}", None),
         ("t,strain energy,E", "{t},{k},{e}", None),  # a modulus
         ("t,alive,total", "{t},{k},{e}", None),

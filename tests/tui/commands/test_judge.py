@@ -289,6 +289,7 @@ def test_a_terminal_shows_a_chart_above_the_answer(monkeypatch):
     monkeypatch.setattr(command, "sys", SimpleNamespace(stdout=stdout))
     shown = judge(TABLE).out
     assert shown.index("energy error relative to 100") < shown.index("energies.csv: 300 samples")
+    assert "\n 0.015┤" in shown  # two standard deviations of this sine are 0.0141
 
 
 @given(

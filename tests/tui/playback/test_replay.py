@@ -201,7 +201,10 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory):
-    """A lab that ran for 24 s, then from 10 s on for 8 s with another h; what it said; its file."""
+    """A lab that ran for 24 s, then from the last verdict on for 8 s with another h.
+
+    With its milestones of the 24 s, what it said at each sample, and its file.
+    """
     path = tmp_path_factory.mktemp("lab") / "lab.mcap"
     lab = Lab(record=path)
     live = lab.live
@@ -214,7 +217,7 @@ def lab(tmp_path_factory):
 
     run(24.0)
     first = list(live.milestones)
-    live.step(200 - live.sample.step)
+    live.step(first[-1].step - live.sample.step)
     live.change(live.stepping._replace(h=0.02))
     live.pause(False)
     run(8.0)
