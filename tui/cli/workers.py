@@ -32,6 +32,8 @@ from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
 from pendu_tui.tui.cli.files import interruptible, keep_older
 
+MAX_WORKERS = 61  # Windows waits for no more
+
 Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]
 """A `map` of one iterable."""
 
@@ -129,7 +131,7 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
             client = stack.enter_context(_client(options.dask))
             executor = client.get_executor(pure=False)
         elif options.workers > 1:
-            count = min(options.workers, 4 * (os.cpu_count() or 1))
+            count = min(options.workers, 4 * (os.cpu_count() or 1), MAX_WORKERS)
             ignore = (signal.SIGINT, signal.SIG_IGN)
             executor = ProcessPoolExecutor(count, _spawning(), signal.signal, ignore)
         else:

@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -59,14 +60,14 @@ class Lost:
 
 def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monkeypatch):
     monkeypatch.setattr(workers, "ProcessPoolExecutor", Lost)
-    monkeypatch.setattr(os, "cpu_count", lambda: 3)
     child = SimpleNamespace(terminate=lambda: ended.append("one"))
     ended = []
     monkeypatch.setattr(workers, "active_children", lambda: [child])
-    for asked, count in ((2, 2), (1000, 12)):
+    for asked, processors, count in ((2, 3, 2), (1000, 3, 12), (1000, 64, 61)):
+        monkeypatch.setattr(os, "cpu_count", partial(int, processors))
         outcome = pendu(*RUNS, "--workers", asked)
         assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
-    assert ended == ["one", "one"]
+    assert ended == ["one"] * 3
 
 
 @pytest.mark.slow
