@@ -216,6 +216,6 @@ class Replay(Source):
     def _read(self, history: History, start: float, end: float, last: int) -> Iterator[None]:
         """Add the run's samples before step `last` from a piece of the recording clock."""
         for _, sample in self.recording.samples_between(start, end):
-            if sample.run == self.run.number and history.step < sample.step < last:
+            if sample.run == self.run.number and sample.step < last:
                 history.add(sample)
                 yield
