@@ -220,6 +220,8 @@ def test_a_solution_depends_on_no_other_and_is_found_after_many_turns():
     alone = [step(PENDULUM.force(np.sin), (one, 0 * one), h)[0] for one in starts[:, None]]
     assert np.array_equal(together, np.concatenate(alone))
     assert all(math.isfinite(step(FORCE, (1e6 + n, 1.0 + n), h)[0]) for n in range(50))
+    coarse = BACKWARD_EULER.phases(FORCE, (2.0, 0.0), 1.5 / PENDULUM.w0)
+    assert all(math.isfinite(theta) for theta, _ in islice(coarse, 2000))
 
 
 @given(z=st.floats(0.001, 5.0))

@@ -74,7 +74,11 @@ def test_the_way_home_is_of_whole_steps_that_lie_ahead():
 def test_a_change_at_the_step_gone_back_to_is_still_ahead():
     course = RewindableRun(SCENE)
     course.forward(10)
+    course.sample()
     course.change(stepping(0.1))
+    course.go_to(5)
+    course.forward(5)
+    assert course.in_past  # another change here is of another run
     course.forward(5)
     course.sample()
     course.go_to(10)

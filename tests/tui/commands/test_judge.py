@@ -131,7 +131,7 @@ def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
     twice = ("--step", "0.5fs", "--units", "time=ps,energy=eV")
     assert guess(text, *twice).refused(2, "--step already gives", "leave time= out")
     assert guess(text, "--step", 2, "--units", "time=ps", "--json").json["time_unit"] == "ps"
-    for option in (("--step", "0"), ("--step", "fs"), ("--temperature", "0")):
+    for option in (("--step", "0"), ("--step", "fs"), ("--temperature", "0", "--atoms", "9")):
         assert guess(text, *option).refused(2, option[0])
 
 

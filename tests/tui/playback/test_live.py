@@ -41,6 +41,9 @@ class Keeper:
         elif not last or last[0].run != value.run or last[0].step < value.step:
             self.samples.append(value)
 
+    def close(self) -> None:
+        pass
+
 
 class Bench(Lab):
     """A lab recorded in memory, with a clock of its own work."""
@@ -100,10 +103,12 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
 
 
 @pytest.mark.parametrize(("h", "samples"), [(0.001, 60), (0.05, 40)])
-def test_thirty_samples_a_second_are_recorded_or_every_step(h, samples):
+def test_thirty_samples_a_second_are_recorded_or_every_step_and_the_last_one(h, samples):
     bench = Bench(DEFAULT_SCENE.altered(h=h))
     bench.run(2)
     assert len(bench.keeper.samples) == pytest.approx(samples, abs=2)
+    bench.live.close()
+    assert bench.keeper.samples[-1].t == pytest.approx(2.0, abs=1e-6)
 
 
 def test_between_steps_the_end_moves_on_and_the_next_step_comes_closer():

@@ -280,7 +280,7 @@ def test_a_milestone_is_an_event_to_go_to_at_most_a_second_after_it_was(lab):
 def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
     table = Table(lab[3])
     replay = table.replay
-    replay.seek(18.0)
+    replay.seek(17.5)
     table.run(1 / FPS)
     assert replay.fill()
     assert table.verdicts == ["grows", "bounded", "bounded", "loses"]
@@ -290,6 +290,13 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
     replay.seek(23.0)
     live.step(replay.sample.step - live.sample.step)
     assert [judgement.verdict for judgement in live.judgements] == table.verdicts
+    table.replay.seek(17.5)
+    replay.fill()
+    live = replay.live()
+    live.change(Stepping(0.1))
+    live.step(5)  # and nothing of what was recorded later
+    t = live.history.window().t
+    assert t[-6:] - replay.sample.t == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):

@@ -49,6 +49,14 @@ async def test_a_head_under_the_pointer_says_what_it_means():
         assert shown.tooltip is None
 
 
+async def test_a_click_on_a_row_shows_its_method_alone():
+    async with on_screen() as theatre:
+        for row, places in ((0, [0, 1, 2, 3]), (4, [3]), (1, [0, 1, 2, 3]), (1, [0])):
+            await theatre.pilot.click(ErrorTable, offset=(5, row))
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(DEFAULT_SCENE.cast) == places
+
+
 def test_every_head_has_a_meaning():
     for column in (*COLUMNS, *map(extra_column, SCENES["stiff-limit"].equations.extra_columns)):
         assert head_text(column.head.narrow) == head_text(column.head.wide) is not None

@@ -120,9 +120,20 @@ def test_phase_space(snapshot):
     snapshot("phase.txt", "\n".join(texts) + "\n")
 
 
-@pytest.mark.parametrize(("z", "joined"), [(0.25, False), (0.35, True), (0.95, True), (1.1, False)])
-def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, joined):
+@pytest.mark.parametrize(
+    ("z", "speed", "joined"),
+    [
+        (0.25, 1.0, False),
+        (0.35, 1.0, True),
+        (0.95, 1.0, True),
+        (1.1, 1.0, False),
+        (0.35, 4.0, False),  # frames leave steps out
+        (0.35, -4.0, False),  # also those of a replay played backwards
+    ],
+)
+def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, speed, joined):
     live = after(DRIFT.altered(h=z / DRIFT.w0), 0)
+    live.playhead.speed = speed
     points = method_points(live, live.sample, Shown(), None)
     assert {point.chords > 0 for point in points} == {joined}
 
