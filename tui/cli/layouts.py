@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 
 from pendu_tui.tui.cli.units import UNIT, split_unit
 
-_DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.,])"  # of many languages
+_DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.]|,\d)"  # of many languages
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 NUMBER = rf"[-+]?(?:\d*\.\d+[-+]\d{{3}}(?!\d)|{_DECIMALS}|{_DIGITS})"
 """-4.52-107 is Fortran's -4.52e-107."""
@@ -137,7 +137,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="LAMMPS, GROMACS, NAMD and others that end with an error",
-        line=rf"^(?P<error>(?:fatal )?error(?: on proc \d+)?:(?! *(?:{FAILED}|{NUMBER})).*)",
+        line=rf"^(?P<error>(?:fatal )?error(?: on proc \d+)?:(?! *(?:{FAILED}|{NUMBER})\s*$).*)",
     ),
     Layout(
         programs="JSON, an object a line",

@@ -44,7 +44,7 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
     b"\xfd7zXZ": lzma.open,
 }
 _NUMBERS = re.compile(
-    r"([-+.\d](?<!\w.)[\d.]*(?<=\d)(?:\.|,\d+(?![\d.,]))?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)"
+    r"([-+.\d](?<!\w.)[\d.]*(?<=\d)(?:\.|,\d+(?![\d.]|,\d))?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)"
 )
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
@@ -139,7 +139,7 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
 
 def _parsed(text: str) -> Any:
     """Return what there is in JSON, or the text itself if it is none."""
-    for decode in (msgspec.json.decode, json.loads):  # twice as fast, but it knows no NaN
+    for decode in (msgspec.json.decode, json.loads):  # msgspec is fast, but knows no NaN
         with suppress(ValueError, RecursionError):
             return decode(text)
     return text
@@ -467,8 +467,8 @@ class _Text:
             case {"end": _} | {"again": _}:
                 self._is_over = "end" in groups
             case {"error": text}:
-                self._tables[-1].error = text
-                self._prints[-1].error = text
+                for sheet in (self._tables[-1], self._prints[-1]):
+                    sheet.error = sheet.error or text  # later ones follow from the first
             case _ if self._is_over:
                 pass
             case {"value": value}:
@@ -573,7 +573,7 @@ class _Text:
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
                 sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
             elif is_below_row and len(numbers) < self._form[1] and None not in numbers:
-                sheet.put_time(self._line, numbers)
+                sheet.put_cut(self._line, numbers)
             else:
                 sheet.skipped += 1
         return is_row

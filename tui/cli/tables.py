@@ -25,7 +25,8 @@ LATEST = 1e300  # of times; squares and differences of later ones overflow
 MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
 NOT_LATER = (
-    "most of its rows are not later than those before; name the column of times with --time."
+    "most of its rows are not later than those before; name the column of times with --time, or "
+    "print numbers without marks between thousands."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
@@ -77,6 +78,8 @@ def choose(
     time, energy, kinetic = groups
     if not wanted.time:
         time = _time(names, samples, excluded=energy or ())
+        if time is None and wanted.step:  # of rows
+            time = ()
     if not wanted.energy:
         energy = _energy(names, units, samples, excluded=time or ())
     guessed = {"the time": time, "the total energy": energy}
@@ -136,7 +139,8 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
         if kind in best:
             return best[kind][:1]
     if not rising:
-        return None if any(map(_is_in_turn, samples)) else ()
+        others = (some for name, some in zip(names, samples, strict=True) if not role(name)[0])
+        return None if any(map(_is_in_turn, others)) else ()
     steps = np.diff(samples[rising[0]])
     is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
     return _only(rising) if is_even or not names[rising[0]] else None
@@ -147,7 +151,8 @@ def _is_in_turn(sample: Any) -> bool:
     again = np.flatnonzero(np.asarray(sample[1:]) == sample[:1]) + 1
     if not len(again) or again[0] < 2 or len(sample) < 3 * again[0] or np.mod(sample, 1).any():
         return False
-    return np.array_equal(sample[again[0] :], sample[: -again[0]])
+    is_periodic = np.array_equal(sample[again[0] :], sample[: -again[0]])
+    return is_periodic and len({*sample[: again[0]]}) == again[0]
 
 
 def _energy(
@@ -168,11 +173,13 @@ def _energy(
     has_more = any(key(bare[place]).endswith(("energy", "energie")) for place in further)
     if found := best.get("energy"):
         is_other = _is_other(bare, samples, found[0]) or (bare[found[0]] == "e" and "error" in best)
+        name = key(bare[found[0]])
+        is_total = name.startswith("tot")  # of what?
         if not units[found[0]]:
-            name = key(bare[found[0]])
             is_other |= name == "e" and has_more and not has_parts
-            is_other |= name.startswith("tot") and bool(further) and not parts
-        is_sum = not has_parts or _is_sum(samples, found + parts)
+            is_other |= is_total and bool(further) and not parts
+        may_differ = bool(further) or not is_total
+        is_sum = not has_parts or _is_sum(samples, found + parts, may_differ)
         is_certain = is_sum and not is_other and not _lacks(samples, found, kinetic)
         return _only(found) if is_certain else None
     if has_parts:
@@ -188,12 +195,12 @@ def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
     return bool(others & OTHER_E.get(names[place], set()))
 
 
-def _is_sum(samples: Sequence[Any], places: Group) -> bool:
-    """Return whether a total is the sum of two columns, or steadier, but no constant."""
+def _is_sum(samples: Sequence[Any], places: Group, may_differ: bool) -> bool:
+    """Return whether a total is the sum of two columns, or perhaps steadier, but no constant."""
     total, *parts = _first(samples, places)
     error = np.abs(total - sum(parts)).max(initial=0)
     is_near = error <= 0.01 * np.abs(parts).max(initial=0)
-    return bool(is_near or 0 < np.ptp(total) < np.ptp(sum(parts)))
+    return bool(is_near or (may_differ and 0 < np.ptp(total) < np.ptp(sum(parts))))
 
 
 def _lacks(samples: Sequence[Any], places: Group, others: Group) -> bool:
@@ -276,13 +283,22 @@ class Sheet:
         if self.puts >= SAMPLE and not is_sampled:
             self.choose()
 
-    def put_time(self, line: int, numbers: Sequence[float | None]) -> None:
-        """Add a row that ends early.  Only its time is certainly a number of its column."""
+    def put_cut(self, line: int, numbers: Sequence[float | None]) -> None:
+        """Add a row that ends early.  Only its time is certainly a number of its column.
+
+        What is far from the next time belongs to a remark below the table.
+        """
         if self.choice is None:
             self.choose()
         time = (self.choice or Choice()).time
         missing = next((value for value in numbers if value != value), None)
         row = [*numbers, *[missing] * len(self.names)]
+        known = self._values[time[0]][-2:] if time else ()
+        if len(known) == 2:
+            ahead = row[time[0]] - known[1]
+            if ahead <= 0 or ahead > 10 * (known[1] - known[0]):
+                self.skipped += 1
+                return
         self.put([line], time, [[row[place]] for place in time])
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
@@ -296,9 +312,10 @@ class Sheet:
             place = self.places[name]
             self.put([line], (place,), [[value]])
             own = self.units[place]
-            if unit and shown("energy", unit) != shown("energy", own or unit):
-                where = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
-                self.mixed.setdefault(place, where)
+            kind = "time" if role(name)[0] == "time" else "energy"
+            if unit and shown(kind, unit) != shown(kind, own or unit):
+                why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
+                self.mixed.setdefault(place, why)
         elif len(self._once) < MAX_NAMES:
             self._once[name] = (unit, line, value)
 

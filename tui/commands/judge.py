@@ -327,7 +327,7 @@ def _listed(fields: Mapping[str, Any]) -> list[str]:
     seen = fields["seen"]
     for each in seen[-MAX_LISTED:]:
         if len(seen) > 1 or "verdict" not in fields:
-            span = " to ".join(f"{time:g}" for time in each["span"])
+            span = " to ".join(f"{time:.10g}" for time in each["span"])
             lines.append(_line(f"table {each['table']}", f"{counted(each['rows'], 'row')}, {span}"))
         columns = [_column(place, column) for place, column in enumerate(each["columns"], 1)]
         lines.append(_line("columns", ", ".join(columns[:MAX_LISTED])))
@@ -342,7 +342,8 @@ def _column(place: int, column: Mapping[str, str]) -> str:
 
 
 def _title(fields: dict[str, Any]) -> str:
-    span = f"{fields['first_time']:g} to {fields['last_time']:g}{_spaced(fields['time_unit'])}"
+    span = f"{fields['first_time']:.10g} to {fields['last_time']:.10g}"
+    span += _spaced(fields["time_unit"])
     text = f"{_shown(fields['file'])}: {counted(fields['samples'], 'sample')} from {span}"
     if fields["tables"] > 1:
         text += f", table {fields['table']} of {fields['tables']}"
