@@ -24,6 +24,8 @@ from pendu_tui.engine.methods.learned import (
     FAMILY,
     LEARNED_SYMPLECTIC_MAP,
     RK4_LEARNED_HAMILTONIAN,
+    learned_field,
+    learned_hamiltonian,
     stored,
 )
 from pendu_tui.engine.methods.parts import CONFORMAL_VERLET, IMEX_EULER, LAGGED_VERLET
@@ -251,6 +253,14 @@ def test_the_learned_numbers_are_those_that_the_script_learns():
         assert rows(name) == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
 
 
+def test_both_learned_fields_are_about_as_far_from_the_true_one():
+    states, rates = learn.measurements(np.random.default_rng(7), 500, 0.0)
+    for field in (learned_field(9.81), learned_hamiltonian(9.81)):
+        found = np.array([field((theta, PENDULUM.w0 * omega)) for theta, omega in states])
+        error = math.sqrt(((found / (PENDULUM.w0, 9.81) - rates) ** 2).mean() / (rates**2).mean())
+        assert 0.005 < error < 0.008  # .0064 and .0062, of measurements with 2 % noise
+
+
 def true_energy_errors(method, start):
     """The largest relative errors of the true energy in 50 s and in 100 s, w0 h being 0.1."""
     energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
@@ -277,6 +287,18 @@ def test_learned_energy_errors_are_those_of_the_cards_and_bounded_by_structure(s
             assert late == pytest.approx(early, rel=0.005)
         else:
             assert late > 1.1 * early
+
+
+def test_rk4_loses_little_of_the_learned_hamiltonian():
+    def energy(phase):  # over w0²
+        theta, omega = phase
+        a, b, c = rows("FEATURES").T
+        return rows("HAMILTONIAN")[:, 0] @ np.tanh(a * theta + b / PENDULUM.w0 * omega + c)
+
+    start = energy((1.5, 0.0))
+    end = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).propagate((1.5, 0.0), 0.032, 3125)
+    share = (energy(end) - start) / (start - energy((0.0, 0.0)))
+    assert share / 100 == pytest.approx(-2.5e-7, rel=0.05)  # 1/s
 
 
 @pytest.mark.parametrize("method", FAMILY, ids=by_key)

@@ -376,6 +376,14 @@ def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():
     assert found == pytest.approx((math.sqrt(2), error / math.sqrt(8)), rel=1e-3)
 
 
+@pytest.mark.parametrize("times", [1e6, 200])
+def test_the_uncertainty_of_a_fluctuation_is_the_spread_of_repetitions(times):
+    found = [fluctuation(T, noise_of(times, seed)) for seed in range(60)]
+    spread = np.std([each.size for each in found], ddof=1)
+    # 60 repetitions give a standard deviation to 9 %, 16 batches to 18 %.
+    assert np.mean([each.uncertainty for each in found]) == pytest.approx(spread, rel=0.3)
+
+
 @pytest.mark.parametrize("power", [0.0, 1.0, 2.0, 4.0])
 def test_the_order_is_the_power_of_the_step_within_its_uncertainty(power):
     steps = (0.1, 0.2, 0.4)

@@ -82,6 +82,12 @@ def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
     assert (found.fraction, found.island, found.chaotic) == (fraction, True, False)
 
 
+def test_a_curve_beside_a_resonance_is_no_island():
+    for theta in (1e-4, 1e-3, 0.01):  # at z = 1 small swings turn by 1/6 minus some theta²
+        beside = kind(VERLET, theta, 1.0)
+        assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
+
+
 @pytest.mark.parametrize(("off", "island"), [(0.09, True), (0.11, False)])
 def test_an_island_leaves_its_fraction_by_less_than_a_tenth_of_a_turn_in_all(off, island):
     points = orbit(VERLET, UNIT, 1.09, (1.25, 0.0), 4000)
