@@ -283,7 +283,7 @@ class Sheet:
         if self.puts >= SAMPLE and not is_sampled:
             self.choose()
 
-    def put_cut(self, line: int, numbers: Sequence[float | None]) -> None:
+    def put_cut(self, line: int, numbers: Sequence[Any]) -> None:
         """Add a row that ends early.  Only its time is certainly a number of its column.
 
         What is far from the next time belongs to a remark below the table.
@@ -293,7 +293,7 @@ class Sheet:
         time = (self.choice or Choice()).time
         missing = next((value for value in numbers if value != value), None)
         row = [*numbers, *[missing] * len(self.names)]
-        known = self._values[time[0]][-2:] if time else ()
+        known = [*self._values[time[0]][-2:]] if time else []
         if len(known) == 2:
             ahead = row[time[0]] - known[1]
             if ahead <= 0 or ahead > 10 * (known[1] - known[0]):

@@ -183,3 +183,12 @@ def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, comm
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     assert pendu(*command.split()).refused(2, "is read by this command")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_loop_of_links_is_an_ordinary_error(tmp_path):
+    loop = tmp_path / "loop"
+    with suppress(OSError):
+        loop.symlink_to(loop)
+    if not loop.is_symlink():
+        pytest.skip("needs symbolic links")
+    assert pendu("judge", loop).refused(3, "loop")
