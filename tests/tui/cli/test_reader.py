@@ -79,6 +79,7 @@ def columns(series: Series) -> str | None:
         ("t,KE,PE,spring,total", "{t},{k},-9,{p},{e}", "t, total"),
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
+        ("t,KE,PE,total", "{t},{k},{p},1000.00{n:02}", None),
         ("t,KE,PE,total", "{t},20,-366.8,{e}", "t, total"),  # 0.5 % from their sum
         ("t,KE,PE,total", "{t},20,-383,{e}", None),  # 5 %
         ("t,KE,energy", "{t},{k},{p}", None),
@@ -116,6 +117,7 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ("Time (ps): {t} | Energy (eV): {e} | dE = 1e-3", "ps, eV"),
         ("INFO t={t}s E={e}J", "s, J"),
         ("t={t}: KE={k} E={e}", ", "),
+        ("t={t} ps E={e}\nw={n} ms\nw={n} S", "ps, "),
         ("Step {s}/4500 (t={t}): energy = {e}", ", "),
         ("Time:  {t}\n  Total     energy: {e}\n  Kinetic   energy: {k}", ", "),
         ("t={t} ms K=3.5 E={e} mJ t={s}", "ms, mJ"),  # K is no kelvin
@@ -134,7 +136,7 @@ def test_printed_values_are_rows(form, units):
     assert list(series.energies) == ENERGIES
 
 
-@pytest.mark.parametrize("form", ["t={t} E={e} J", "t;E\n", "Time: {t}; Total energy: {e}"])
+@pytest.mark.parametrize("form", ["t={t} E={e} J", "t;E\n", "t={t}, KE={k}, E={e}"])
 def test_decimals_may_follow_a_comma(form):
     text = form + rows("{t};{e}") if form.endswith("\n") else rows(form)
     (series,) = tables(text.replace(".", ","))
@@ -249,6 +251,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no numbers
         ("t,E\n" + rows("{t},{e}") + "45.0,10.000-344\n", None, 1),
         ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
+        ("t,E\n" + rows("{t},{e}") + "3600\n4800\n", None, 2),  # a remark
         ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
 )

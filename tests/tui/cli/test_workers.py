@@ -11,7 +11,7 @@ import pytest
 
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.tui.cli import workers
-from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.cli.errors import Exit, UserError
 from pendu_tui.tui.cli.workers import Work, awaited, received, work_of
 from tests.tui.command_line import pendu
 
@@ -32,7 +32,12 @@ def interrupted(error: BaseException, done: int, output: Path | None = None) -> 
 
 
 @pytest.mark.parametrize(
-    ("error", "code"), [(KeyboardInterrupt(), 130), (OwnMethodError("mine fails."), 3)]
+    ("error", "code"),
+    [
+        (KeyboardInterrupt(), 130),
+        (OwnMethodError("mine fails."), 3),
+        (UserError("lost.", Exit.INPUT_UNREADABLE), 3),
+    ],
 )
 def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code, tmp_path, capsys):
     assert interrupted(error, done=1, output=tmp_path / "new.csv").conclude() == code

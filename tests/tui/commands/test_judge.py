@@ -104,6 +104,12 @@ def test_an_error_below_the_last_row_is_shown():
         assert guess(log + more, "--json").json["log_error"] == ""
 
 
+def test_rows_are_counted_where_a_column_is_only_a_flag_or_a_step_is_given():
+    flags = "E,flag\n" + "".join(f"-1.{n % 7},{int(n % 9 == 0)}\n" for n in range(90))
+    assert guess(flags, "--json").json["time"] == "row"
+    assert guess(BODIES, "--json", "--step", "1fs").json["last_time"] == 29
+
+
 def test_only_rows_in_the_range_of_time_are_judged():
     answer = judge(TABLE, "--json", "--from", 5, "--to", 20).json
     assert (answer["first_time"], answer["last_time"], answer["samples"]) == (5, 20, 151)

@@ -50,3 +50,12 @@ def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
         process.wait(timeout=30)
     assert process.returncode == 141
     recorded_whole(tmp_path)
+
+
+def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):
+    with started(tmp_path, "replay", "drift", "--plain", "--speed", "20") as process:
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert out.startswith("The replay runs at 20× speed")
+    assert "Explicit Euler over the top" in out
+    assert not list(tmp_path.iterdir())
