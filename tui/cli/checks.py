@@ -62,6 +62,8 @@ BOUNDS = {
     "trend": "bound",
     "drift_per_second": "bound",
     "absolute_trend": "absolute_bound",
+    "energy_per_ns_per_atom": "energy_bound_per_ns_per_atom",
+    "kt_per_ns_per_atom": "kt_bound_per_ns_per_atom",
 }
 """The fields that are slopes, and where their bounds stand."""
 

@@ -224,13 +224,22 @@ def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
 
 
 def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> dict[str, Any]:
-    """Return the trend per nanosecond and atom.  Raises UserError if a unit is not known."""
-    trend = fields["absolute_trend"]
-    energy = trend and trend / units.size("time", fields["time_unit"]) / atoms
-    result = {"atoms": atoms, "energy_per_ns_per_atom": energy}
+    """Return the trend and its bound per nanosecond and atom.
+
+    Raises UserError if a unit is not known.
+    """
+    result: dict[str, Any] = {"atoms": atoms}
+    scales = {"energy": 1.0}
     if temperature is not None:
-        kt = units.size("energy", fields["energy_unit"]) * temperature
-        result |= {"temperature": temperature, "kt_per_ns_per_atom": energy and energy / kt}
+        result["temperature"] = temperature
+        scales["kt"] = units.size("energy", fields["energy_unit"]) * temperature
+    time = units.size("time", fields["time_unit"])
+    for name, scale in scales.items():
+        for what, value in (
+            (name, fields["absolute_trend"]),
+            (f"{name}_bound", fields["absolute_bound"]),
+        ):
+            result[f"{what}_per_ns_per_atom"] = value and value / time / atoms / scale
     return result
 
 

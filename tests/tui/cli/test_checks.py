@@ -150,6 +150,8 @@ def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
         ("trend", "bound"),
         ("drift_per_second", "bound"),
         ("absolute_trend", "absolute_bound"),
+        ("energy_per_ns_per_atom", "energy_bound_per_ns_per_atom"),
+        ("kt_per_ns_per_atom", "kt_bound_per_ns_per_atom"),
     ],
 )
 @pytest.mark.parametrize(

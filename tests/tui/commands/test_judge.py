@@ -132,6 +132,12 @@ def test_steps_and_units_give_a_trend_per_nanosecond_and_atom():
     assert (answer["time_unit"], answer["energy_unit"]) == ("fs", "eV")
     assert answer["energy_per_ns_per_atom"] == pytest.approx(5000, rel=0.01)
     assert answer["kt_per_ns_per_atom"] == pytest.approx(5000 / 0.025852, rel=0.01)
+    near = answer["absolute_bound"] / answer["absolute_trend"]
+    for kind in ("energy", "kt"):
+        trend = answer[f"{kind}_per_ns_per_atom"]
+        assert answer[f"{kind}_bound_per_ns_per_atom"] == pytest.approx(near * trend)
+        gate = f"{kind}_per_ns_per_atom > {(1 + near) / 2 * trend}"
+        assert "cannot tell" in guess(text, *asked, "--fail-if", gate).err
     assert guess(text, "--atoms", 10).refused(2, "--step 0.5fs")
     assert guess(text, "--temperature", 5).refused(2, "belongs to --atoms")
     twice = ("--step", "0.5fs", "--units", "time=ps,energy=eV")
