@@ -15,6 +15,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
+from functools import partial
 from itertools import accumulate, chain, compress, islice
 from statistics import mode
 from typing import Any, NamedTuple
@@ -47,6 +48,12 @@ _NUMBERS = re.compile(
     r"([-+.\d](?<!\w.)[\d.]*(?<=\d)(?:\.|,\d+(?![\d.]|,\d))?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)"
 )
 """The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
+_MAY_BE_MARKED = re.compile(r",\d{3}(?![\d,])")
+_MARKED = re.compile(
+    r"(?:(?<=[=:\";|])|(?<=[=:] ))[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s\";|.]|,\s|$)"
+    r"|(?<!\S)[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s;|]|$)"
+)
+_HAS_POINT = re.compile(r"(?<![\w.,])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.,])")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?({UNIT})", re.IGNORECASE)
@@ -119,6 +126,15 @@ def _uncut(line: str, above: list[str]) -> str:
     if has_grown or len(like) < MIN_ABOVE or len(number) >= min(map(len, numbers)):
         return line
     return f"{line.removesuffix(number)}cut"
+
+
+def _unmarked(lines: list[str]) -> list[str]:
+    """Return lines without commas between thousands, in those that have decimal points, too."""
+    text = "\n".join(lines)
+    if not any(map(text.__contains__, '=:";| ')) or not _MAY_BE_MARKED.search(text):
+        return lines  # commas delimit
+    unmarked = partial(_MARKED.sub, lambda found: found[0].replace(",", ""))
+    return [unmarked(line) if _HAS_POINT.search(line) else line for line in lines]
 
 
 def _json(text: io.TextIOBase) -> Iterator[list[str]]:
@@ -316,7 +332,7 @@ class _Text:
     def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
         size = 1
-        for lines in blocks:
+        for lines in map(_unmarked, blocks):
             first = 0
             while first < len(lines):
                 known = self._read_known(lines[first : first + size])

@@ -144,6 +144,25 @@ def test_decimals_may_follow_a_comma(form):
     assert list(series.energies) == ENERGIES
 
 
+@pytest.mark.parametrize(
+    "form",
+    ["t = {t:,} E={e}", "t={t:,}.00, E={e}", "t;E\n{t:,};{e}", 't,E\n"{t:,}",{e}', "{t:,} {e}"],
+)
+def test_thousands_may_have_commas_beside_decimal_points(form):
+    head, row = f"\n{form}".rsplit("\n", 1)
+    (series,) = tables(
+        head + "\n" + "".join(row.format(t=500 * n, e=-42.5) + "\n" for n in range(20))
+    )
+    assert list(series.times) == [*range(0, 10_000, 500)]
+
+
+@pytest.mark.parametrize("form", ["t={t} E={e} J", "12.05.2024 v1.2 t={t} E={e}"])
+def test_numbers_without_a_point_beside_them_have_decimal_commas(form):
+    text = "".join(form.format(t=f"{n},125", e=f"-41,98{n % 10}") + "\n" for n in range(20))
+    (series,) = tables(text)
+    assert (series.times[1], series.energies[1]) == (1.125, -41.981)
+
+
 @pytest.mark.parametrize("form", ["2024-05-01T12:00:{n:02}", '"2024-05-01 14:00:{n:02}+02:00"'])
 def test_dates_are_times_in_seconds(form):
     (series,) = tables("time,energy\n" + rows(form + ",{e}", last=60))
