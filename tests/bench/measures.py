@@ -21,18 +21,18 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 850_100,
+    "characters": 859_500,
     "characters_of_engine": 260_000,
     "characters_of_recordings": 69_200,
-    "characters_of_tui": 520_900,
-    "characters_of_tests": 739_000,
-    "characters_of_bench": 69_200,
+    "characters_of_tui": 530_300,
+    "characters_of_tests": 753_500,
+    "characters_of_bench": 69_500,
     "files": 127,
     "long_lines": 0,
     "parallel_assignments": 9,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
-    "numeric_constants": 237,
+    "numeric_constants": 239,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 
