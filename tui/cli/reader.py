@@ -53,7 +53,7 @@ _MARKED = re.compile(
     r"(?:(?<=[=:\";|])|(?<=[=:] ))[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s\";|.]|,\s|$)"
     r"|(?<!\S)[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s;|]|$)"
 )
-_HAS_POINT = re.compile(r"(?<![\w.,])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.,])")
+_HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
 _WITH_UNIT = re.compile(rf"({NUMBER})\s?({UNIT})", re.IGNORECASE)

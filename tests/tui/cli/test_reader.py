@@ -151,7 +151,7 @@ def test_decimals_may_follow_a_comma(form):
 def test_thousands_may_have_commas_beside_decimal_points(form):
     head, row = f"\n{form}".rsplit("\n", 1)
     (series,) = tables(
-        head + "\n" + "".join(row.format(t=500 * n, e=-42.5) + "\n" for n in range(20))
+        head + "\n" + "".join(row.format(t=500 * n, e=42.5) + "\n" for n in range(20))
     )
     assert list(series.times) == [*range(0, 10_000, 500)]
 
