@@ -131,7 +131,7 @@ def _uncut(line: str, above: list[str]) -> str:
 def _unmarked(lines: list[str]) -> list[str]:
     """Return lines without commas between thousands, in those that have decimal points, too."""
     text = "\n".join(lines)
-    if not any(map(text.__contains__, '=:";| ')) or not _MAY_BE_MARKED.search(text):
+    if not any(map(text.__contains__, '=:";| \t')) or not _MAY_BE_MARKED.search(text):
         return lines  # commas delimit
     unmarked = partial(_MARKED.sub, lambda found: found[0].replace(",", ""))
     return [unmarked(line) if _HAS_POINT.search(line) else line for line in lines]

@@ -146,7 +146,14 @@ def test_decimals_may_follow_a_comma(form):
 
 @pytest.mark.parametrize(
     "form",
-    ["t = {t:,} E={e}", "t={t:,}.00, E={e}", "t;E\n{t:,};{e}", 't,E\n"{t:,}",{e}', "{t:,} {e}"],
+    [
+        "t = {t:,} E={e}",
+        "t={t:,}.00, E={e}",
+        "t;E\n{t:,};{e}",
+        "t\tE\n{t:,}\t{e}",
+        't,E\n"{t:,}",{e}',
+        "{t:,} {e}",
+    ],
 )
 def test_thousands_may_have_commas_beside_decimal_points(form):
     head, row = f"\n{form}".rsplit("\n", 1)
