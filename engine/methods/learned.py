@@ -9,7 +9,7 @@ w0, so it holds for any w0.  These methods take w0 from the model, and never the
 
 import math
 from collections.abc import Callable, Iterator
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +52,6 @@ def _two_sums(coefficients: str, w0: float) -> Callable[[float, float], tuple[fl
     return sums
 
 
-@lru_cache(maxsize=16)
 def learned_field(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (theta', omega') with a sum for each."""
     w0 = math.sqrt(w0_squared)
@@ -65,7 +64,6 @@ def learned_field(w0_squared: float) -> Rates:
     return field
 
 
-@lru_cache(maxsize=16)
 def learned_hamiltonian(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (dH/d omega, -dH/d theta) of one sum H(theta, omega)."""
     w0 = math.sqrt(w0_squared)

@@ -133,7 +133,6 @@ def on_force(function: Phases) -> Phases:
     return phases
 
 
-@cache
 def own_function(source: str, name: str, file: str) -> Phases:
     """Return the guarded generator function of this name in a text.  Raises OwnMethodError."""
     if len(source) > MAX_SOURCE:

@@ -101,7 +101,7 @@ class Spring(Model):
         z, w = phase
         turned = 1j * z  # its phase is theta; cmath.phase raises where that underflows
         theta = math.atan2(turned.imag, turned.real)
-        omega = (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0)
+        omega = (z.conjugate() * w).imag / abs(z) ** 2
         extra = {
             "x": z.real,
             "y": z.imag,
@@ -173,7 +173,7 @@ class Spring(Model):
         It is an adiabatic invariant: the true motion keeps it within 2.5 % at k = 2500 s⁻².
         """
         z, w = phase
-        length = abs(z) or 1.0
+        length = abs(z)
         along = z / length
         radial = (w * along.conjugate()).real
         across = (w * along.conjugate()).imag

@@ -1,9 +1,8 @@
 """Scene: everything that determines a run."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import Any
 
 from pendu_tui.engine.inputs import InputError
@@ -118,7 +117,8 @@ class Scene:
     @property
     def equations(self) -> Model:
         """The model with this scene's parameters."""
-        return _equations(self.model, self.w0_squared, *self.parameters.values())
+        model: Callable[..., Model] = MODELS[self.model]
+        return model(self.w0_squared, *self.parameters.values())
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -170,11 +170,8 @@ class Scene:
         """Return the scene with other fields or parameters; its name stays if nothing changes."""
         fields = {name: value for name, value in changes.items() if name in self.__slots__}
         others = {name: value for name, value in changes.items() if name not in fields}
-        if "model" in fields:
-            own = {each.name for each in MODELS[fields["model"]].parameters}
-            fields["parameters"] = {
-                name: value for name, value in self.parameters.items() if name in own
-            }
+        if fields.get("model", self.model) != self.model:
+            fields["parameters"] = {}
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
         if all(value == getattr(self, name) for name, value in fields.items()):
@@ -187,8 +184,3 @@ class Scene:
         """Return the scene with other methods; `watch` stays if all its methods stay."""
         watch = self.watch if set(self.cast) <= set(cast) else ""
         return replace(self, cast=cast, watch=watch)
-
-
-@cache
-def _equations(model: str, w0_squared: float, *parameters: float) -> Model:
-    return MODELS[model](w0_squared, *parameters)  # type: ignore[call-arg]
