@@ -186,10 +186,8 @@ class Judged:
             band = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
             bound = f"relative {self.bound:.1e} {per} at 99 %; over this record {band} the band"
             lines.append(f"bound         {bound}")
-        error = "too large for a number"
-        if math.isfinite(self.max_error):
-            error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "
-            error += f"{self.scale:.6g} {energy_unit}".rstrip()
+        error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "
+        error += f"{self.scale:.6g} {energy_unit}".rstrip()
         return [*lines, f"energy error  {error}"]
 
 
@@ -213,8 +211,6 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
-    if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
-        scaled = scaled._replace(slope=None, uncertainty=None, bound=None)
     return Judged(
         verdict=judgement.verdict,
         reason=judgement.reason,
@@ -377,7 +373,7 @@ def _cast(methods: Methods) -> Cast:
 
 def _number(name: str, value: Any) -> float:
     try:
-        if not isinstance(value, str | bool) and math.isfinite(value):
+        if math.isfinite(value):
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass

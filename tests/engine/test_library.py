@@ -69,21 +69,6 @@ def test_a_run_that_overflows_says_when():
     assert np.isfinite(track.theta).all()
 
 
-@pytest.mark.parametrize("key", GENERAL)
-def test_a_force_may_use_its_array_again(key):
-    used_again = np.empty(2)
-
-    def reusing(q):
-        return np.negative(q, out=used_again)
-
-    phase = np.array([1.0, 2.0]), np.array([0.0, 0.5])
-    ends = [
-        next(islice(METHODS[key].phases(force, phase, 0.1), 30, None))
-        for force in (np.negative, reusing)
-    ]
-    assert np.array_equal(*ends)
-
-
 RISING = WAVE - 30 + 1e-3 * TIMES
 
 
@@ -97,11 +82,6 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size
     assert judge(TIMES, WAVE).max_error == pytest.approx(2 / 11, rel=1e-3)  # downwards
 
 
-def test_a_trend_is_never_beyond_doubles():
-    found = judge(TIMES, 1e290 * (WAVE + TIMES), scale=1e-300)
-    assert (found.slope, found.bound) == (None, None)
-
-
 def test_a_judged_series_prints_as_the_command_does():
     half_the_band = WAVE + TIMES / len(TIMES)  # rises by 1, in a band from -1 to 1
     found = replace(judge(TIMES, half_the_band), slope=5e-5, uncertainty=2e-6, bound=6e-5)
@@ -112,12 +92,12 @@ def test_a_judged_series_prints_as_the_command_does():
         "bound         relative 6.0e-05 per ps at 99 %; over this record +50 % of the band",
         "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20 eV",
     ]
-    settled = replace(found, rests=True, reason="", share=-1.0, max_error=math.inf)
+    settled = replace(found, rests=True, reason="", share=-1.0)
     assert settled.lines(step="step") == [
         "verdict       grows, then settles",
         "trend         relative +5.00e-05 ± 2e-06 per step, absolute +1.00e-03 ± 4e-05 per step",
         "bound         relative 6.0e-05 per step at 99 %; over this record -1 times the band",
-        "energy error  too large for a number",
+        "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20",
     ]
     failed = judge(TIMES, [*WAVE[:-1], math.nan])
     assert failed.lines("fs")[0] == "verdict       failed: its numbers end at 1999 fs"
@@ -161,7 +141,6 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
         (lambda: simulate(time=126_000), r"use every=252\."),  # ten million readings
-        (lambda: simulate(time=True), "time = True"),
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, tetha=2.0), "no number 'tetha': did you mean theta"),
@@ -204,8 +183,11 @@ def test_only_methods_for_any_force_take_one():
                 method.phases(np.negative, (1.0, 0.0), 0.1)
 
 
+USED_AGAIN = np.empty(2)
+
+
 def gravity(q):
-    return -q / np.hypot(*q) ** 3
+    return np.divide(-q, np.hypot(*q) ** 3, out=USED_AGAIN)
 
 
 TURN = ([0.8, 0.0], [0.0, 1.5**0.5])  # of an orbit of eccentricity 0.2
