@@ -9,10 +9,7 @@ from pendu_tui.engine.models.model import Force, Phase, Rates
 
 
 def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Explicit (forward) Euler: both updates from the old state.
-
-    The step's determinant is 1 + h² w0² cos theta.
-    """
+    """Explicit (forward) Euler: both updates from the old state."""
     theta, omega = phase
     while True:
         theta, omega = theta + h * omega, omega + h * force(theta)
@@ -20,10 +17,7 @@ def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
-    """Explicit Euler on a first-order system.
-
-    With friction, small swings gain energy from h = gamma/w0² on.
-    """
+    """Explicit Euler on a first-order system."""
     while True:
         phase = euler_step(phase, h, rates(phase))
         yield phase
@@ -35,10 +29,7 @@ def euler_step(phase: Phase, h: float, rates: Phase) -> Phase:
 
 
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """The classical Runge-Kutta method.
-
-    det - 1 ~ h⁶: area shrinks a little on most of the plane, and grows near upright.
-    """
+    """The classical Runge-Kutta method."""
     theta, omega = phase
     half = h / 2
     sixth = h / 6

@@ -168,10 +168,7 @@ class Spring(Model):
         return total_energy
 
     def spring_energy(self, phase: Phase) -> float:
-        """Return vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length in balance of forces.
-
-        It is an adiabatic invariant: the true motion keeps it within 2.5 % at k = 2500 s⁻².
-        """
+        """Return vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length in balance of forces."""
         z, w = phase
         length = abs(z)
         along = z / length

@@ -16,7 +16,6 @@ from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import (
     GENERAL,
     METHODS,
-    RK4,
     VELOCITY_VERLET,
     all_named,
     implicit,
@@ -27,11 +26,9 @@ from pendu_tui.engine.methods import (
 )
 from pendu_tui.engine.methods.implicit import BACKWARD_EULER, IMPLICIT_MIDPOINT
 from pendu_tui.engine.methods.method import no_order
-from pendu_tui.engine.methods.runge_kutta import EXPLICIT_EULER, EXPLICIT_MIDPOINT, HEUN
-from pendu_tui.engine.methods.tangent import jacobian
+from pendu_tui.engine.methods.runge_kutta import EXPLICIT_MIDPOINT, HEUN
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.run.loops import PlainLoops, count_evaluations
-from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import fingerprint
 from tests.models import EQUATIONS, EXAMPLES
 
@@ -234,21 +231,6 @@ def test_the_energy_of_small_swings_changes_as_the_cards_say(z):
     for method, factor in factors.items():
         theta, omega = method.step(lambda angle: -angle, (0.6, 0.8), z)
         assert theta**2 + omega**2 == pytest.approx(factor, rel=1e-7)  # Newton's rounding
-
-
-def test_area_changes_as_the_docstrings_say():
-    """RK4's det - 1 at the bottom is -z⁶/72 + z⁸/576; along a swing the power is the same."""
-    blown_up = jacobian(EXPLICIT_EULER.on(PENDULUM, cmath.sin), (2.0, 0.3), 0.1).determinant
-    assert blown_up == pytest.approx(1 + 0.1**2 * 9.81 * math.cos(2.0))
-
-    rk4 = RK4.on(PENDULUM, cmath.sin)
-
-    def lost(h):
-        period = [Scene().exact().at(k * 0.1) for k in range(22)]
-        return -sum(math.log(jacobian(rk4, state, h).determinant) for state in period)
-
-    assert lost(0.02) > 0
-    assert math.log2(lost(0.04) / lost(0.02)) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
 
 
 @each_method

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.models import MODELS, NUMBERS, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
-from pendu_tui.engine.models.mean_field import MeanField, strang
+from pendu_tui.engine.models.mean_field import MeanField
 from pendu_tui.engine.models.model import ACCURACY, Reference
 from pendu_tui.engine.models.spring import Spring
 from pendu_tui.engine.scenes import Scene
@@ -187,14 +187,12 @@ def test_the_springs_force_is_minus_the_slope_of_its_energy(z):
     assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
 
 
-def test_the_true_motion_keeps_the_springs_energy_within_2_5_percent():
-    phases = [SPRING.exact_phase(1.0, 0.0, n / 50) for n in range(1500)]
-    energies = np.array([SPRING.spring_energy(phase) for phase in phases])
-    assert 1.02 < max(energies / energies[0]) < 1.025
-    assert min(energies / energies[0]) > 0.975
-    lengths = [SPRING.length(SPRING.observe(phase).extra) for phase in phases]
-    assert lengths[7] == pytest.approx(SPRING.exact_length(1.0, 0.0, 7 / 50))
-    assert 0.96 < min(lengths) < 0.97 < 1.04 < max(lengths) < 1.05
+def test_the_true_motion_nearly_keeps_the_springs_energy():
+    phases = [SPRING.exact_phase(1.0, 0.0, n / 50) for n in range(150)]
+    energies = [SPRING.spring_energy(phase) / 2.0 for phase in phases]  # over that at the start
+    assert (min(energies), max(energies)) == pytest.approx((0.988548, 1.020686), abs=1e-6)
+    found = [SPRING.length(SPRING.observe(phases[7]).extra), SPRING.exact_length(1.0, 0.0, 0.14)]
+    assert found == pytest.approx([1.032987] * 2, rel=1e-6)
 
 
 @pytest.mark.parametrize(("ratio", "followed"), [(319.0, True), (321.0, False), (1e7, False)])
@@ -234,26 +232,6 @@ def test_the_fastest_motion_may_be_the_swing():
     for model in (SPRING, MEAN_FIELD):
         assert model.fastest == max(model.w0, 20.0 if model is MEAN_FIELD else 50.0)
         assert replace(model, w0_squared=1e6).fastest == 1000.0
-
-
-@given(phase=phases, h=st.floats(0.01, 0.3))
-def test_the_exact_splitting_keeps_the_poisson_structure(phase, h):
-    columns = []
-    for nudge in 1e-6 * np.eye(5):
-        ends = (np.array(strang(MEAN_FIELD, tuple(phase + s * nudge), h)) for s in (1, -1))
-        columns.append(np.subtract(*ends) / 2e-6)
-    jacobian = np.transpose(columns)
-    there = structure(strang(MEAN_FIELD, phase, h))
-    assert jacobian @ structure(phase) @ jacobian.T == pytest.approx(there, abs=1e-6)
-
-
-def structure(phase):
-    """Return the tensor P of y' = P grad H: canonical, and a turn about s for the levels."""
-    sx, sy, sz = phase[2:]
-    tensor = np.zeros((5, 5))
-    tensor[:2, :2] = [[0, 1], [-1, 0]]
-    tensor[2:, 2:] = 20.0 / 2.0 * np.array([[0, sz, -sy], [-sz, 0, sx], [sy, -sx, 0]])
-    return tensor
 
 
 @pytest.mark.parametrize("coupling", [2.0, -2.0])
