@@ -17,7 +17,7 @@ from mcap.writer import CompressionType, Writer
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import MAX_EVENTS, Event
+from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.files import (
     PROFILE,
     DiskError,
@@ -55,8 +55,6 @@ class Recorder:
     DiskError if the disk fails; after that, call only `abandon`.
     """
 
-    is_live = False
-
     def __init__(self, path: Path, overwrite: bool = False) -> None:
         self.path = path
         self.part = part_of(path)
@@ -68,8 +66,6 @@ class Recorder:
         self._schemas: dict[str, int] = {}  # numbers by title
         self._topics: tuple[str, ...] = ()  # of the run's methods
         self._entries = 0
-        self._paused = False
-        self._is_empty = True  # until something was flushed
         self._unflushed = 0  # bytes
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
@@ -88,11 +84,10 @@ class Recorder:
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def add(self, value: Sample | Event | None, clock: float) -> None:
-        """Write an entry, during a pause at once to disk; None: samples are missing here.
+        """Write an entry; None: samples are missing here.
 
         A sample is not written again after it or a later one.  Extremes are those since the
-        previous sample, so the first sample of a run has none.  Finishes the recording and raises
-        DiskError if it has as many events as may be read.
+        previous sample, so the first sample of a run has none.
         """
         if value is None:
             self._last = None
@@ -106,15 +101,10 @@ class Recorder:
 
     def _add_event(self, event: Event, clock: float) -> None:
         data = encode_event(event)
-        if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
-            self.close()
-            raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:
             self._begin(event.scene)
-        if event.kind in ("pause", "resume"):
-            self._paused = event.kind == "pause"
         self._write([(EVENTS, data)], clock)
 
     def _add_sample(self, sample: Sample, clock: float) -> None:
@@ -126,7 +116,6 @@ class Recorder:
         """Hand everything to the system, where it survives this process."""
         with writing(self.path):
             self._writer.flush()  # type: ignore[no-untyped-call]
-        self._is_empty = False
         self._unflushed = 0
 
     def close(self) -> None:
@@ -161,13 +150,13 @@ class Recorder:
         publish(self.part, self.path, self._overwrite)
 
     def abandon(self, delete: bool = False) -> None:
-        """Leave what was flushed in NAME.mcap.part, or delete the file if that is nothing."""
+        """Leave what was flushed in NAME.mcap.part, or delete the file without a start."""
         if self._file.closed:
             return
         with suppress(OSError):
             self._file.close()  # Windows removes no open file
         with suppress(OSError):
-            if delete or self._is_empty:
+            if delete or not self._channels:
                 self.part.unlink()
 
     def __enter__(self) -> Self:
@@ -201,16 +190,14 @@ class Recorder:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
-        # that of a headless run is the same when it is recorded again
-        publish_time = time.time_ns() if self.is_live else log_time
         number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
                 channel = self._channels[topic]
-                self._writer.add_message(channel, log_time, data, publish_time, number)
+                self._writer.add_message(channel, log_time, data, log_time, number)
                 self._unflushed += len(data)
         self._entries += 1
-        if self._paused or self._unflushed > MAX_CHUNK:
+        if self._unflushed > MAX_CHUNK:
             self.flush()
 
 
@@ -221,7 +208,6 @@ class LiveRecorder(Recorder):
     lab can go on.
     """
 
-    is_live = True
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
     def __init__(self, path: Path) -> None:
