@@ -50,7 +50,6 @@ class Live(Source):
         self._events: list[Event] = []
         self._recorded = 0.0  # s, the recording clock, which stops while the lab is paused
         self._clock = clock
-        self._clocked = 0.0  # s, that of the last message
         self._runs = 1
         run = RewindableRun(scene, 1, compiled_in_background)
         if history is not None:
@@ -273,16 +272,9 @@ class Live(Source):
         self.milestones = run.lockstep.milestones
         self.history.add(sample, is_row)
         if is_row and self.recorder is not None and sample.step >= run.furthest:
-            self.recorder.add(sample, self._due)
+            self.recorder.add(sample, self._recorded)
         self._note_milestones()
         return sample
-
-    @property
-    def _due(self) -> float:
-        """Return the recording clock [s] when the step was due; it never goes back."""
-        late = (self.playhead.position - self._run.x) / abs(self.playhead.speed)
-        self._clocked = max(self._clocked, self._recorded - max(late, 0.0))
-        return self._clocked
 
     def _note_start(self) -> None:
         """Record the run's start; a branch begins with its parent's changes and milestones."""
@@ -308,11 +300,7 @@ class Live(Source):
     def _note(self, event: Event) -> None:
         self._events.append(event)
         if self.recorder is not None:
-            clock = self._recorded
-            if event.kind == "noticed":
-                clock = self._due
-            self._clocked = clock
-            self.recorder.add(event, clock)
+            self.recorder.add(event, self._recorded)
 
 
 def has_own(scene: Scene) -> bool:
