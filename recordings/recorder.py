@@ -13,7 +13,7 @@ from pathlib import Path
 from threading import RLock, Thread
 from typing import Any, Self
 
-from mcap.writer import CompressionType, Writer
+from mcap.writer import Writer
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
@@ -72,15 +72,13 @@ class Recorder:
         check_target(path, overwrite)
         with writing(self.path):
             try:
-                self._file = self.part.open("xb", buffering=1 << 20)
+                self._file = self.part.open("xb")
             except FileExistsError as error:
                 why = "is in use or left over from an unfinished recording; choose another name"
                 raise NameTakenError(why, self.part) from error
         with suppress(OSError):  # some file systems have no locks
             lock(self._file)
-        self._writer = Writer(
-            self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
-        )
+        self._writer = Writer(self._file, chunk_size=1 << 62, enable_data_crcs=True)
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def add(self, value: Sample | Event | None, clock: float) -> None:
@@ -141,7 +139,6 @@ class Recorder:
     def _finish(self) -> None:
         if (last := self._last) is not None:
             self._add_event(Event("stop", last.run, last.step, last.t), self.seconds)
-        self.flush()
         with writing(self.path):
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._file.flush()

@@ -24,7 +24,6 @@ from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording, Run
 
 TOLERANCE = 1e-6  # relative, above 1; another sin moves regular swings by 1e-8 in 1500 steps
-STEPS_AT_ONCE = 50_000  # a fifth of a second, the longest wait of an interrupt
 MAX_STEPS = 1_000_000  # of a file, about three seconds, or
 MAX_STEPS_PER_SAMPLE = 100  # if that is more; the lab at h = 0.001 s has 33
 
@@ -123,8 +122,7 @@ def _rerun(
             continue  # it changes no recorded number
         if not lockstep.step <= value.step <= run.steps:
             raise RecordingError(f"the steps of run {run.number} are not in order")
-        while lockstep.step < value.step:
-            lockstep.advance(min(value.step - lockstep.step, STEPS_AT_ONCE))
+        lockstep.advance(value.step - lockstep.step)
         if isinstance(value, Sample):
             result.samples += 1
             computed = lockstep.sample()

@@ -146,7 +146,7 @@ def test_minus_zero_differs_from_zero(verified):
     [
         (1, [], "it has no samples"),
         (4, [Event("set_h", 1, 2, 0.2, h=0.2), two_runs()[4].value], "not in order"),
-        (4, [two_runs()[3].value._replace(step=1_000_001)], r"use --max-steps 1000001\.$"),
+        (4, [two_runs()[3].value._replace(step=1_000_001)], r"limit of 1000000; .* use --max-steps 1000001\.$"),
     ],
 )
 def test_an_impossible_recording_is_refused_in_a_sentence(verified, kept, more, why):
@@ -186,7 +186,6 @@ def test_no_more_steps_are_simulated_than_samples_need(verified):
 
 def test_without_a_limit_a_hundred_steps_a_sample_are_simulated(verified, monkeypatch):
     monkeypatch.setattr("pendu_tui.recordings.verification.MAX_STEPS", 1)
-    monkeypatch.setattr("pendu_tui.recordings.verification.STEPS_AT_ONCE", 70)
     assert verified(entries_of(SCENE, 0, 1, 300)).identical
     with pytest.raises(RecordingError, match="claims 301 steps"):
         verified(entries_of(SCENE, 0, 1, 301))
