@@ -149,16 +149,16 @@ def new_path(where: Path | None = None) -> Path:
     return free_path((where or folder()) / name)
 
 
-def listing(where: Path | None = None, being_made: bool = False) -> list[Item]:
+def listing(being_made: bool = False) -> list[Item]:
     """Return the recordings that no lab is making, or that one is, the newest first."""
-    where = where or folder()
+    where = folder()
     items = []
     for path in where.iterdir() if where.is_dir() else ():
         with suppress(OSError):  # deleted meanwhile
             if _is_recording(path) and (path.suffix == PART and in_use(path)) == being_made:
                 status = path.stat()
                 items.append(Item(path, status.st_size, status.st_mtime))
-    return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
+    return sorted(items, key=lambda item: item.modified, reverse=True)
 
 
 def golden_names() -> list[str]:

@@ -1,4 +1,4 @@
-"""The library: where recordings are, and which one a name means."""
+"""The library: where recordings are, and what files are called."""
 
 import errno
 import os
@@ -12,16 +12,8 @@ import pytest
 from mcap.writer import Writer
 
 from pendu_tui.recordings import files, system
-from pendu_tui.recordings.files import (
-    GOLDEN,
-    DiskError,
-    RecordingError,
-    golden_names,
-    listing,
-    new_path,
-)
+from pendu_tui.recordings.files import DiskError, RecordingError, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
-from pendu_tui.tui.cli.options import resolve
 from tests.recordings.examples import record, start, two_runs
 from tests.tui.command_line import IS_WINDOWS
 
@@ -30,16 +22,6 @@ from tests.tui.command_line import IS_WINDOWS
 def library(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     return tmp_path / "library"
-
-
-@pytest.fixture
-def old_and_new(library):
-    """Recordings of the library, 100 s and 1 s old."""
-    library.mkdir()
-    for name, age in (("old", 100), ("new", 1)):
-        path = record(library / f"{name}.mcap", two_runs())
-        os.utime(path, (1_700_000_000 - age,) * 2)
-    return library / "old.mcap", library / "new.mcap"
 
 
 def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, monkeypatch):
@@ -91,34 +73,6 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
             (old, old.stat().st_size),
         ]
         assert [item.path for item in listing(being_made=True)] == [recorder.part]
-
-
-def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(
-    old_and_new, tmp_path, monkeypatch
-):
-    old, new = old_and_new
-    elsewhere = record(tmp_path / "elsewhere.mcap", two_runs())
-    assert resolve(str(elsewhere)) == elsewhere
-    assert resolve("latest") == new
-    assert resolve("old") == resolve("old.mcap") == old
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "drift").mkdir()  # a folder hides no file
-    assert resolve("drift") == GOLDEN / "drift.mcap"
-
-
-@pytest.mark.parametrize(
-    ("name", "why"),
-    [
-        ("latest", "there is no recording .latest.: choose a file, or one of "),
-        ("drfit", "did you mean drift?"),
-        ("../../etc/passwd.mcap", f": choose a file, or one of {', '.join(golden_names())}.$"),
-        ("\x1b[2J", r"there is no recording '\\x1b"),
-    ],
-)
-def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
-    with pytest.raises(RecordingError, match=why) as caught:
-        resolve(name)
-    assert str(caught.value).isprintable()
 
 
 def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypatch):

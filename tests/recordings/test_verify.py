@@ -146,7 +146,11 @@ def test_minus_zero_differs_from_zero(verified):
     [
         (1, [], "it has no samples"),
         (4, [Event("set_h", 1, 2, 0.2, h=0.2), two_runs()[4].value], "not in order"),
-        (4, [two_runs()[3].value._replace(step=1_000_001)], r"limit of 1000000; .* use --max-steps 1000001\.$"),
+        (
+            4,
+            [two_runs()[3].value._replace(step=1_000_001)],
+            r"limit of 1000000; .* use --max-steps 1000001\.$",
+        ),
     ],
 )
 def test_an_impossible_recording_is_refused_in_a_sentence(verified, kept, more, why):

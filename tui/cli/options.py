@@ -77,7 +77,7 @@ def resolve(name: str) -> Path:
         for path in (Path(name), files.GOLDEN / file, folder / name, folder / file):
             if path.exists() and not path.is_dir():
                 return path
-    items = files.listing(folder)
+    items = files.listing()
     if name == "latest" and items:
         return items[0].path
     known = files.golden_names()

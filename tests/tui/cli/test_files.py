@@ -14,7 +14,7 @@ from signal import SIGINT, SIGTERM
 
 import pytest
 
-from pendu_tui.recordings.files import GOLDEN
+from pendu_tui.recordings.files import GOLDEN, RecordingError
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.errors import explained
@@ -100,11 +100,25 @@ def test_an_error_of_a_file_comes_with_advice(number, advice):
     assert explained(MemoryError()).code == 3
 
 
-def test_a_bundled_recording_comes_before_one_of_the_library(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    (tmp_path / "drift.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
+def test_a_recording_is_a_file_or_a_bundled_one_or_the_latest_or_another_of_the_library(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(library := tmp_path / "library"))
+    monkeypatch.chdir(tmp_path)
+    for folder in ("library", "drift"):  # which hides no file
+        Path(folder).mkdir()
+    for name, suggestion in (("latest", "file, or one of changes"), ("drfit", "mean drift?")):
+        with pytest.raises(RecordingError, match=suggestion):
+            resolve(name)
+    for name, changed_at in (("drift", 2), ("old", 1)):
+        (library / f"{name}.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
+        os.utime(library / f"{name}.mcap", (changed_at,) * 2)
+    with pytest.raises(RecordingError, match=r"'\\x1b\[2J': choose a file, or one of latest, ch"):
+        resolve("\x1b[2J")
+    assert resolve(__file__) == Path(__file__)
     assert resolve("drift") == GOLDEN / "drift.mcap"
-    assert resolve("drift.mcap") == resolve("latest") == tmp_path / "drift.mcap"
+    assert resolve("latest") == library / "drift.mcap"
+    assert resolve("old") == resolve("old.mcap") == library / "old.mcap"
 
 
 def test_force_does_not_replace_a_folder(tmp_path):

@@ -134,7 +134,7 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
     for command in ("live", "live --no-record", "tour --no-record"):
         assert pendu(*command.split(), "--plain").code == 0
     assert told == [(True, False), (False, False), (False, True)]
-    assert len(listing(tmp_path)) == 1
+    assert len(listing()) == 1
 
 
 class App(SimpleNamespace):

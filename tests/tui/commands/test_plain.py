@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from pendu_tui.recordings.files import listing
 from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import PENDU
 
@@ -21,10 +20,10 @@ def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
 
 
 def recorded_whole(folder: Path) -> Path:
-    (item,) = listing(folder)
-    report = verify(item.path)
+    (path,) = folder.iterdir()
+    report = verify(path)
     assert (report.identical, report.complete) == (True, True)
-    return item.path
+    return path
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,7 @@ def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_ag
     table.replay.pause(False)
     table.replay.set_speed(4.0)
     table.run(0.5)
+    table.replay.pause(False)
     assert table.replay.playhead.position == pytest.approx(2.0)
 
 
