@@ -56,14 +56,6 @@ class Field(NamedTuple):
     values: tuple[str, ...] = ()  # all that it may have
 
     @property
-    def column(self) -> str:
-        """The head of its column in a table: name and unit."""
-        if not self.unit:
-            return self.name
-        unit = self.unit.replace("/", "_per_").replace("s^-", "per_s").removesuffix("1")
-        return f"{self.name}_{unit}"
-
-    @property
     def member(self) -> tuple[Any, ...]:
         """Its name, type and, unless it is required, the default None, for a struct of msgspec."""
         type = Literal[self.values] if self.values else TYPES[self.type]

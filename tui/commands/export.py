@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 
-from pendu_tui.recordings.format import EXTRA, MOMENT, READING
+from pendu_tui.recordings.format import EXTRA, MOMENT, READING, Field
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.cli.errors import Exit, progress, warn
 from pendu_tui.tui.cli.files import text_file
@@ -25,9 +25,15 @@ def run(options: argparse.Namespace) -> int:
 
 def columns_of(models: Iterable[str]) -> tuple[str, ...]:
     """Return the columns, names with units; energies are per unit m·L²."""
-    moment = [field.column for field in MOMENT]
-    extra = dict.fromkeys(field.column for model in models for field in EXTRA[model])
-    return "clock_s", *moment, "method", *(field.column for field in READING), *extra
+    extra = dict.fromkeys(_column(field) for model in models for field in EXTRA[model])
+    return "clock_s", *map(_column, MOMENT), "method", *map(_column, READING), *extra
+
+
+def _column(field: Field) -> str:
+    if not field.unit:
+        return field.name
+    unit = field.unit.replace("/", "_per_").replace("s^-", "per_s").removesuffix("1")
+    return f"{field.name}_{unit}"
 
 
 def _rows(
