@@ -1,8 +1,8 @@
 """Lists of the methods, with their claimed and measured properties, and of the scenes."""
 
 import argparse
-import math
 from collections.abc import Iterator
+from functools import partial
 from itertools import groupby
 from typing import Any
 
@@ -13,7 +13,7 @@ from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.checks import MEASURED_NUMBERS, MEASURED_WORDS, Check, conclude, parse
 from pendu_tui.tui.cli.errors import Exit
 from pendu_tui.tui.cli.scene import scene_named
-from pendu_tui.tui.commands.report import Column, Report, fields_of, finite, publish
+from pendu_tui.tui.commands.report import Column, Report, fields_of, finite, limit_text, publish
 from pendu_tui.tui.words.cards import method_card, scene_card
 
 CLAIMS = (
@@ -99,10 +99,6 @@ def _known(row: Row, name: str) -> Any:
     return row[name] if measured is None else measured
 
 
-def _limit(z: float) -> str:
-    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.3f}"
-
-
 METHOD_COLUMNS = (
     Column("method", "key"),
     Column("claimed", "order", "d"),
@@ -110,7 +106,7 @@ METHOD_COLUMNS = (
     Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
     Column("symplectic", lambda row: yes(_known(row, "symplectic"))),
     Column("reversible", lambda row: yes(_known(row, "reversible"))),
-    Column("z limit", lambda row: _known(row, "linear_limit"), _limit),
+    Column("z limit", lambda row: _known(row, "linear_limit"), partial(limit_text, decimals=3)),
 )
 SCENE_COLUMNS: tuple[Column, ...] = (
     Column("scene", lambda scene: scene.name),

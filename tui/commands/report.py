@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
-from itertools import chain, cycle
+from itertools import cycle
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TextIO
 
@@ -83,6 +83,11 @@ def method_column(cast: Sequence[Method]) -> Column:
     return Column("method", lambda row: labels[row["method"]])
 
 
+def limit_text(z: float, decimals: int = 9) -> str:
+    """Write the largest stable z = h·w0 of the linear oscillator."""
+    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.{decimals}f}"
+
+
 @dataclass(frozen=True, slots=True)
 class Table:
     """Rows in columns, folded to the terminal's width; a string is a heading."""
@@ -91,8 +96,7 @@ class Table:
     rows: Iterable[Any]
 
     def __rich__(self) -> RichTable:
-        headed = any(column.head for column in self.columns)
-        table = RichTable(box=None, pad_edge=False, header_style="bold", show_header=headed)
+        table = RichTable(box=None, pad_edge=False, header_style="bold")
         for number, column in enumerate(self.columns):
             side: Literal["left", "right"] = "right" if column.form else "left"
             table.add_column(column.head, justify=side, overflow="fold", no_wrap=number == 0)
@@ -170,10 +174,9 @@ class Report:
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
             print(text, file=out)
         elif form == "csv":
-            records = iter(self.rows if self.records is None else self.records)
-            for first in records:
-                rows = (record.values() for record in chain([first], records))
-                write_csv(out or sys.stdout, list(first), rows)
+            records = list(self.rows if self.records is None else self.records)
+            if records:
+                write_csv(out or sys.stdout, list(records[0]), map(dict.values, records))
         else:
             self._show_table()
 

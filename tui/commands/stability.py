@@ -35,6 +35,7 @@ from pendu_tui.tui.commands.report import (
     Table,
     check_output,
     finite,
+    limit_text,
     method_column,
     publish,
 )
@@ -72,8 +73,8 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
         title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
         columns=(
             method_column(scene.cast),
-            Column("measured", "limit_z", _limit),
-            Column("theory", "theory_z", _limit),
+            Column("measured", "limit_z", limit_text),
+            Column("theory", "theory_z", limit_text),
             Column(f"radius at z = {scene.z:.4g}", "amplification", ".9f"),
         ),
         rows=linear,
@@ -111,10 +112,6 @@ def _linear(scene: Scene, method: Method) -> dict[str, Any]:
         theory = None
     fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
     return fields | {"amplification": amplification(method, scene.z)}
-
-
-def _limit(z: float) -> str:
-    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.9f}"
 
 
 def _row_fields(row: Row) -> dict[str, Any]:

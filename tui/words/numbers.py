@@ -15,7 +15,7 @@ UNSIGNED = ".1e", ".0e"
 
 def counted(number: int, noun: str) -> str:
     """Write "1 sample" or "3 samples"."""
-    if abs(number) != 1:
+    if number != 1:
         noun += "s"
     return f"{number} {noun}"
 
