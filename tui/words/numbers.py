@@ -85,11 +85,9 @@ def factor(value: float) -> str:
     """Write a factor in full: "4", "262144", "-1/8"."""
     if value < 0:
         return f"-{factor(-value)}"
-    if 1e-9 < value < 1 and (1 / value).is_integer():
-        return f"1/{1 / value:.0f}"
-    if 1e3 <= value < 1e9:
-        return f"{value:.0f}"
-    return f"{value:.4g}"
+    if 0 < value < 1 and (1 / value).is_integer():
+        return f"1/{1 / value:.9g}"
+    return f"{value:.9g}"
 
 
 def z_text(scene: Scene, digits: int = 4) -> str:

@@ -7,17 +7,19 @@ import signal
 import subprocess
 import time
 from contextlib import nullcontext
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.commands import run
 from tests.recordings.examples import record, two_runs
-from tests.tui.command_line import PENDU, needs_signals, pendu
+from tests.tui.command_line import PENDU, needs_signals, own_method, pendu
 
 
 def rows_of(line: str) -> dict[str, dict]:
@@ -26,10 +28,16 @@ def rows_of(line: str) -> dict[str, dict]:
 
 @pytest.mark.parametrize(
     ("command", "count", "whole"),
-    [("run --time 2 --sample-every 10", 5, 40), ("export a", 10, 4.0)],
+    [
+        ("run --time 2 --sample-every 10", 5, 40),
+        ("run --time 2 --method mine.py:mine", 4, 40),  # which may be slow
+        ("export a", 10, 4.0),
+    ],
 )
 def test_the_progress_is_shown_to_the_end(command, count, whole, tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    Path(own_method(tmp_path).removesuffix(":mine")).rename("mine.py")
     record(tmp_path / "a.mcap", two_runs())
     shown = []
     show = nullcontext(lambda *done: shown.append(done))
@@ -83,6 +91,7 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
         ("--time 1 --fail-if rk5.theta>1", ["--fail-if", "rk5"]),
         ("", ["--time is missing"]),
         ("--h 0", ["h = 0 s"]),
+        (f"--time 1 --methods {','.join(m.key for m in GENERAL)}", ["at most 6"]),
         ("--time 1 --theta 1,2", ["--record", "one run"]),
     ],
 )

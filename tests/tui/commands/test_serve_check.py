@@ -9,7 +9,7 @@ import pytest
 from aiohttp import web
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.commands import serve
+from pendu_tui.tui.commands import serve, served
 from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import pendu
 
@@ -67,3 +67,12 @@ def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path,
     assert [pendu(*line).code for _ in range(2)] == [130, 130]
     assert told[0] == (SCENES["spin"], TerminalOptions("light"), tmp_path / "folder")
     assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 8000: no such port; use")
+
+
+def test_a_tab_has_the_size_of_a_terminal_at_most(monkeypatch):
+    told = []
+    monkeypatch.setattr(served.WebDriver, "on_meta", lambda self, *packet: told.append(packet))
+    driver = object.__new__(served.BoundedDriver)
+    driver.on_meta("resize", {"width": 1e9, "height": -3})
+    driver.on_meta("focus", {})
+    assert told == [("resize", {"width": 400, "height": 1}), ("focus", {})]
