@@ -152,17 +152,16 @@ def whole_of(bins: Bins) -> tuple[float, Part]:
     """
     unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
     bins = bins.scaled(1 / unit)
-    known = bins._replace(white=0.0)
-    parts = (Part(bins, bins.means), Part(known, (bins.lows + bins.highs) / 2))
+    parts = (Part(bins, bins.means), Part(bins, (bins.lows + bins.highs) / 2))
     whole = min(parts, key=lambda part: part.slope.uncertainty)
     rest = without_wave(bins.times, whole.values)
-    return unit, whole if rest is whole.values else Part(known, rest)
+    return unit, whole if rest is whole.values else Part(bins, rest)
 
 
 def _moved(whole: Part) -> Judgement | None:
     """Return the judgement if the energy moves for good, in one of the windows up to the end."""
     ranks = np.unique(whole.values, return_inverse=True)[1].astype(float)
-    ranked = Part(whole.bins._replace(rounding=1.0, white=0.0), ranks)
+    ranked = Part(whole.bins._replace(rounding=1.0), ranks)
     for share in levels.WINDOWS:
         last = whole.last(share)
         if not last.exceeds(levels.MATERIAL, last.move):

@@ -166,10 +166,6 @@ class Judge:
     def _swings(self) -> float:
         return self._last.step * self._h / self._period
 
-    @property
-    def _is_long(self) -> bool:
-        return self._last.step >= levels.LONG
-
     def _is_rounded(self, point: LookPoint) -> bool:
         """Return whether a damped energy is mostly rounding."""
         if self._model.conserves_energy:
@@ -232,7 +228,8 @@ class Judge:
 
     def _doubt(self, verdict: str, is_away: bool) -> str:
         """Return why a verdict of the core does not hold for this run; "" if it does."""
-        is_straight = self._is_long and self._bands.one_way >= levels.MIN_ONE_WAY
+        is_long = self._last.step >= levels.LONG
+        is_straight = is_long and self._bands.one_way >= levels.MIN_ONE_WAY
         if self._may_beat and not is_straight:
             return levels.BEATS
         if verdict in LEAVES and self._method.symplectic:
@@ -243,7 +240,7 @@ class Judge:
             return ""
         if is_away:
             return levels.NEAR
-        return "" if self._is_long else levels.SHORT
+        return "" if is_long else levels.SHORT
 
     def progress_at(self, step: int) -> Progress | None:
         """Return how far it is from a step to the first possible verdict, or else to the last one.

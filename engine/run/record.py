@@ -126,13 +126,9 @@ def order_of(steps: Sequence[float], fluctuations: Sequence[Fluctuation]) -> Ord
         raise ValueError("give two step sizes or more, all above zero and not all the same.")
     if not all(each.size > 0 for each in fluctuations):
         raise ValueError("an energy that never changes has no order.")
-    logs = [math.log(step) for step in steps]
-    errors = [max(each.uncertainty / each.size, 1e-12) for each in fluctuations]
-    weights = [error**-2 for error in errors]
-    middle = sum(w * x for w, x in zip(weights, logs, strict=True)) / sum(weights)
-    spread = sum(w * (x - middle) ** 2 for w, x in zip(weights, logs, strict=True))
-    power = sum(
-        w * (x - middle) * math.log(each.size)
-        for w, x, each in zip(weights, logs, fluctuations, strict=True)
-    )
-    return Order(power / spread, spread**-0.5)
+    sizes, uncertainties = np.array(fluctuations).T
+    weights = np.maximum(uncertainties / sizes, 1e-12) ** -2
+    x = np.log(steps)
+    x = x - weights @ x / weights.sum()
+    spread = float(weights @ x**2)
+    return Order(float(weights * x @ np.log(sizes)) / spread, spread**-0.5)

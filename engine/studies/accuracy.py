@@ -196,13 +196,6 @@ def compilable(cast: Cast) -> bool:
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 
-def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
-    """Yield a point for every number of steps and every method; for another process."""
-    study = Study(scene, time, TieredLoops)
-    for steps, method in product(rungs, scene.cast):
-        yield study.run(method, steps)
-
-
 _cached_study = lru_cache(maxsize=1)(Study)
 
 
@@ -213,6 +206,12 @@ def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, M
     """
     steps, method = task
     return _cached_study(scene, time, loops).run(method, steps)
+
+
+def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
+    """Yield a point for every number of steps and every method; for another process."""
+    for task in product(rungs, scene.cast):
+        yield measured_point(scene, time, TieredLoops, task)
 
 
 Cost = Literal["evaluations", "seconds"]
