@@ -22,11 +22,10 @@ class Bins(NamedTuple):
     highs: Any
     spreads: Any  # standard deviations within each
     rounding: float  # differences up to this mean nothing
-    white: float = 0.0  # the deviation of the means if all samples were independent; 0 if unknown
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        return Bins._make([*(column[-count:] for column in self[:5]), *self[5:]])
+        return Bins._make([*(column[-count:] for column in self[:5]), self.rounding])
 
     def scaled(self, factor: float) -> "Bins":
         """Return the bins of energies multiplied by a factor."""
@@ -46,7 +45,7 @@ class Part:
     def __init__(self, bins: Bins, values: Any) -> None:
         self.bins = bins
         self.values = values
-        self.slope = Slope(bins.times, values, bins.rounding, bins.white)
+        self.slope = Slope(bins.times, values, bins.rounding)
         count = len(values)
         # the middles of the bins cover one bin less
         self.length = float(bins.times[-1] - bins.times[0]) * count / (count - 1)
@@ -68,7 +67,7 @@ class Part:
 
     def described(self, verdict: str, **known: Any) -> Judgement:
         """Return a judgement with this verdict, the slope of this part, and what else is known."""
-        spread = max(self.slope.uncertainty * self.length, 1e-300)
+        spread = self.slope.uncertainty * self.length
         return Judgement(
             verdict,
             slope=self.slope.mean,
