@@ -112,10 +112,8 @@ TREND = Quantity(
     "grows",
 )
 SLOPE = Quantity("slope", "1/s", in_gate=True)
-BOUND = Quantity("bound", "1/s", about="|slope| is below it at 99 %", in_gate=True)
-SHARE = Quantity(
-    "share", about="what the slope adds up to, over the width of the band", in_gate=True
-)
+BOUND = Quantity("bound", "1/s", in_gate=True)
+SHARE = Quantity("share", in_gate=True)
 EVALUATIONS = Quantity(
     "force_evaluations",
     in_gate=True,

@@ -16,7 +16,6 @@ from pendu_tui.engine.inputs import InputError, nearest
 from pendu_tui.engine.methods import implicit, learned, parts, runge_kutta, splitting, verlet
 from pendu_tui.engine.methods.method import Method as Method
 from pendu_tui.engine.methods.parts import TAYLOR_20 as TAYLOR_20
-from pendu_tui.engine.methods.parts import WHY_NOT
 from pendu_tui.engine.methods.runge_kutta import EXPLICIT_EULER, RK4
 from pendu_tui.engine.methods.verlet import SYMPLECTIC_EULER, VELOCITY_VERLET
 
@@ -61,7 +60,10 @@ def named(name: str, methods: Sequence[Method] = METHODS, model: str | None = No
         keys = " or ".join(method.key for method in found)
         raise InputError(f"{name!r} may be {keys}; write more of it.")
     if matching(name, (TAYLOR_20,)):
-        raise InputError(f"{WHY_NOT}.")
+        raise InputError(
+            "the Taylor series has no force evaluations to count; see it with pendu-tui accuracy "
+            "--cost seconds --methods taylor_20,rk4."
+        )
     suited = [method for method in methods if model is None or model in method.models]
     known = {simplified(each): method.key for method in suited for each in method.names}
     near = nearest(simplified(name), known)

@@ -30,7 +30,7 @@ def implicit(share: float) -> Phases:
     A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.  A
     step for which Newton's iteration finds none is nan.
     """
-    for_numbers = _solving(share, size=abs, any_of=bool, root=_root)
+    for_numbers = _solving(share, size=abs, any_of=bool, root=lambda negative: math.nan)
 
     @cache
     def for_arrays() -> Phases:
@@ -45,12 +45,6 @@ def implicit(share: float) -> Phases:
 
     COMPILABLE[implicit_steps] = for_arrays
     return implicit_steps
-
-
-def _root(square: float) -> float:
-    if square < 0:
-        return math.nan
-    return math.sqrt(square)
 
 
 def _solving(

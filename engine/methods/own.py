@@ -155,7 +155,7 @@ def own_function(source: str, name: str, file: str) -> Phases:
         others = [key for key, value in namespace.items() if callable(value) and key[0] != "_"]
         has = ""
         if others:
-            has = f"; it has {', '.join(others[:6])}"
+            has = f"; it has {', '.join(others)}"
         raise OwnMethodError(f"{file} has no function {name!r}{has}.")
     return guarded(function, file)
 
@@ -222,7 +222,7 @@ def _is_of_force(error: BaseException, force: Force) -> bool:
 
 def place(file: str, line: int) -> str:
     """Return where something happens in a user's file, with the text of the line."""
-    return f"{file}, line {line}: `{_line(linecache.getline(file, line))[:60]}`"
+    return f"{file}, line {line}: `{_line(linecache.getline(file, line))}`"
 
 
 def _sentence(error: BaseException, file: str, where: str) -> str:

@@ -257,8 +257,3 @@ TAYLOR_20 = Method(
     takes="parts",
     any_numbers=False,
 )
-
-WHY_NOT = (
-    "the Taylor series has no force evaluations to count; see it with pendu-tui accuracy "
-    "--cost seconds --methods taylor_20,rk4"
-)

@@ -371,7 +371,7 @@ class Model(ABC):
         return 0 * (theta + omega)
 
 
-@lru_cache(maxsize=16)
+@lru_cache
 def _reference(model: Model, theta: float, omega: float) -> Reference:
     step, h = model.exact_step()
     return Reference(step, model.start(theta, omega), h)

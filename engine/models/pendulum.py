@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from decimal import Context, Decimal, localcontext
+from decimal import Decimal, localcontext
 from typing import Any, NamedTuple
 
 from pendu_tui.engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
@@ -68,7 +68,7 @@ class _Start(NamedTuple):
 def exact_pendulum(w0_squared: float, theta: float, omega: float) -> ExactMotion:
     """Return the exact motion from theta [rad] and omega [rad/s]."""
     start = _Start(theta, omega, math.sqrt(w0_squared))
-    with localcontext(Context(prec=100)):
+    with localcontext(prec=100):
         k_squared = _k_squared(theta, omega, w0_squared)
         d = 1 - k_squared
         k = float(k_squared.sqrt())

@@ -294,7 +294,6 @@ _MEAN_FIELD = (
     Scene(
         "mean-field",
         model="mean_field",
-        parameters={"coupling": 2.0, "level_frequency": 20.0},
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
         watch="RK4's energy is right to 4e-4; in a minute 15 % of the probability is gone.",

@@ -94,7 +94,7 @@ class Scene:
     # a common belief about such scenes, and what is true of it
     often_said: str = field(default="", compare=False)
     speed: float = field(default=1.0, compare=False)  # of the lab, in real time
-    shot: Shot = field(default=Shot(), compare=False, repr=False)
+    shot: Shot = field(default=Shot(), compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", _complete(self.model, self.parameters))
