@@ -13,6 +13,7 @@ def test_a_reading_has_the_recorded_quantities_in_order_and_requires_those_alway
     optional = {each.name for each in RECORDED if each.recorded == "if known"}
     assert set(defaults) - {"extra"} <= optional
     assert {each.name for each in RECORDED if not each.in_gate} == {*EXTREMES}
+    assert all(each.unit or each.about for each in RECORDED)  # which viewers show
 
 
 def test_no_two_quantities_share_a_name_or_a_head():

@@ -26,6 +26,33 @@ def test_a_value_beyond_its_limits_is_refused_in_a_sentence(field):
             Scene(**{field: value})
 
 
+def test_a_number_is_for_the_model_that_has_it_and_within_limits():
+    damped = SCENES["damped"].altered(friction=0.1)
+    assert damped.equations.friction == damped.fields()["friction"] == 0.1
+    assert Scene(parameters={"friction": 0.0}).parameters == {}
+    with pytest.raises(
+        InputError, match=r"^the model pendulum has no friction; damped has: choose "
+    ):
+        Scene(parameters={"friction": 0.1})
+    with pytest.raises(InputError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 "):
+        Scene(model="spring", cast=())
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "gravity", "most"),
+    [
+        ("damped", "friction", 9.81, 100),
+        ("damped", "friction", 0.04, 20),  # 100 w0
+        ("mean-field", "level_frequency", 0.04, 200),  # 1000 w0
+    ],
+)
+def test_a_frequency_is_limited_beside_w0_too(key, name, gravity, most):
+    scene = SCENES[key].altered(gravity=gravity)
+    assert scene.altered(**{name: 0.999 * most}).parameters[name] == 0.999 * most
+    with pytest.raises(InputError, match=rf"{name} = .* out of range; use .* to {most} s"):
+        scene.altered(**{name: 1.001 * most})
+
+
 def test_a_step_is_measured_by_the_fastest_motion():
     found = [SCENES[name].z for name in ("linear", "stiff-slow", "stiff-limit", "mean-field")]
     assert found == pytest.approx([0.5, 1.0, 2.5, 1.0])  # the latter three swing more slowly
@@ -301,8 +328,9 @@ def test_a_rational_part_of_h_avoids_the_resonance_like_an_irrational_one(share)
     assert verlet.energy_error_high < 0.001
 
 
-def test_a_speed_changes_no_number():
-    assert replace(DEFAULT_SCENE, speed=3.0) == DEFAULT_SCENE
+def test_how_a_run_is_shown_changes_no_number():
+    shown = replace(DEFAULT_SCENE, speed=3.0, often_said="It holds.", shot=Shot(log=False))
+    assert shown == DEFAULT_SCENE
     assert DEFAULT_SCENE.altered(theta=2.0, speed=3.0).speed == 3.0
     for speed in (0.0, -1.0, math.inf, math.nan):
         with pytest.raises(InputError, match="speed"):

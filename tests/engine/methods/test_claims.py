@@ -18,6 +18,7 @@ from pendu_tui.engine.methods import (
     METHODS,
     VELOCITY_VERLET,
     all_named,
+    family_of,
     implicit,
     learned,
     matching,
@@ -265,6 +266,22 @@ def test_the_energy_wobbles_by_the_order_and_the_modified_energy_by_h4(method):
     # the sampled extremes of a wobble are a few per cent off the true ones
     assert math.log2(plain / finer) == pytest.approx(method.order, abs=0.1)
     assert math.log2(modified / finer_modified) == pytest.approx(4, abs=0.1)
+
+
+def test_a_family_is_listed_by_its_name():
+    one_each = [
+        "rk4",
+        "yoshida_6",
+        "respa",
+        "halving_verlet",
+        "verlet_float32",
+        "lagged_verlet",
+        "learned_map",
+    ]
+    assert [family_of(key) for key in one_each] == [
+        *("Runge-Kutta", "splitting", "fast and slow parts", "step doubling", "precision"),
+        *("friction", "learned"),
+    ]
 
 
 @pytest.mark.parametrize("field", ["key", "label", "letter", "phases", "formula"])
