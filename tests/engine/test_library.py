@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pendu_tui import engine
-from pendu_tui.engine import METHODS, judge, limits, recommend, simulate
+from pendu_tui.engine import METHODS, judge, library, limits, recommend, simulate
 from pendu_tui.engine.run.lockstep import Lockstep
 
 GENERAL = [key for key, method in METHODS.items() if method.general]
@@ -39,6 +39,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
 
 
 def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
+    assert library.MAX_READINGS * 4 * 8 == 320e6  # bytes
     monkeypatch.setattr("pendu_tui.engine.library.MAX_READINGS", 40)
     assert len(simulate(h=0.1, time=2, methods="rk4,verlet").t) == 21
     assert len(simulate(h=0.1, time=0.3, methods="rk4").t) == 4
