@@ -19,7 +19,6 @@ from pendu_tui.engine.methods import (
     VELOCITY_VERLET,
     all_named,
     family_of,
-    implicit,
     learned,
     matching,
     measure,
@@ -192,17 +191,6 @@ def test_a_limit_is_found_up_to_sixteen(parts, limit):
         return VELOCITY_VERLET.phases(force, phase, h / parts)
 
     assert measure.linear_limit(slower) == pytest.approx(limit)
-
-
-@pytest.mark.parametrize("method", implicit.FAMILY, ids=lambda method: method.key)
-@given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), z=st.floats(0.0, 0.99))
-def test_newtons_iteration_solves_the_equation_of_the_step(method, theta, omega, z):
-    h = z / PENDULUM.w0
-    theta_end, omega_end = method.step(FORCE, (theta, omega), h)
-    share = {BACKWARD_EULER: 1.0, IMPLICIT_MIDPOINT: 0.5}[method]
-    inside, middle = theta + share * (theta_end - theta), omega + share * (omega_end - omega)
-    assert omega_end == pytest.approx(omega + h * FORCE(inside), abs=1e-11)
-    assert theta_end == pytest.approx(theta + h * middle, abs=1e-11)
 
 
 def test_a_step_without_a_solution_fails_and_others_of_an_array_do_not():

@@ -177,19 +177,10 @@ def test_conformal_verlet_shrinks_areas_as_the_motion_does():
     assert area == pytest.approx(math.exp(-0.2 * 0.05), rel=1e-14)
 
 
-ordinary = st.floats(-1e15, 1e15).filter(lambda x: x == 0 or abs(x) > 1e-15)
-
-
-@given(a=ordinary, b=ordinary)
-def test_a_number_of_32_bits_is_numpys_float32(a, b):
-    x, y = np.float32(a), np.float32(b)
-    assert Float32(a) == x
+@given(a=st.floats(-1e15, 1e15))
+def test_a_number_of_32_bits_is_numpys_float32(a):
+    assert Float32(a) == np.float32(a)
     assert VERLET_FLOAT32.epsilon == np.finfo(np.float32).eps / 2
-    assert Float32(a) + Float32(b) == x + y
-    assert Float32(a) * Float32(b) == x * y
-    assert isinstance(a * Float32(b), Float32)
-    with pytest.raises(OverflowError):
-        Float32(1e39)
 
 
 def test_a_compensation_goes_on_where_a_run_is_continued():

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given
@@ -163,18 +162,6 @@ def test_the_spring_starts_stretched_by_4_percent_beyond_equilibrium():
     assert SPRING.spring_energy((z, w)) == pytest.approx(2500 / 2 * 0.04**2)
     assert SPRING.reference(1.0, 0.0).start == pytest.approx(6.5040, abs=1e-4)
     assert EXAMPLES["spring"].altered(stiffness=2500.0, h=0.02).z == pytest.approx(1.0)
-
-
-@given(z=st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3))
-def test_the_springs_force_is_minus_the_slope_of_its_energy(z):
-    def energy(x, y):
-        return mp.mpf("9.81") * (y + 1) + 1250 * (mp.hypot(x, y) - 1) ** 2
-
-    with mp.workdps(40):
-        x, y = mp.mpf(z.real), mp.mpf(z.imag)
-        slope = complex(mp.diff(energy, (x, y), (1, 0)), mp.diff(energy, (x, y), (0, 1)))
-        assert SPRING.energy()((z, 0j)) == pytest.approx(float(energy(x, y)), rel=1e-12)
-    assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
 
 
 def test_the_true_motion_nearly_keeps_the_springs_energy():
