@@ -147,10 +147,6 @@ class Spring(Model):
 
         return SpringParts(fast, slow, solve)
 
-    def slope(self, theta: float) -> float:
-        """Return the slope of the swing with a rigid rod."""
-        return -self.w0_squared * math.cos(theta)
-
     def energy(self, sin: Sine = math.sin) -> Energy:
         """|w|²/2 + w0² (y + 1) + k/2 (|z| - 1)² [s⁻²]."""
         k = self.stiffness
