@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 SAMPLE_EVERY = 1 / 30  # s of simulated time, headless, as often as the live lab paints
+MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred
 NOT_INPUTS = ("start", "stop", "noticed")
 """Kinds of events that are no action of a user in a run."""
 

@@ -17,7 +17,7 @@ from mcap.writer import Writer
 
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.events import MAX_EVENTS, Event
 from pendu_tui.recordings.files import (
     PROFILE,
     DiskError,
@@ -55,6 +55,8 @@ class Recorder:
     DiskError if the disk fails; after that, call only `abandon`.
     """
 
+    is_live = False
+
     def __init__(self, path: Path, overwrite: bool = False) -> None:
         self.path = path
         self.part = part_of(path)
@@ -85,7 +87,8 @@ class Recorder:
         """Write an entry; None: samples are missing here.
 
         A sample is not written again after it or a later one.  Extremes are those since the
-        previous sample, so the first sample of a run has none.
+        previous sample, so the first sample of a run has none.  Finishes the recording and raises
+        DiskError if it has as many events as may be read.
         """
         if value is None:
             self._last = None
@@ -99,6 +102,9 @@ class Recorder:
 
     def _add_event(self, event: Event, clock: float) -> None:
         data = encode_event(event)
+        if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
+            self.close()
+            raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:
@@ -187,11 +193,13 @@ class Recorder:
         """Write the messages of one entry."""
         log_time = CLOCK_OFFSET + round(clock * 1e9)
         self.seconds = clock
+        # that of a headless run is the same when it is recorded again
+        publish_time = time.time_ns() if self.is_live else log_time
         number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
                 channel = self._channels[topic]
-                self._writer.add_message(channel, log_time, data, log_time, number)
+                self._writer.add_message(channel, log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
         if self._unflushed > MAX_CHUNK:
@@ -205,6 +213,7 @@ class LiveRecorder(Recorder):
     lab can go on.
     """
 
+    is_live = True
     failed: str | None = None  # why the recording ended before the lab did, a sentence
 
     def __init__(self, path: Path) -> None:

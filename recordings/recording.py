@@ -16,7 +16,7 @@ from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import NOT_INPUTS, Arithmetic, Entry, Event
+from pendu_tui.recordings.events import MAX_EVENTS, NOT_INPUTS, Arithmetic, Entry, Event
 from pendu_tui.recordings.files import RecordingError, is_stream, named
 from pendu_tui.recordings.format import (
     CLOCK_OFFSET,
@@ -27,7 +27,6 @@ from pendu_tui.recordings.format import (
 )
 from pendu_tui.recordings.reader import Contents, Group, read_chunk, read_contents
 
-MAX_EVENTS = 50_000  # in a recording; a lesson has a few hundred
 CHUNKS_KEPT = 3  # decoded; playing reads one of them 30 times, stepping over an edge needs two
 
 

@@ -112,12 +112,14 @@ def test_a_recording_without_a_start_leaves_no_file(tmp_path, monkeypatch, kind)
 def test_a_live_recorder_has_every_sample_on_disk_after_half_a_second_without_a_frame(tmp_path):
     recorder = begin(LiveRecorder(tmp_path / "live.mcap"))
     recorder.add(stepped(2), 0.1)
-    assert last_on_disk(recorder).step == 0  # at once
     deadline = time.monotonic() + 1.0  # s; no more is lost
     while last_on_disk(recorder).step < 2:
         assert time.monotonic() < deadline
         time.sleep(0.05)
     recorder.close()
+    with recorder.path.open("rb") as file:
+        _, _, message = next(make_reader(file).iter_messages())
+    assert 0 <= time.time_ns() - message.publish_time < 10e9  # by the clock on the wall
 
 
 def test_a_recording_closed_while_another_thread_writes_is_whole(tmp_path):
@@ -185,6 +187,18 @@ def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_pa
 def test_two_labs_never_write_to_the_same_file(recorder):
     with pytest.raises(DiskError, match="is in use"):
         Recorder(recorder.path)
+
+
+def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_path, monkeypatch):
+    for module in ("recorder", "recording"):
+        monkeypatch.setattr(f"pendu_tui.recordings.{module}.MAX_EVENTS", 30)
+    recorder = LiveRecorder(tmp_path / "lab.mcap")
+    for sample in simulate(SCENE, 4.0, recorder.add):
+        recorder.add(Event("mark", 1, sample.step, sample.t), sample.t)
+    assert "is full" in recorder.failed
+    with Recording.open(recorder.path, check=True) as recording:
+        assert recording.complete
+        assert len(recording.events) == 30
 
 
 LIMITED = """

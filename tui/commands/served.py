@@ -15,17 +15,30 @@ from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import LARGEST
 
+RESIZE_EVERY = 0.2  # s
+
 
 class BoundedDriver(WebDriver):
-    """Textual's driver for a browser, which may ask for any size."""
+    """Textual's driver for a browser, which may ask for any size, and for thousands a second."""
+
+    _asked: dict[str, int] | None = None  # the last size that the lab does not have yet
 
     def on_meta(self, packet_type: str, payload: dict[str, Any]) -> None:
-        if packet_type == "resize":
-            payload = bounded(payload)
-        super().on_meta(packet_type, payload)
+        if packet_type != "resize":
+            super().on_meta(packet_type, payload)
+            return
+        is_waiting = self._asked is not None
+        self._asked = bounded(payload)
+        if not is_waiting:
+            self._loop.call_soon_threadsafe(self._loop.call_later, RESIZE_EVERY, self._resize)
+
+    def _resize(self) -> None:
+        asked = self._asked
+        self._asked = None
+        super().on_meta("resize", dict[str, Any](asked or {}))
 
 
-def bounded(size: Any) -> dict[str, Any]:
+def bounded(size: Any) -> dict[str, int]:
     sides = zip(("width", "height"), LARGEST, strict=True)
     return {side: int(min(max(float(size[side]), 1), largest)) for side, largest in sides}
 

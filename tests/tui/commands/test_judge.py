@@ -55,6 +55,7 @@ FILES = {
     "units.csv": "Time (ps),E (eV),K\n" + lines("{t},{e},-{n}", [(t, e + t) for t, e in ROWS]),
     "mixed.csv": "t,E [kJ/mol],K [kJ/mole],P [units]\n" + lines("{t},{e},5,{e}"),
     "zero.csv": "t,E\n" + lines("{n},{e}", [(n, (n * 7919) % 13 - 6.5) for n in range(300)]),
+    "spike.csv": "t,E\n" + lines("{n},{e}", [(n, n / 99 if n else 99) for n in range(300)]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "large.csv": "-0.1,1e305\n" + lines("{t},{e}") + "30,-1.79769e+308\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
@@ -90,6 +91,7 @@ mixed.csv --energy P --units energy=eV
 zero.csv
 zero.csv --scale std
 zero.csv --scale 50
+spike.csv
 failed.csv
 large.csv --from 0
 huge.csv
@@ -97,6 +99,7 @@ cold.csv --scale kinetic:K
 odd.csv --from 10 --json
 table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'
+coarse.csv table.csv --steps 1,2 --energy E
 table.csv failed.csv --steps 1,2
 """
 

@@ -69,10 +69,17 @@ def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path,
     assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 8000: no such port; use")
 
 
-def test_a_tab_has_the_size_of_a_terminal_at_most(monkeypatch):
-    told = []
+def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(monkeypatch):
+    told, waiting = [], []
     monkeypatch.setattr(served.WebDriver, "on_meta", lambda self, *packet: told.append(packet))
     driver = object.__new__(served.BoundedDriver)
-    driver.on_meta("resize", {"width": 1e9, "height": -3})
+    driver._loop = SimpleNamespace(
+        call_soon_threadsafe=lambda soon, *arguments: soon(*arguments),
+        call_later=lambda seconds, resize: waiting.append(resize),
+    )
+    for width in (80, 90, 1e9):
+        driver.on_meta("resize", {"width": width, "height": -3})
     driver.on_meta("focus", {})
-    assert told == [("resize", {"width": 400, "height": 1}), ("focus", {})]
+    for resize in waiting:
+        resize()
+    assert told == [("focus", {}), ("resize", {"width": 400, "height": 1})]
