@@ -1,4 +1,4 @@
-"""The outcomes of runs of a million steps, by start and h·w0, from tests/bench/truths.py."""
+"""The outcomes of runs of a million steps, by start and h·w0, from tests/bench/judging.py."""
 
 import math
 from dataclasses import replace
@@ -75,12 +75,6 @@ def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int):
         for milestone in lockstep.milestones
         if milestone.kind == "verdict"
     ]
-
-
-def watch(scene: Scene):
-    """Return the steps of a test of a cell: 80 periods, and at least 6000 unless h·w0 is small."""
-    period = scene.exact().period or math.tau / scene.w0
-    return max(round(80 * period / scene.h), 6000 if scene.z > 0.3 else 1500)
 
 
 def is_true(letter: str, course: Course):

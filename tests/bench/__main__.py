@@ -12,12 +12,10 @@ import argparse
 import json
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
-from multiprocessing import get_context
 from typing import Any
 
-BENCHES = ("foreign", "ink", "judging", "kill", "peers", "yardstick")
+BENCHES = ("foreign", "judging", "kill", "peers", "yardstick")
 
 
 def report(name: str, share: float) -> tuple[dict[str, Any], bool]:
@@ -38,9 +36,7 @@ def main() -> int:
     reports = {}
     exit_code = 0
     for name in options.benches or BENCHES:
-        # A process of its own, so that its peak memory is its own.
-        with ProcessPoolExecutor(1, get_context("fork")) as pool:
-            reports[name], passes = pool.submit(report, name, options.share).result()
+        reports[name], passes = report(name, options.share)
         exit_code |= not passes
     print(json.dumps(reports, indent=1))
     return exit_code

@@ -289,23 +289,21 @@ def percent(some: Any) -> float:
 
 def measure(share: float) -> dict[str, Any]:
     kinds: defaultdict[str, Counter[str]] = defaultdict(Counter)
-    wrongs: defaultdict[str, list[bool]] = defaultdict(list)  # by verdict
+    wrongs = []
     clear: dict[int, list[bool]] = {sigmas: [] for sigmas in (5, 8, 10)}
     for series, times, energies in all_series(share):
         verdict = judge_record(times, energies).verdict
         is_open = verdict == "undecided"
         wrong = not is_open and verdict not in truth_of(series, times, energies)
         kinds[series.kind].update([verdict, *["wrong"] * wrong])
-        wrongs[verdict].append(wrong)
+        wrongs.append(wrong)
         for sigmas, found in clear.items():
             if series.sigmas >= sigmas and series.independent >= 50:
                 found.append(is_open)
-    all_wrongs = [wrong for found in wrongs.values() for wrong in found]
     return {
-        "series": len(all_wrongs),
-        "wrong_percent": percent(all_wrongs),
+        "series": len(wrongs),
+        "wrong_percent": percent(wrongs),
         "undecided_percent": percent(clear[10]),
         "undecided_percent_by_sigmas": {sigmas: percent(found) for sigmas, found in clear.items()},
-        "false_percent": {verdict: percent(found) for verdict, found in wrongs.items()},
         "kinds": kinds,
     }

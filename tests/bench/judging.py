@@ -1,60 +1,43 @@
-"""Compare the verdicts with runs of a million steps and with each other."""
+"""Compare the verdicts with runs of a million steps and with each other; needs Numba.
 
+python -m tests.bench.judging writes tests/engine/run/truths.txt, in some minutes: the fate of each
+method by start and h·w0.
+
+A run of a million steps is judged by its whole course and without the reasoning of the verdicts: by
+the lowest and highest energy error in windows that double the run, and for symplectic methods by
+the logarithm of the distance between neighbouring orbits.
+"""
+
+import cmath
 import math
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from pendu_tui.engine.methods import GENERAL, Cast, Method
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, Cast, Method
+from pendu_tui.engine.methods.method import compilable
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import LoopsOf, compiled
 from pendu_tui.engine.run.record import judge_record
 from pendu_tui.engine.run.verdicts import BOUNDED, CHAOTIC, UNDECIDED, Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
-from tests.truths import ALLOWED, is_true, scene_at, truths, verdicts, watch
-from tests.tui.command_line import PENDU
+from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
 
 LIMITS = {
-    "wrong": 0,  # cells of the truth table
-    "median_wait": 8.1,  # periods
     "wrong_runs": 0,  # of 400 methods, at five lengths
     "contradictions": 0,  # between `run` and the same energies alone
-    "million_lines_ratio": 3.0,
 }
 SECONDS = 120.0  # of each scene
 SAMPLES = 4000
 SEED = 926421  # drawn after the last change of a rule or level
-LOAD = "import numpy, sys; numpy.loadtxt(sys.argv[1], delimiter=',', skiprows=1)"
+ENDS = np.array([1 << power for power in range(4, 20)] + [3 << 18, 1 << 20])  # of windows, steps
+W0 = math.sqrt(9.81)
 LENGTHS = (300, 1000, 3000, 10_000, 30_000)  # steps
-
-
-def truth_table(share: float) -> dict[str, Any]:
-    """Return which cells of tests/truths.py are judged wrong or not at all, and how late."""
-    wrong = []
-    waits = []
-    undecided = 0
-    for method, start, z, truth in list(truths())[:: round(1 / share)]:
-        scene = scene_at(start, z)
-        course = verdicts(method, scene, compiled, watch(scene))
-        if not course:
-            undecided += 1
-        elif not is_true(truth, course):
-            wrong.append((method.key, start, z, truth, course))
-        elif z <= 0.9:
-            waits.append(course[0][2])
-    return {
-        "wrong": len(wrong),
-        "wrong_cells": wrong,
-        "undecided": undecided,
-        "median_wait": float(np.median(waits)),
-    }
 
 
 def random_scene(random: np.random.Generator, max_z: float, cast: Cast) -> Scene:
@@ -63,10 +46,101 @@ def random_scene(random: np.random.Generator, max_z: float, cast: Cast) -> Scene
     return Scene(theta=theta, h=z / Scene().w0, cast=cast)
 
 
+def windows(method: Method, scene: Scene) -> Any:
+    """Return the lowest and the highest energy error in each window, nan after an overflow."""
+    loops = compiled(method, scene.equations)
+    phase = (scene.theta, scene.omega)
+    start = scene.equations.energy()(phase)
+    rows = np.full((len(ENDS), 2), math.nan)
+    for row, (begin, end) in zip(rows, pairwise([0, *ENDS.tolist()]), strict=True):
+        advanced = loops.advance(phase, scene.h, end - begin, 1e280 * start)
+        if advanced.done < end - begin:
+            break
+        row[:] = advanced.low, advanced.high
+        phase = advanced.phase
+    return (rows - start) / start
+
+
+@cache
+def stretched(method: Method) -> Any:
+    """Return a loop that finds by what logarithm neighbours have parted at the end of each window.
+
+    The neighbour is the imaginary part of the phase.
+    """
+    import numba  # which the tests of verdicts need not load
+
+    phases = numba.njit(compilable(method.phases))
+
+    @numba.njit
+    def force(theta):  # type: ignore[no-untyped-def]
+        return -9.81 * cmath.sin(theta)
+
+    @numba.njit
+    def step(theta, omega, h):  # type: ignore[no-untyped-def]
+        for phase in phases(force, (theta, omega), h):
+            return phase
+        return theta, omega
+
+    @numba.njit(nogil=True)
+    def run(theta, omega, h, ends):  # type: ignore[no-untyped-def]
+        theta = complex(theta, 1e-100)
+        omega = complex(omega, 0.0)
+        logarithm = 0.0
+        found = []
+        done = 0
+        for end in ends:
+            for n in range(done, end):
+                theta, omega = step(theta, omega, h)
+                if n % 8 == 7:
+                    length = math.hypot(theta.imag, omega.imag / W0) * 1e100
+                    theta = complex(theta.real, theta.imag / length)
+                    omega = complex(omega.real, omega.imag / length)
+                    logarithm += math.log(length)
+            found.append(logarithm)
+            done = end
+        return found
+
+    return run
+
+
+def letter(method: Method, scene: Scene) -> str:
+    """Return the letter of a run, a key of tests.truths.ALLOWED."""
+    if not method.symplectic:
+        return course(scene.z, *windows(method, scene).T)
+    found = stretched(method)(scene.theta, scene.omega, scene.h, ENDS)
+    if found[-1] < 16:  # neighbours part in proportion to time: ln 10⁶ = 14
+        return "b"
+    return "s" if found[-1] < 40 or found[ENDS.searchsorted(8192)] < 20 else "c"
+
+
+def course(z: float, low: Any, high: Any) -> str:
+    """Return the letter of the lowest and highest energy errors."""
+    if not np.isfinite(high).all():
+        return "g"
+    thrown = z > 1.5  # then the orbits of explicit Euler jump by many turns
+    middle = (low + high) / 2
+    width = max(high[16:].max() - low[16:].min(), 1e-13)
+    if np.abs(middle).max() < 1e-10:
+        return "B"
+    if middle[17] < -1 + 1e-6:
+        return "d"
+    late = slice(14 if thrown else 16, 18)
+    ends = np.ptp(low[late]), np.ptp(high[late]), abs(middle[17] - middle[15]) / 2
+    if max(ends) < 0.1 * width + 0.01 * abs(middle[17]):
+        # a ragged edge may miss the start for a whole window, and come back
+        return "K" if low[late].min() <= 0 <= high[late].max() else "k"
+    if thrown:
+        return "w"
+    moves = np.diff(middle[8:])
+    if (moves > 0).all() and low[17] > high[13]:
+        return "g"
+    if (moves < 0).all():
+        return "d"
+    return "w" if np.ptp(middle[8:]) > np.median((high - low)[8:]) / 4 else "B"
+
+
 def runs(share: float) -> dict[str, Any]:
     """Return what becomes of random runs of methods that are not symplectic, at five lengths."""
-    from tests.bench.truths import letter  # Numba
-
     random = np.random.default_rng(SEED)
     cast = [method for method in GENERAL if not method.symplectic]
     wrong = []
@@ -141,31 +215,27 @@ def exclude(of_run: Judgement, alone: Judgement) -> bool:
     return abs(of_run.slope) > alone.bound + 3 * of_run.uncertainty
 
 
-def million_lines_ratio() -> float:
-    """Return the time of `judge` for 10⁶ lines over that of NumPy to read them."""
-    energies = 1 + 1e-3 * np.random.default_rng(3).standard_normal(10**6)
-    with TemporaryDirectory() as folder:
-        file = Path(folder) / "energies.csv"
-        table = np.column_stack([np.arange(10**6) * 0.01, energies])
-        np.savetxt(file, table, delimiter=",", header="t,total", comments="")
-        judge = [*PENDU, "judge", file, "--time", "t", "--energy", "total"]
-        load = [sys.executable, "-c", LOAD, file]
-        return round(processor_seconds(judge) / processor_seconds(load), 2)
-
-
-def processor_seconds(command: list[Any]) -> float:
-    """Run a command."""
-    before = os.times()[2:4]
-    subprocess.run(command, check=True, capture_output=True)
-    return sum(os.times()[2:4]) - sum(before)
-
-
 def measure(share: float) -> dict[str, Any]:
     contradicting = list(contradictions(share))
     return {
-        **truth_table(share),
         **runs(share),
         "contradictions": len(contradicting),
         "contradicting": contradicting,
-        "million_lines_ratio": million_lines_ratio(),
     }
+
+
+def main() -> None:
+    """Run the grid and write the file, a line for each method and start."""
+    lines = []
+    with ThreadPoolExecutor() as executor:
+        for method in USUAL_CAST:
+            for start in STARTS:
+                scenes = [scene_at(start, z) for z in Z]
+                letters = executor.map(letter, [method] * len(Z), scenes)
+                lines.append(f"{method.key} {start} {''.join(letters)}\n")
+                print(lines[-1], end="")
+    FILE.write_text("".join(lines))
+
+
+if __name__ == "__main__":
+    main()

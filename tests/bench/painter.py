@@ -81,11 +81,11 @@ class Painting(Widget):
 
 
 class Painter(App[None]):
-    """Shows the film again and again; r rewinds it."""
+    """Shows the film again and again."""
 
     ALLOW_SELECT = False
     CSS = "Screen { overflow: hidden; }"
-    BINDINGS: ClassVar[Any] = [("r", "rewind"), ("q", "quit")]
+    BINDINGS: ClassVar[Any] = [("q", "quit")]
 
     def __init__(self, panes: list[Pane]) -> None:
         super().__init__()
@@ -108,9 +108,6 @@ class Painter(App[None]):
         self._shown = (self._shown + 1) % self._frames
         for painting in self._paintings:
             painting.show(self._shown)
-
-    def action_rewind(self) -> None:
-        self._shown = -1
 
 
 class Empty(App[None]):

@@ -69,11 +69,6 @@ def largest_error(theta: Any) -> float:
     return float(np.max(np.abs(np.asarray(theta)[-len(EXACT) :] - EXACT)))
 
 
-def closed_form_solvers() -> Iterator[Solver]:
-    """The exact motion itself, in Python: the floor."""
-    yield Solver("closed form", lambda _: (partial(MOTION.at, END), float), range(FINER + 1))
-
-
 def method_solvers() -> Iterator[Solver]:
     """The lab's methods, compiled."""
     for method in OURS:
@@ -167,7 +162,7 @@ def heyoka_solvers() -> Iterator[Solver]:
 
 
 SOLVERS = {
-    "engine": (closed_form_solvers, method_solvers),
+    "engine": (method_solvers,),
     "heyoka": (heyoka_solvers,),
     "diffrax": (diffrax_solvers,),
     "scipy": (scipy_solvers,),
@@ -235,7 +230,7 @@ def measure(share: float) -> dict[str, Any]:
     ratios = {}
     for target in map("{:g}".format, TARGETS):
         first = {True: math.inf, False: math.inf}
-        for name in table.keys() - {"closed form"}:
+        for name in table:
             first[name in ours] = min(first[name in ours], table[name].get(target, math.inf))
         ratios[target] = round(first[True] / first[False], 2)
     return {

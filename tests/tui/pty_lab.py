@@ -22,24 +22,21 @@ except ImportError:
     pty = None
 
 SIZES = ("COLUMNS", "LINES")
-PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
 
 
 class PtyLab:
-    """A running `pendu-tui` with its terminal, perhaps on a line of `rate` bytes a second."""
+    """A running `pendu-tui` with its terminal."""
 
     def __init__(
         self,
         *arguments: str,
         size: tuple[int, int] = (120, 40),
-        rate: float | None = None,
         program: Sequence[str] = PENDU,
         folder: Path = ROOT,
         **environment: str,
     ) -> None:
         if pty is None:
             pytest.skip("needs a pseudo-terminal")
-        self.rate = rate
         columns, rows = size
         self.began = time.monotonic()
         self.pid, self.terminal = pty.fork()
@@ -55,7 +52,6 @@ class PtyLab:
             # not os.environ: readline gives this process COLUMNS and LINES behind its back
             kept = {name: os.environ[name] for name in os.environ if name not in SIZES}
             os.execvpe(program[0], [*program, *arguments], kept | terminal | environment)
-        self._arrival = 0.0  # s since the start, of the last packet
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []  # s since the start, bytes
         self.code: int | None = None
@@ -79,13 +75,10 @@ class PtyLab:
         if not ready:
             return b""
         try:
-            piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET)
+            piece = os.read(self.terminal, 1 << 16)
         except OSError:  # Linux: the other end is closed
             time.sleep(0.01)
             return b""
-        if self.rate is not None:
-            self._arrival = max(self.now, self._arrival) + len(piece) / self.rate
-            time.sleep(max(0.0, self._arrival - self.now))
         self.output += piece
         self.reads.append((self.now, len(piece)))
         return piece
