@@ -6,6 +6,12 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
+from textual import _wait
+
+# Textual's pilot waits until the processor was idle for so long; tests of keys would take twice as
+# long with its 20 ms.
+_wait.SLEEP_GRANULARITY = 0.004  # s
+_wait.SLEEP_IDLE = _wait.SLEEP_GRANULARITY / 20
 
 SNAPSHOTS = Path(__file__).parent / "snapshots"
 

@@ -133,7 +133,9 @@ class Theatre:
         await self.pilot.pause()
 
     async def press(self, *keys: str) -> None:
-        await self.pilot.press(*keys)
+        for key in keys:
+            await self.pilot.press(key)
+            await self.pilot.pause()
 
     def text(self, widget: type[CellWidget] | str) -> str:
         """Return the text of the first such widget on the screen."""
@@ -152,7 +154,8 @@ def key_of(view: str) -> str:
 async def on_stage(make_stage: Any, size: tuple[int, int]) -> AsyncIterator[Theatre]:
     theatre = Theatre(make_stage)
     async with theatre.app.run_test(size=size) as theatre.pilot:
-        await theatre.pilot.pause()
+        for _ in range(2):  # the second begins after the first paint
+            await theatre.pilot.pause()
         theatre.source.tick(0.0)
         yield theatre
         theatre.app.finish()
