@@ -23,7 +23,6 @@ from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
 
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
-MAX_SUMMARY = 1 << 26  # bytes; enough for four days
 MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]
@@ -108,7 +107,7 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
     stream.seek(max(0, size - _FOOTER.size))
     try:
         opcode, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
-        if (opcode, magic) != (Opcode.FOOTER, MAGIC) or size - start > MAX_SUMMARY:
+        if (opcode, magic) != (Opcode.FOOTER, MAGIC):
             return None
         stream.seek(start - 4)
         data = stream.read()

@@ -6,7 +6,6 @@ import struct
 import zlib
 from contextlib import suppress
 from dataclasses import replace
-from unittest.mock import Mock
 
 import pytest
 
@@ -14,7 +13,7 @@ from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.scenes import MAX_METHODS
 from pendu_tui.recordings import reader, recording
 from pendu_tui.recordings.events import Entry, Event, simulate
-from pendu_tui.recordings.files import MAGIC, RecordingError
+from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
@@ -58,15 +57,12 @@ def limits(path):
     return {
         "MAX_RECORD": max(head[4] for head in heads),
         "MAX_EXPANSION": max(-(-head[4] // (head[1] + 128)) for head in heads),
-        "MAX_SUMMARY": len(data) - FOOTER.unpack(data[-FOOTER.size :])[2],
         "MAX_TIME": max(head[3] for head in heads),
         "MAX_EVENTS": 10,  # that they are, with the stop
     }
 
 
-@pytest.mark.parametrize(
-    "name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_SUMMARY", "MAX_TIME", "MAX_EVENTS"]
-)
+@pytest.mark.parametrize("name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_TIME", "MAX_EVENTS"])
 def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
     limit = limits(path)[name]
     module = recording if name == "MAX_EVENTS" else reader
@@ -83,14 +79,6 @@ def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none(right, wron
     assert reader._head_at(hostile.false_head(right), 0)
     with pytest.raises(ValueError, match=r"^$"):
         reader._head_at(hostile.false_head(wrong), 0)
-
-
-@pytest.mark.parametrize(("more", "reads"), [(0, 2), (1, 1)])
-def test_a_summary_of_more_than_64_mib_is_not_read(more, reads):
-    footer = FOOTER.pack(2, 20, 1000, 0, 0, MAGIC)
-    stream = Mock(read=Mock(side_effect=[footer, b""]))
-    assert reader._read_summary(stream, 1000 + (1 << 26) + more) is None
-    assert stream.read.call_count == reads
 
 
 @pytest.mark.parametrize(

@@ -162,6 +162,7 @@ def test_of_a_long_past_the_last_minute_is_read_whole_and_seconds_before(tmp_pat
         list(simulate(DEFAULT_SCENE, 140.0, recorder.add, sample_every=2))
     replay = Table(path).replay
     replay.seek(140.0)
+    assert len(replay.history.trails()) == 11  # at once, a second
     assert replay.fill()
     t = replay.history.window().t
     before = t[t < 79.9]
