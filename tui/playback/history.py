@@ -200,13 +200,12 @@ class History:
 
     def thetas(self, length: int) -> list[Sequence[float]]:
         """Return the last angles [rad] of each method, oldest first; needs no NumPy at first."""
-        now = [reading.theta for reading in self.sample.readings]
         if self._rows is not None:
-            before = self._filled.thetas_before(self.step, length - 1)
+            states = self.trails(length).tolist()
         else:
-            waiting = [row.states[:-1] for row in self._waiting if row.step < self.step]
-            before = [[theta for theta, _ in states] for states in waiting[1 - length :]]
-        return [*zip(*before, now, strict=True)]
+            states = [row.states for row in self._waiting if row.step < self.step]
+            states = [*states, self._current.states][-length:]
+        return [*zip(*([theta for theta, _ in each[:-1]] for each in states), strict=True)]
 
     def ghost(self) -> "Ghost":
         """Return this run to lay under another one."""

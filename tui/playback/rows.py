@@ -106,12 +106,6 @@ class Rows:
         wide = _up_to(current[0], self._wide)
         return np.concatenate([wide, self.recent_until(current)])
 
-    def thetas_before(self, step: int, most: int) -> list[list[float]]:
-        """Return the methods' angles [rad] in the last rows before a step, at most so many."""
-        rows = _up_to(step - 1, self._recent[: self._count])[-most:]
-        angles: list[list[float]] = rows["states"][:, :-1, 0].tolist()
-        return angles
-
     def recent_until(self, current: tuple[Any, ...], most: int | None = None) -> Records:
         """Return the last rows, perhaps `most`, and the current sample if it is none of them."""
         step = current[0]
