@@ -251,4 +251,4 @@ class LiveRecorder(Recorder):
             self._lock.release()
 
     def _fail(self, error: DiskError) -> None:
-        self.failed = printable(str(error), 500)
+        self.failed = printable(str(error))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Shot
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Line, Shot
 from pendu_tui.tui.playback.shown import Shown, Stretch, quantities
 
 CAST = DEFAULT_SCENE.cast
@@ -16,10 +16,13 @@ def test_fast_scenes_are_charted_over_logarithmic_time(speed, is_log):
 
 
 def test_a_shot_sets_what_is_seen_and_is_found_in_it_again():
-    shot = Shot(front=(CAST[1].key, CAST[3].key), quantity="theta_error", log=False, seconds=7.0)
+    seen = {"theta": 0.1, "quantity": "theta_error", "log": False, "seconds": 7.0, "ring": True}
+    shot = Shot(front=(CAST[1].key, CAST[3].key), line=Line("omega", 1.0, "omega"), **seen)
     shown = Shown(overview=True, stretch=Stretch(1, 0.0, 1.0, False)).through(DEFAULT_SCENE, shot)
     assert (shown.places(CAST), shown.overview, shown.stretch) == ([1, 3], False, None)
-    assert shown.shot(replace(DEFAULT_SCENE, shot=shot), shot.view, equal_cost=False) == shot
+    assert shown._asdict().items() >= seen.items()
+    again = shown.shot(replace(DEFAULT_SCENE, shot=shot), "phase", equal_cost=True)
+    assert again == replace(shot, view="phase", equal_cost=True)
 
 
 def test_windows_axes_and_quantities_come_in_turn():
