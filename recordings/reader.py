@@ -35,7 +35,6 @@ _CHUNK = struct.Struct(
 _ZSTD = b"\x04\x00\x00\x00zstd"
 _BEFORE_ZSTD = 37  # bytes of a chunk's record
 _MAX_HEAD = _CHUNK.size + 18  # with the largest head of a zstd frame
-_BLOCK = 1 << 16
 
 
 class Group(NamedTuple):
@@ -87,12 +86,12 @@ def read_contents(stream: BinaryIO, check: bool = False) -> Contents:
     size = stream.seek(0, SEEK_END)
     summary = _read_summary(stream, size)
     if summary is None:
-        contents = _search(stream, size, {})
+        contents = _search(stream, {})
         contents.reason = contents.reason or "its end is missing or damaged"
     else:
         contents, data_end, crc = summary
         if check and _checksum(stream, data_end) != crc:
-            contents = _search(stream, size, contents.topics)
+            contents = _search(stream, contents.topics)
             contents.damage("its checksum is wrong")
     if EVENTS not in contents.topics.values() and not contents.reason:
         raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
@@ -220,16 +219,18 @@ def _channel(data: bytes) -> Channel:
     return channel
 
 
-def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
+def _search(stream: BinaryIO, topics: dict[int, str]) -> Contents:
     """Find the intact chunks of a file, and by their sequence numbers what is lost between them."""
     contents = Contents(topics)
     sequence = 0  # of the next entry
-    for offset, channels, groups in _intact_chunks(stream, size):
+    stream.seek(0)
+    data = stream.read()
+    for offset, channels, groups in _intact_chunks(data):
         for channel in channels:
             contents.add(channel)
         first = groups[0]
         last = groups[-1]
-        missing = (first.sequence - sequence) % (1 << 32)
+        missing = first.sequence - sequence
         sequence = last.sequence + 1
         if missing:
             contents.entries_lost += missing
@@ -238,37 +239,32 @@ def _search(stream: BinaryIO, size: int, topics: dict[int, str]) -> Contents:
         has_events = any(contents.topics.get(number) == EVENTS for number in used)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)
-    stream.seek(0)
-    start = stream.read(len(MAGIC))
+    start = data[: len(MAGIC)]
     if start != MAGIC[: len(start)]:
         contents.damage("its first bytes are not those of an MCAP file")
     return contents
 
 
-def _intact_chunks(stream: BinaryIO, size: int) -> Iterator[tuple[int, list[Channel], list[Group]]]:
-    """Yield offset, channels and messages of each intact chunk.
+def _intact_chunks(data: bytes) -> Iterator[tuple[int, list[Channel], list[Group]]]:
+    """Yield offset, channels and messages of each intact chunk in the bytes of a file.
 
-    It ends early when as many bytes as the file has were read for chunks that are not intact.
+    It ends early when as many bytes as there are were read for chunks that are not intact.
     """
+    stream = BytesIO(data)
     in_vain = 0
-    begin = 0  # of the next block
-    while begin < size and in_vain <= size:
-        stream.seek(begin)
-        block = stream.read(_BLOCK)
-        following = begin + _BLOCK - _MAX_HEAD  # a head is whole in one of two blocks
-        at = -1
-        while (at := block.find(_ZSTD, at + 1 + _BEFORE_ZSTD) - _BEFORE_ZSTD) >= 0:
-            packed = 0
-            try:
-                packed, _ = _head_at(block, at)
-                channels, groups = read_chunk(stream, begin + at)
-            except (ValueError, struct.error, zstandard.ZstdError, RecordingError):
-                in_vain += packed
-                continue
-            yield begin + at, channels, groups
-            following = begin + at + _CHUNK.size + packed
-            break
-        begin = following
+    at = 0
+    while in_vain <= len(data) and (found := data.find(_ZSTD, at + _BEFORE_ZSTD)) >= 0:
+        at = found - _BEFORE_ZSTD
+        packed = 0
+        try:
+            packed, _ = _head_at(data, at)
+            channels, groups = read_chunk(stream, at)
+        except (ValueError, struct.error, zstandard.ZstdError, RecordingError):
+            in_vain += packed
+            at += 1
+        else:
+            yield at, channels, groups
+            at += _CHUNK.size + packed
 
 
 def _checksum(stream: BinaryIO, size: int) -> int:

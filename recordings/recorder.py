@@ -195,11 +195,10 @@ class Recorder:
         self.seconds = clock
         # that of a headless run is the same when it is recorded again
         publish_time = time.time_ns() if self.is_live else log_time
-        number = self._entries % (1 << 32)
         with writing(self.path):
             for topic, data in messages:
                 channel = self._channels[topic]
-                self._writer.add_message(channel, log_time, data, publish_time, number)
+                self._writer.add_message(channel, log_time, data, publish_time, self._entries)
                 self._unflushed += len(data)
         self._entries += 1
         if self._unflushed > MAX_CHUNK:
