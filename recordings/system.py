@@ -67,16 +67,12 @@ def rename(source: Path, target: Path) -> None:
     else:
         try:
             os.link(source, target)
-        except OSError:  # the file system has no links
-            import shutil
-
-            with source.open("rb") as old, target.open("xb") as new:
-                try:
-                    shutil.copyfileobj(old, new)
-                except OSError:  # half a file under a final name would look whole
-                    target.unlink()
-                    raise
-        source.unlink()
+        except OSError:  # perhaps the file system has no links
+            if os.path.lexists(target):
+                raise FileExistsError from None
+            source.rename(target)
+        else:
+            source.unlink()
 
 
 def is_reserved(name: str) -> bool:

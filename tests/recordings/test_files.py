@@ -113,19 +113,6 @@ def test_a_name_is_given_once_also_without_links(tmp_path, monkeypatch):
         assert (tmp_path / "a").read_text() == "first"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="it renames without links")
-def test_without_links_a_full_disk_leaves_no_half_file(tmp_path, monkeypatch):
-    def no_space(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "link", no_space)
-    monkeypatch.setattr("shutil.copyfileobj", no_space)
-    (tmp_path / "a.part").write_text("whole")
-    with pytest.raises(OSError, match="No space"):
-        system.rename(tmp_path / "a.part", tmp_path / "a")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.part"]
-
-
 def test_an_error_of_the_disk_or_in_a_file_names_the_file_first(tmp_path):
     with pytest.raises(DiskError) as failed, files.writing(tmp_path):
         raise OSError(errno.ENOSPC, "No space left on device")
