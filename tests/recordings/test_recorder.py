@@ -84,6 +84,7 @@ def test_a_recording_is_valid_to_mcaps_readers_which_find_a_time_through_the_ind
 def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_written_twice(
     recorder, monkeypatch
 ):
+    assert last_on_disk(recorder).step == 0  # the start at once
     with pytest.raises(ValueError, match="NaN"):
         recorder.add(stepped(1), float("nan"))
     with pytest.raises(ValueError, match="inf"):
