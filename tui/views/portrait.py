@@ -115,12 +115,9 @@ def phase_picture(
         draw_crosshair(canvas, viewport, crosshair)
     if orbit is not None:
         canvas.scatter(*portrait.orbit(*orbit), EXACT)
-    trailing = [point for point in points if len(point.trail[0])]
-    if trailing:
-        theta, omega = np.stack([point.trail for point in trailing], axis=-1)
-        thick = BLOCK if len(theta) <= SPARSE else BLOCK[:1]
-        draw_dots(canvas, viewport, (theta, omega), thick, *(faint(each.ink) for each in trailing))
     for point in points:
+        thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
+        draw_dots(canvas, viewport, point.trail, thick, faint(point.ink))
         if point.chords:
             joined = [each[-point.chords :] for each in point.trail]
             canvas.path(*on_screen(viewport, *joined), faint(point.ink))
@@ -133,12 +130,12 @@ def phase_picture(
 
 
 def draw_dots(
-    canvas: Canvas, viewport: Viewport, points: Points, dots: Sequence[tuple[int, int]], *inks: int
+    canvas: Canvas, viewport: Viewport, points: Points, dots: Sequence[tuple[int, int]], ink: int
 ) -> None:
     x = viewport.x(points[0])
     y = viewport.y(points[1])
     for right, down in dots:
-        canvas.scatter(x + right, y + down, *inks)
+        canvas.scatter(x + right, y + down, ink)
 
 
 def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
@@ -303,7 +300,7 @@ def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return each dot's energy band: even steps of amplitude, above the separatrix of omega."""
     inside = np.arcsin(np.sqrt(np.clip(levels, 0, 1)))
     spacing = np.where(levels > 0, inside, -np.sqrt(np.maximum(-levels, 0)))
-    step = nice(float(np.ptp(spacing)) / 8 or 1.0)  # about eight curves
+    step = nice(float(np.ptp(spacing)) / 8)  # about eight curves
     return np.floor(spacing / step).astype(np.int64)
 
 
