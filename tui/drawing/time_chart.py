@@ -87,9 +87,7 @@ class _Run(NamedTuple):
     """The quantity of some methods of a run, or of a ghost."""
 
     window: Window
-    places: list[int]  # in the cast
     inks: list[int]
-    cast: Cast
     low: Floats  # (rows, methods)
     high: Floats
 
@@ -147,10 +145,12 @@ def time_chart(
     low, high = sides[0]
     if shown.log:
         plot.draw_crossings(high, times, window.repeats)
-    plot.name_lines(plot.ends(runs[0], low, high, names))
+    places = shown.places(cast)
+    labels = [(cast[place].letter, names[place] if names else "") for place in places]
+    plot.name_lines(plot.ends(runs[0], low, high, labels))
     return TimePlot(
         Picture(plot.picture()),
-        places=shown.places(cast),
+        places=places,
         left=plot.left,
         times=times.tolist(),
         values=values,
@@ -188,16 +188,16 @@ def _runs(
     window: Window, cast: Cast, shown: Shown, ghost: tuple[Window, Cast] | None
 ) -> list[_Run]:
 
-    def run(window: Window, cast: Cast, keys: set[str]) -> _Run:
+    def run(window: Window, cast: Cast) -> _Run:
         places = [place for place, method in enumerate(cast) if method.key in keys]
         low = window.low[shown.quantity][:, places]
         high = window.high[shown.quantity][:, places]
-        return _Run(window, places, [inks(cast)[place] for place in places], cast, low, high)
+        return _Run(window, [inks(cast)[place] for place in places], low, high)
 
     keys = {cast[place].key for place in shown.places(cast)}
-    runs = [run(window, cast, keys)]
+    runs = [run(window, cast)]
     if ghost is not None:
-        behind = run(*ghost, keys)
+        behind = run(*ghost)
         runs.append(behind._replace(inks=[faint(ink) for ink in behind.inks]))
     return runs
 
@@ -247,21 +247,21 @@ class _Plot(LineChart):
         for column, value in _crossings(high / row, times, repeats):
             self.canvas.label(column, self.row(value * row), CROSSING, TEXT)
 
-    def ends(self, run: _Run, low: Floats, high: Floats, names: Sequence[str]) -> Iterator[End]:
+    def ends(
+        self, run: _Run, low: Floats, high: Floats, labels: Sequence[tuple[str, str]]
+    ) -> Iterator[End]:
         """Yield the ends of curves; where one has left the chart, write its value instead."""
         beyond = self._beyond(low, high)
         rows = self.rows - np.stack([self.up(high), self.up(low)])
-        for place, ink in enumerate(run.inks):
+        for place, (ink, (letter, name)) in enumerate(zip(run.inks, labels, strict=True)):
             known = np.flatnonzero(~np.isnan(high[:, place]))
             if not len(known):
                 continue
             at = int(known[-1])
-            letter = run.cast[run.places[place]].letter
             if beyond[at, place]:
                 value = max(run.high[-1, place], run.low[-1, place], key=abs)
                 self._write_value(at + 1, letter, value, ink)
                 continue
-            name = names[run.places[place]] if names else ""
             row = float(rows[:, at, place].mean()) - 0.5
             yield End(at + 1, row, ink, letter, name, rows[:, :, place])
 
