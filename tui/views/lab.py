@@ -184,12 +184,12 @@ class TimeChart(Pane):
             self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
 
 
-SMALL = (22, 38)  # columns of the stage and of the chart on the smallest screen
+SMALL = 22  # columns of the stage on the smallest screen
 
 
 def places(columns: int, rows: int) -> dict[str, Region]:
     """Return the regions of the panes: the stage and events left, charts and phase space right."""
-    side = min(max(columns * 3 // 8, SMALL[0]), columns)
+    side = max(columns * 3 // 8, SMALL)
     events = 0
     if rows >= 20:  # room for phase space below the chart, too
         events = max(5, -(-rows // 5))
@@ -203,8 +203,6 @@ def places(columns: int, rows: int) -> dict[str, Region]:
         stack.append("second_chart")
     if events:
         stack.append("phase")
-    if side == columns:
-        return regions
     edges = [rows * part // len(stack) for part in range(len(stack) + 1)]
     for name, (top, low) in zip(stack, pairwise(edges), strict=True):
         regions[name] = Region(side, top, columns - side, low - top)

@@ -13,7 +13,7 @@ from pendu_tui.tui.views.lab import places
 from pendu_tui.tui.views.view import Pane
 
 
-@given(st.integers(1, 400), st.integers(1, 150))
+@given(st.integers(60, 400), st.integers(4, 150))
 def test_panes_cover_the_view_and_never_each_other(columns, rows):
     regions = places(columns, rows).values()
     assert sum(region.area for region in regions) == columns * rows
