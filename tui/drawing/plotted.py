@@ -102,8 +102,7 @@ def loglog_chart(
                 canvas.label(column, row, one.mark, one.ink)
         elif cells:
             column, row = cells[-1]
-            rows = [at for at in (row, row - 1, row + 1) if 0 <= at < axes.rows]
-            near = [(column + right, at) for at in rows for right in range(1, -8, -1)]
+            near = [(column + right, at) for at in (row, row - 1, row + 1) for right in (1, -1)]
             if not canvas.label_where_blank(near, f" {one.mark}", QUIET):
                 canvas.label(column, row, one.mark, QUIET)
     above = y_label[:width].ljust(width)
