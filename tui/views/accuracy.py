@@ -39,6 +39,7 @@ ERROR_LABELS: dict[ErrorKind, str] = {
     "energy": "energy error, the largest of all steps, relative",
     "final": "theta error at the end [rad]",
 }
+CHART_ROWS = 9  # which leave the words of a small screen two
 BESIDE = 0.2  # the dotted line of an order runs at this share of the errors
 
 
@@ -228,12 +229,8 @@ class AccuracyPane(Chooser[Point]):
         return Picture([*chart.rows, *words])
 
     def _charted(self, room: Size, *_: object) -> tuple[Picture, Placed]:
-        words = 2
-        if room.height < MIN_ROWS + 2:
-            words = 0
-        elif room.height >= 15:
-            words = 6 if self.all else 4  # `all` adds the letters of all methods
-        size = room.width, max(room.height - words, 1)
+        words = 6 if self.all else 4  # `all` adds the letters of all methods
+        size = room.width, max(room.height - words, min(room.height, CHART_ROWS))
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
         marks = [("@", point) for place in self.places if (point := self.present(place))]
         if self.cursor is not None:

@@ -3,6 +3,7 @@
 from contextlib import asynccontextmanager
 
 import pytest
+from textual.geometry import Size
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
@@ -118,6 +119,8 @@ async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
         assert pane.cast[:4] == USUAL_CAST
         assert {*pane.cast} == {*GENERAL}
         assert all(letter in pane.text for letter in "fbm")
+        charts = [pane._charted(Size(60, rows))[0] for rows in (8, 11, 14, 30)]
+        assert [len(chart.rows) for chart in charts] == [8, 9, 9, 24]
         await pilot.press(*["tab"] * 3, "left")
         assert pane.cast[pane.index] not in USUAL_CAST
         await pilot.press("enter", "asterisk")
