@@ -145,7 +145,7 @@ class Canvas:
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of the one at (x, y); `hollow`: only the rim."""
-        if -radius < x < self.width + radius and -radius < y < self.height + radius:
+        if isfinite(x) and isfinite(y):
             layer = self._layer(ink)
             column, right = divmod(floor(x), 2)
             row, down = divmod(floor(y), 4)
@@ -168,18 +168,17 @@ class Canvas:
                 if 0 <= at < self.columns:
                     self._letters[row * self.columns + at] = character, ink
 
-    def is_free(self, column: int, row: int) -> bool:
-        """Return whether a cell is on the canvas and has no letter yet."""
-        inside = 0 <= column < self.columns and 0 <= row < self.rows
-        return inside and row * self.columns + column not in self._letters
+    def is_free(self, column: int, row: int, columns: int = 1) -> bool:
+        """Return whether some cells of a row are on the canvas and have no letter yet."""
+        first = row * self.columns + column
+        inside = 0 <= column <= self.columns - columns and 0 <= row < self.rows
+        return inside and self._letters.keys().isdisjoint(range(first, first + columns))
 
     def label_where_blank(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> bool:
         """Write text at the first of these cells where it covers nothing, if any."""
         for column, row in places:
-            first = row * self.columns + column
-            is_free = all(self.is_free(column + at, row) for at in range(len(text)))
-            end = first + len(text)
-            if is_free and not any(any(layer[first:end]) for layer in self._layers.values()):
+            where = column, row, len(text)
+            if self.is_free(*where) and not self.inks_at(*where):
                 self.label(column, row, text, ink)
                 return True
         return False
@@ -333,7 +332,7 @@ def _disc(radius: float, hollow: bool, right: int, down: int) -> list[tuple[int,
     """
     cells: dict[tuple[int, int], int] = {}
     least = 0.0
-    if hollow and radius > 1:
+    if hollow:
         least = (radius - 1) ** 2
     for i, j in product(range(-floor(radius), floor(radius) + 1), repeat=2):
         if least <= i * i + j * j < radius * radius:

@@ -253,9 +253,9 @@ def place_text(model: Model, state: State, width: int) -> str:
 def _write_words(canvas: Canvas, words: Sequence[Word]) -> None:
     """Write words where they cover no point, letter, ring or orbit; trails show between them."""
     for column, row, text in words:
-        below = canvas.inks_at(column, row, len(text))
-        is_free = all(canvas.is_free(at, row) for at in range(column, column + len(text)))
-        if not is_free or any(EXACT <= each < FAINT for each in below):
+        where = column, row, len(text)
+        is_free = canvas.is_free(*where)
+        if not is_free or any(EXACT <= each < FAINT for each in canvas.inks_at(*where)):
             continue
         for at, character in enumerate(text, column):
             if character != " " or all(each < EXACT for each in canvas.inks_at(at, row)):
