@@ -70,8 +70,8 @@ class CellWidget(Widget):
 
     ALLOW_SELECT = False
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._picture = Picture()
         self._styles = _Styles(self)
         self._lines: list[Strip] = []  # the visible ones, with the border
@@ -108,12 +108,10 @@ class CellWidget(Widget):
     def text(self) -> str:
         return self._picture.text
 
-    def refresh(
-        self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False
-    ) -> Self:
+    def refresh(self, *regions: Region, **options: bool) -> Self:
         if not regions:
             self._crop = None
-        return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
+        return super().refresh(*regions, **options)
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the visible lines; the style sheet is only consulted for the border."""
