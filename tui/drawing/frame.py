@@ -44,7 +44,7 @@ def nice(value: float) -> float:
 
 
 _DECADES = sorted(
-    {Fraction(n, d) for n in range(1, 6) for d in range(1, 17)} | {*map(Fraction, (6, 12, 50, 500))}
+    {Fraction(n, d) for n in range(1, 6) for d in range(1, 17)} | {*map(Fraction, (12, 500))}
 )
 """How many decades a row of characters may span."""
 _STEPS = [(float(each), each.numerator * (1 + (each.denominator == 1))) for each in _DECADES]

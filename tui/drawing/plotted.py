@@ -102,7 +102,8 @@ def loglog_chart(
                 canvas.label(column, row, one.mark, one.ink)
         elif cells:
             column, row = cells[-1]
-            near = [(column + right, at) for at in (row, row - 1, row + 1) for right in (1, -1)]
+            beside = range(column + 1, column - 8, -1)
+            near = [(at, down) for down in (row, row - 1, row + 1) for at in beside]
             if not canvas.label_where_blank(near, f" {one.mark}", QUIET):
                 canvas.label(column, row, one.mark, QUIET)
     above = y_label[:width].ljust(width)
@@ -185,9 +186,7 @@ def record_chart(
 
 
 def _spans(times: Floats, errors: Floats, count: int) -> tuple[Floats, Floats]:
-    """Return the points, or the lowest and the highest of each of `count` parts, in turn."""
-    if len(times) <= DOTS * count:
-        return times, errors
+    """Return the lowest and the highest of each of `count` parts, in turn."""
     first = np.arange(count) * len(times) // count
     low = np.minimum.reduceat(errors, first)
     high = np.maximum.reduceat(errors, first)

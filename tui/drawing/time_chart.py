@@ -348,7 +348,7 @@ def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
     known = [each for each in known if len(each)]
     if not known:
         return log_axis(-4, 0, rows)
-    top = limit if (curves > limit).any() else max(each.max() for each in known)
+    top = min(float(np.nanmax(curves)), limit)
     bottom = min(np.sort(each)[len(each) // 40] for each in known)
     return log_axis(float(bottom), float(max([top, *levels.values()])), rows)
 

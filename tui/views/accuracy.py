@@ -143,7 +143,7 @@ class AccuracyPane(Chooser[Point]):
         scene = source.scene
         own = source.stepping.own
         self._study(scene.theta, scene.omega, scene.equations, self.cast, self.all)
-        here = [max(1, round(self.time / abs(h))) for h in own]
+        here = [round(self.time / abs(h)) for h in own]
         if here != self.here:
             self.here = here
             known = {*self.steps, *(steps for _, steps in self.points)}

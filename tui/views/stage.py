@@ -89,7 +89,6 @@ def arc(ring: list[Each], begin: float, end: float) -> list[Each]:
     return ring[first : first + 1 + round(min((end - begin) / tau, 1.0) * (count - 1))]
 
 
-@lru_cache(maxsize=8)
 def lanes(columns: int, rows: int, count: int, widest: float, rigid: bool) -> Lanes:
     """Return the largest lanes on which so many bobs swing up to `widest` [rad].
 

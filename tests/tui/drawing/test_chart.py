@@ -54,7 +54,7 @@ def test_charts_as_they_are_stored(snapshot):
     names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     ghost = (window(t, 1.7 * grows), USUAL_CAST)
     changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
-    limit = {"line": Line("energy_error", 0.011, "limit")}
+    limit = {"line": Line("energy_error", 0.4, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
     pictures = [
@@ -74,13 +74,14 @@ def test_charts_as_they_are_stored(snapshot):
         # logarithmic time begins with half a swing, or two to three decades before its end
         *(plot(window(60 * t, grows, repeats=r), 60, 8, log_time=True) for r in (0.9, 500.0)),
         plot(window(t, grows), 59, 8, line=Line("theta_error", 0.011, "of another quantity")),
+        *(plot(window([], []), 40, 6, log=log) for log in (True, False)),
         plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
     ]
     series = [
         Series(0, "e", [1e2, 3e3, 2e4], [2e-1, 3e-2, 4e-4]),
         Series(2, "v", [2e2, np.inf, 1e1], [3e-5, 1, 2e-3]),
         Series(FRAME, "slope 2", [1e1, 1e7], [1e-1, 1e-7], dotted=True),
-        Series(FRAME, "up", [1e1, 1e7], [1e-3, 1e2], dotted=True),
+        Series(FRAME, "up", [1e3, 1e4], [1e-3, 1e-2], dotted=True),
     ]
     texts = [look(each.picture) for each in pictures]
     texts.append(look(loglog_chart([], 40, 9, x_label="cost", y_label="error")))

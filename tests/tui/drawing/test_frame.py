@@ -75,6 +75,7 @@ HOUR = 3600
         (log_axis(-5.3, 1.2, 8).labels, "1e-5 1"),
         (log_axis(-5.3, 1.2, 9).labels, "1e-6 1e-4 1e-2 1"),
         (log_axis(1.0, 4.0, 3).labels, "1 1e3"),
+        (log_axis(-17.0, 6.0, 3).labels, "1e-24 1"),
         (log_x_axis(0.0, 0.0, 40).labels, "1 10"),
         (log_x_axis(-3.2, 1.1, 47).labels, "1e-4 1e-2 1 100"),
         (log_x_axis(-3.2, 1.1, 48).labels, "1e-4 1e-3 1e-2 1e-1 1 10 100"),
