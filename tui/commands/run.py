@@ -7,7 +7,6 @@ from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from functools import partial
-from itertools import pairwise
 from typing import Any
 
 from pendu_tui.engine import quantities
@@ -17,7 +16,7 @@ from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
+from pendu_tui.recordings.events import simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
@@ -99,18 +98,18 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
     """Run to the end or until a signal; return the last sample, or for a figure all of them."""
     scene = lockstep.scene
     recorder: Any = nullcontext()
-    every = MAX_BATCH
+    every: int | None = MAX_BATCH
     if options.method:  # a method of the user's own may be slow, and Ctrl+C waits for a batch
         every = 16
+    is_figure = form_of(options) == "figure"
+    if is_figure:
+        every = math.ceil(steps / MAX_POINTS)
     if options.record:
         from pendu_tui.recordings.recorder import Recorder  # slow to load
 
         recorder = Recorder(options.record, overwrite=options.force)
-        every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
+        every = None  # 1/30 s
     every = options.sample_every or every
-    is_figure = form_of(options) == "figure"
-    if is_figure:
-        every = min(every, math.ceil(steps / MAX_POINTS))
     samples: list[Sample] = []
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(
@@ -131,9 +130,8 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
 def _lines(scene: Scene, samples: Sequence[Sample]) -> Iterator[Line]:
     """Yield the largest energy error of each half swing, or of longer parts of a long run."""
     swing = scene.exact().period or math.tau / scene.w0
-    count = max(1, min(MAX_PARTS, len(samples), round(2 * samples[-1].t / swing)))
-    ends = [len(samples) * part // count for part in range(count + 1)]
-    parts = [samples[begin:end] for begin, end in pairwise(ends)]
+    size = math.ceil(len(samples) / max(1, min(MAX_PARTS, 2 * samples[-1].t / swing)))
+    parts = [samples[begin : begin + size] for begin in range(0, len(samples), size)]
     name = scene.equations.error.name
     for place, method in enumerate(scene.cast):
         errors = [max(abs(getattr(each.readings[place], name)) for each in part) for part in parts]
@@ -179,7 +177,7 @@ def _evaluations(
     """Return the force evaluations; if they vary, count them by repeating a whole run."""
     if reading.diverged_at is not None:
         return method.evaluations(round(reading.diverged_at / scene.h))
-    if method.varies and steps and is_whole:
+    if method.varies and is_whole:
         start = scene.equations.start(scene.theta, scene.omega)
         return loops.count_evaluations(method, scene.equations, start, scene.h, steps)
     return method.evaluations(steps)

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from contextlib import nullcontext
 from unittest.mock import MagicMock
 
 import pytest
@@ -30,6 +31,8 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
         matplotlib.reset_mock()
         assert pendu(*line.split(), "-o", tmp_path / f"a.{suffix}").code == 0
         texts += ["", f"$ {line}", *map(str, matplotlib.mock_calls)]
+    monkeypatch.setattr("pendu_tui.tui.commands.run.stop_requests", lambda: nullcontext(lambda: 1))
+    assert pendu(*RUN, tmp_path / "b.svg").code == 130  # after the first sample
     text = re.sub(r"\w+Path\(.*?\)", "FILE", "\n".join(texts))
     text = re.sub(r"\d+\.\d{6,}(e[-+]\d+)?", lambda found: f"{float(found[0]):.4g}", text)
     snapshot("figures.txt", text + "\n")

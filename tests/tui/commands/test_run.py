@@ -114,6 +114,15 @@ def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
     ]
 
 
+@pytest.mark.parametrize(("options", "steps"), [("--theta 1,2 --h 0.1", 20), ("--length 1,2", 0)])
+def test_the_steps_of_all_runs_of_a_list_decide_whether_to_compile(options, steps, monkeypatch):
+    asked = []
+    made = run.lockstep_of
+    monkeypatch.setattr(run, "lockstep_of", lambda scene, n: asked.append(n) or made(scene, n))
+    assert pendu("run", "--time", 1, *options.split()).code == 0
+    assert asked == [steps, steps]
+
+
 def test_a_worker_has_a_watchdog_of_its_own(monkeypatch):
     begun = []
     monkeypatch.setattr(run, "watchdog", lambda: begun.append("here"))
@@ -132,6 +141,7 @@ def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, 
     older.touch()
     outcome = pendu(*run, "--record", older)
     assert (outcome.code, outcome.out.splitlines()[1][:20]) == (130, "10 steps to t = 2 s ")
+    assert re.search(r"Step doubling .* 80$", outcome.out, re.MULTILINE)  # on average
     assert f"wrote {tmp_path / 'run-2.mcap'}\n" in outcome.err
     assert outcome.err.endswith("interrupted at t = 2 s, showing the results up to then.\n")
     assert pendu(*run, "-o", tmp_path / "new.csv").code == 130
