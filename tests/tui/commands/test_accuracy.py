@@ -6,26 +6,20 @@ from types import SimpleNamespace
 
 import pytest
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.loops import PlainLoops
-from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.studies.accuracy import Study
 from tests.tui.command_line import pendu
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 
 
-def test_json_and_csv_hold_points_with_all_digits_orders_and_a_recommendation(tmp_path):
+def test_all_methods_are_tried_for_a_target_and_points_are_the_same_in_every_process(tmp_path):
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     points = answer["points"]
     assert [point["method"] for point in points] == [m.key for m in USUAL_CAST] * 4
     advice = answer["recommendation"]
     assert (advice["method"], answer["interrupted"]) == ("blanes_moan_4", False)
     assert len(advice["attempts"]) == len(GENERAL)
-    study = Study(SCENES["drift"], 5.0)
-    for row in advice["attempts"][:3]:
-        again = study.run(method_of(row["method"]), round(5.0 / row["h"]), 10_000)
-        assert (again.h, again.z, again.errors["theta"]) == (row["h"], row["z"], row["error"])
     file = tmp_path / "points.csv"
     assert pendu(*QUICK, "-o", file, "--workers", "2").code == 0
     rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))

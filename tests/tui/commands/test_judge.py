@@ -55,7 +55,8 @@ FILES = {
     "units.csv": "Time (ps),E (eV),K\n" + lines("{t},{e},-{n}", [(t, e + t) for t, e in ROWS]),
     "mixed.csv": "t,E [kJ/mol],K [kJ/mole],P [units]\n" + lines("{t},{e},5,{e}"),
     "zero.csv": "t,E\n" + lines("{n},{e}", [(n, (n * 7919) % 13 - 6.5) for n in range(300)]),
-    "spike.csv": "t,E\n" + lines("{n},{e}", [(n, n / 99 if n else 99) for n in range(300)]),
+    "spike.csv": "t,E\n"
+    + lines("{n},{e}", [(n, {0: 16, 9: 6}.get(n, n / 99)) for n in range(300)]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "large.csv": "-0.1,1e305\n" + lines("{t},{e}") + "30,-1.79769e+308\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),

@@ -122,8 +122,6 @@ async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
                 await tab.shows("LIVE")
                 async with session.get(server.address) as page:
                     assert (page.status, "labs are in use" in await page.text()) == (503, True)
-                with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
-                    await session.ws_connect(f"{server.address}/ws")
             await server.until_labs(0)
             async with session.get(server.address) as page:
                 assert page.status == 200
@@ -147,10 +145,7 @@ async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_fl
 
 
 async def test_no_page_is_framed_or_loads_anything_from_elsewhere(server):
-    elsewhere = {"Origin": "http://elsewhere.example"}
     async with aiohttp.ClientSession() as session:
-        with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
-            await session.ws_connect(f"{server.address}/ws", headers=elsewhere)
         for path in ("", "/no-such", "/static/js/textual.js"):
             async with session.get(server.address + path) as page:
                 policy = page.headers["Content-Security-Policy"]
