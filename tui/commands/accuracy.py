@@ -46,7 +46,8 @@ from pendu_tui.tui.drawing.picture import PALETTES, lines_of
 from pendu_tui.tui.views.accuracy import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from pendu_tui.tui.words.studies import COSTS, few, front_words, length
 
-CHART_SIZE = (100, 24)  # columns, unless the terminal has fewer, and rows
+MAX_COLUMNS = 100
+ROWS = 24
 NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread")
 ATTEMPTED = ("h", "z", "steps_per_swing", "force_evaluations")
 
@@ -108,8 +109,12 @@ class Results:
                 "error": self.kind,
                 "points": points,
                 "front": [
-                    {"error": place.target, "method": place.method.key, "cost": place.cost}
-                    | {"saves_over_rk4": place.saves}
+                    {
+                        "error": place.target,
+                        "method": place.method.key,
+                        "cost": place.cost,
+                        "saves_over_rk4": place.saves,
+                    }
                     for place in front(self.points, self.kind, self.cost)
                 ],
                 "recommendation": self._advice_fields() if self.attempts else None,
@@ -154,21 +159,22 @@ class Results:
         return columns
 
     def _cell(self, point: Point) -> str:
-        text = f"{point.errors[self.kind]:.1e}{_seconds(point)}"
-        flaw = point.flaws[self.kind]
-        return f"{MARKS[flaw]} {text}" if flaw else text
+        text = f"{point.errors[self.kind]:.1e}"
+        if flaw := point.flaws[self.kind]:
+            text = f"{MARKS[flaw]} {text}"
+        if point.seconds is not None:
+            text += f" in {length(point.seconds)}"
+        return text
 
     def _notes(self) -> Iterator[Any]:
         flaws = {point.flaws[self.kind] for point in self.points}
         yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
         yield "n/step: force evaluations"
         yield ""
-        columns, rows = CHART_SIZE
-        columns = min(console(columns).width, columns)
+        columns = min(console(MAX_COLUMNS).width, MAX_COLUMNS)
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
-        yield from lines_of(
-            accuracy_chart(series, self.kind, self.cost, columns, rows), PALETTES["dark"]
-        )
+        chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
+        yield from lines_of(chart, PALETTES["dark"])
         if self.options.all and self.points:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
         if self.attempts:
@@ -248,10 +254,6 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
                 loops=timed_loops,
             )
     return work
-
-
-def _seconds(point: Point) -> str:
-    return "" if point.seconds is None else f" in {length(point.seconds)}"
 
 
 def _times(row: Row) -> str:

@@ -39,7 +39,6 @@ from pendu_tui.tui.terminal.options import (
     CHARACTER_SETS,
     FPS,
     cells,
-    frames_per_second,
 )
 
 Settings = dict[str, Any]  # of an option, as argparse takes them
@@ -148,7 +147,7 @@ OPTIONS: dict[str, Settings] = {
     "--fps": option(
         "N",
         f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)",
-        frames_per_second,
+        above_zero(count, 61),
     ),
     "--speed": option("X", "multiple of real time (default: the scene's; replay: 1)", positive),
     "--equal-cost": flag(

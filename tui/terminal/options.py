@@ -11,7 +11,6 @@ from typing import Literal, NamedTuple, get_args
 
 from pendu_tui.recordings.system import environment, key_by_key
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.options import count
 
 CharacterSet = Literal["braille", "half", "ascii"]
 """The characters of pictures; with ASCII, lines and words are ASCII, too."""
@@ -41,12 +40,6 @@ def cells(text: str) -> tuple[int, int]:
         limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
         raise ValueError(f"{text!r} is not a size; use for example 120x40, from {limits}")
     return columns, rows
-
-
-def frames_per_second(text: str) -> int:
-    if count(text) > 60:
-        raise ValueError(f"{text!r} is out of range; use 1 to 60 frames per second")
-    return count(text)
 
 
 def terminal_options_of(

@@ -28,14 +28,8 @@ def whole(tmp_path):
     return record(tmp_path / "sitting.mcap", two_runs())
 
 
-def test_show_shows_what_a_recording_contains(whole):
-    answer = pendu("recordings", "show", whole, "--json").json
-    assert (answer["complete"], answer["damaged"]) == (True, False)
-    assert (answer["reason"], answer["bytes"]) == (None, whole.stat().st_size)
+def test_show_says_what_is_damaged(whole):
     data = bytearray(whole.read_bytes())
-    whole.write_bytes(data[:-40])
-    answer = pendu("recordings", "show", whole, "--json").json
-    assert (answer["complete"], answer["damaged"]) == (False, False)
     data[20] ^= 1
     whole.write_bytes(data)
     damaged = f"{whole}: damaged: its checksum is wrong\n"

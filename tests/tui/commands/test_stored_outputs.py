@@ -35,6 +35,9 @@ recordings recover cut -o {FOLDER}/saved.mcap
 verify {FOLDER}
 verify b cut
 verify b --max-steps 3
+verify b --methods rk4,s
+verify b --methods rk4,verlet
+verify {FOLDER}/killed.mcap.part a absent
 run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
 run --time 2 --methods rk4,verlet --json
 accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
@@ -42,6 +45,7 @@ stability --steps 50 --z-values 0.1,0.5 --theta-values 1 --methods explicit_eule
 methods rk4 backward_euler --json
 recordings show cut --json
 verify b cut --json
+verify a absent --json
 """
 HEADS = """\
 run --time 1 --csv
@@ -62,6 +66,7 @@ def library(tmp_path, monkeypatch):
     record(tmp_path / "b.mcap", altered(two_runs(), 3, 2, omega=-5.0))
     cut = record(tmp_path / "cut.mcap", two_runs())
     cut.write_bytes(cut.read_bytes()[:-40])
+    (tmp_path / "killed.mcap.part").write_bytes(cut.read_bytes())
     return tmp_path
 
 

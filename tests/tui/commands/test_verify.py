@@ -3,25 +3,12 @@ import pytest
 from pendu_tui.recordings.files import golden_names
 from pendu_tui.tui.commands import verify
 from tests.recordings.examples import record, two_runs
-from tests.recordings.test_verify import altered
 from tests.tui.command_line import Outcome, own_method, pendu
 
 
 @pytest.fixture
 def whole(tmp_path):
     return record(tmp_path / "whole.mcap", two_runs())
-
-
-@pytest.fixture
-def cut(tmp_path):
-    path = record(tmp_path / "cut.mcap", two_runs())
-    path.write_bytes(path.read_bytes()[:-40])
-    return path
-
-
-@pytest.fixture
-def other(tmp_path):
-    return record(tmp_path / "other.mcap", altered(two_runs(), 3, 2, omega=-5.0))
 
 
 def first_words(outcome: Outcome) -> list[str]:
@@ -42,11 +29,6 @@ def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_
     (tmp_path / "golden").mkdir()
     monkeypatch.chdir(tmp_path)
     assert pendu("verify", "golden").refused(3, "no recordings in this folder")
-
-
-def test_the_leftover_of_a_killed_lab_may_be_incomplete(cut):
-    outcome = pendu("verify", cut.rename(cut.with_name("a.mcap.part")))
-    assert (outcome.code, first_words(outcome)) == (0, ["identical"])
 
 
 COMMANDS = (
@@ -72,26 +54,6 @@ def test_a_file_that_is_not_a_recording_is_one_sentence_and_exit_3(
     (tmp_path / "file.mcap").write_bytes(content)
     assert pendu(*command.replace("FILE", "file.mcap").split()).refused(3, "file.mcap")
     assert [path.name for path in tmp_path.iterdir()] == ["file.mcap"]
-
-
-def test_what_cannot_be_read_does_not_keep_the_others_from_being_verified(whole, tmp_path):
-    (tmp_path / "a.mcap").touch()
-    outcome = pendu("verify", tmp_path, "no/such.mcap")
-    assert (outcome.code, outcome.err.count("\n")) == (3, 2)
-    assert first_words(outcome) == ["identical", "3"]
-    outcome = pendu("verify", tmp_path, "no/such.mcap", "--json")
-    assert outcome.err == ""
-    rows = outcome.json["files"]
-    assert [row["identical"] for row in rows] == [False, True, False]
-    assert "there is no recording 'no" in rows[2]["error"]
-
-
-def test_only_the_methods_asked_for_are_compared(other, tmp_path):
-    for methods, code in (("rk4,verlet", 1), ("rk4,s", 0)):
-        assert pendu("verify", other, "--methods", methods).code == code
-    alone = tmp_path / "alone.mcap"
-    pendu("run", "--time", "2", "--methods", "rk4", "--record", alone)
-    assert pendu("verify", alone, "--methods", "s,v").refused(3, "run 1 has none of the methods")
 
 
 def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path, monkeypatch):
