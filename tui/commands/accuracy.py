@@ -168,14 +168,14 @@ class Results:
 
     def _notes(self) -> Iterator[Any]:
         flaws = {point.flaws[self.kind] for point in self.points}
-        yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws if flaw)
+        yield from (f"{mark} {REASONS[flaw]}" for flaw, mark in MARKS.items() if flaw in flaws)
         yield "n/step: force evaluations"
         yield ""
         columns = min(console(MAX_COLUMNS).width, MAX_COLUMNS)
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
         chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
         yield from lines_of(chart, PALETTES["dark"])
-        if self.options.all and self.points:
+        if self.options.all:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
         if self.attempts:
             yield from self._advice_notes()
@@ -193,7 +193,7 @@ class Results:
             Column(f"{self.kind} error", "error", ".1e"),
             Column("times the cheapest", _times),
         ]
-        if any(row["seconds"] is not None for row in rows):
+        if self.cost == "seconds":
             columns.insert(-2, Column("seconds", "seconds", length))
         yield Table(columns, rows)
         yield "Other steps near these may miss the target; a smaller target leaves a margin."

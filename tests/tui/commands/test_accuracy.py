@@ -56,6 +56,7 @@ def test_a_target_that_no_method_reaches_is_reported():
         (["--json", "--csv"], ["not allowed with"]),
         (["--workers", "2", "--dask", "tcp://x:1"], ["not allowed with"]),
         (["--workers", "2", "--cost", "seconds"], ["measured in this process"]),
+        (["--dask", "tcp://x:1", "--cost", "seconds"], ["measured in this process"]),
     ],
 )
 def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):

@@ -39,6 +39,7 @@ verify b --methods rk4,s
 verify b --methods rk4,verlet
 verify {FOLDER}/killed.mcap.part a absent
 run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
+verify {FOLDER}/spring.mcap --methods s
 run --time 2 --methods rk4,verlet --json
 accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
 stability --steps 50 --z-values 0.1,0.5 --theta-values 1 --methods explicit_euler,rk4 --json
