@@ -27,4 +27,6 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share):
     outcome = pendu(*command, "--csv")
     assert (outcome.code, outcome.out.count("\n")) == (130, 1 + rows)
     assert share in outcome.err
-    assert pendu(*command, "--json").json["interrupted"]
+    answer = pendu(*command, "--json").json
+    assert answer["interrupted"]
+    assert all(row["first_failure_z"] for row in answer.get("pendulum", ()))
