@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.tui.commands.options import OPTIONS
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
-from tests.tui.command_line import pendu, shortened
+from tests.tui.command_line import own_method, pendu, shortened
 
 QUICK = "--time 5 --h-values 0.2:0.01:4"
 FEW = "--steps 300 --z-values 0.1:3:12 --theta-values 0.5,2"
@@ -25,7 +25,7 @@ run --theta 0.5,1 --h 0.05,0.1 --length 1 --time 9 --methods rk4,verlet --fail-i
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
 accuracy --all --error energy --time 2 --h-values 0.2:0.05:2
 stability {FEW}
-stability --steps 1000 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4
+stability --steps 1000 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4 --method {MINE}
 methods explicit_e symplectic rk4 heun forest_ruth backward_euler halving_verlet
 scenes crossover
 recordings
@@ -73,9 +73,10 @@ def library(tmp_path, monkeypatch):
 
 def test_outputs(snapshot, library):
     texts = []
+    mine = shlex.quote(own_method(library))
     for lines, most in ((PRINTED, None), (HEADS, 33)):
         for line in lines.splitlines():
-            filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library.as_posix())
+            filled = line.format(QUICK=QUICK, FEW=FEW, FOLDER=library.as_posix(), MINE=mine)
             outcome = pendu(*shlex.split(filled))
             shown = outcome.out.splitlines()[:most]
             texts += ["", f"$ {line}", *shown, f"[{outcome.code}] {outcome.err.strip()}"]
