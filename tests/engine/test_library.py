@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 from pendu_tui import engine
-from pendu_tui.engine import METHODS, judge, library, limits, recommend, simulate
+from pendu_tui.engine import (
+    METHODS,
+    fluctuation_order,
+    judge,
+    library,
+    limits,
+    measure,
+    recommend,
+    simulate,
+)
 from pendu_tui.engine.run.lockstep import Lockstep
 
 GENERAL = [key for key, method in METHODS.items() if method.general]
@@ -154,6 +163,13 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: limits("linear"), "a pendulum that swings"),
         (lambda: limits(steps=0), "steps = 0"),
         (lambda: limits(steps=1.5), "steps = 1.5"),
+        (lambda: measure(lambda force, phase, h: phase), "is not a generator function"),
+        (lambda: fluctuation_order([(math.nan, TIMES, WAVE)]), "h = nan"),
+        (lambda: fluctuation_order([(0.1, [0], [1])]), r"h = 0\.1: 1 energies are too few"),
+        (
+            lambda: fluctuation_order([(0.1, TIMES, [math.inf, *WAVE[1:]])]),
+            r"energies at h = 0\.1\[0\] is inf",
+        ),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_a_sentence(call, word):
@@ -175,6 +191,14 @@ def test_limits_are_where_the_swing_is_lost():
     for share, held in [(0.98, True), (1.0, False)]:
         run = simulate(theta=2.0, h=share * verlet.h, time=1000 * verlet.h, methods="verlet")
         assert (np.abs(run["verlet"].theta).max() < math.pi) == held
+
+
+def test_the_order_of_a_step_and_that_of_its_fluctuations_are_measured():
+    found = measure(METHODS["velocity_verlet"].phases)
+    assert (round(found.order, 1), found.force_evaluations) == (2, 1)
+    runs = [simulate(time=40, methods="verlet", h=h) for h in (0.1, 0.05)]
+    order = fluctuation_order((run.scene.h, run.t, run["verlet"].energy) for run in runs)
+    assert order.power == pytest.approx(2, abs=0.02)
 
 
 def test_only_methods_for_any_force_take_one():

@@ -117,6 +117,7 @@ WRONG = {
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
     "no Python": ("def mine(:", "line 1: invalid syntax."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
+    "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass", "has no function 'mine'; it has yours."),
     "too much text": ("#" * (MAX_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
