@@ -82,7 +82,7 @@ Methods = str | Iterable[str | Method]
 """Keys or the starts of keys, such as "rk4,verlet", or methods."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Track:
     """One method's run, with a value for each time; after an overflow, the last finite ones."""
 
@@ -137,7 +137,7 @@ def simulate(
 
 
 def _stops(scene: Scene, time: float, every: int) -> list[int]:
-    steps = round(min(time, 1e15) / scene.h)
+    steps = round(time / scene.h)
     if steps < 1:
         raise InputError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
     if steps / _whole("every", every) * len(scene.cast) > MAX_READINGS:
@@ -145,7 +145,7 @@ def _stops(scene: Scene, time: float, every: int) -> list[int]:
     return [*range(0, steps, every), steps]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Judged:
     """The verdict on a series of energies; a word of `pendu-tui judge --help`."""
 
@@ -267,7 +267,7 @@ def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "
     return order_of(steps, fluctuations)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Limit:
     """Where a method loses a swing; z = h·sqrt(g/L)."""
 

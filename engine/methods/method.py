@@ -60,7 +60,7 @@ def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> fl
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Method:
     """A method and its properties, which tests/engine/methods measure."""
 

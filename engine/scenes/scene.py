@@ -44,7 +44,7 @@ def _complete(model: str, given: Mapping[str, float]) -> dict[str, float]:
     return {name: given.get(name, default) for name, default in own.items()}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Line:
     """A reference line in the chart of its quantity, or on both sides of zero in phase space."""
 
@@ -53,7 +53,7 @@ class Line:
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Shot:
     """How a lab shows a run, and what a lesson asks about it; it changes no number of the start."""
 
