@@ -12,8 +12,8 @@ def test_a_reading_has_the_recorded_quantities_in_order_and_requires_those_alway
     defaults = Reading._field_defaults
     optional = {each.name for each in RECORDED if each.recorded == "if known"}
     assert set(defaults) - {"extra"} <= optional
-    assert {each.name for each in RECORDED if not each.in_gate} == {*EXTREMES}
-    assert all(each.unit or each.about for each in RECORDED)  # which viewers show
+    variables = [each for model in MODELS.values() for each in model.variables]
+    assert all(each.unit or each.about for each in (*RECORDED, *variables))  # which viewers show
 
 
 def test_no_two_quantities_share_a_name_or_a_head():
@@ -22,11 +22,13 @@ def test_no_two_quantities_share_a_name_or_a_head():
         assert len({each.name for each in quantities}) == len(quantities)
     heads = [each.head.narrow for each in QUANTITIES if each.head.narrow]
     assert len(set(heads)) == len(heads)
+    assert {each.name for each in QUANTITIES if not each.in_gate} == {*EXTREMES, "shadow_error"}
 
 
 def test_what_has_a_column_is_explained_and_fits_its_width():
     for each in (*QUANTITIES, *(model.error for model in MODELS.values())):
         assert bool(each.head.wide) == bool(each.sentence), each.name
+        assert bool(each.label) == bool(each.form)
         assert len(each.head.narrow) <= each.head.width <= each.head.wide_width
         assert len(each.head.wide) <= each.head.wide_width <= 13
     assert sum(each.head.wide_width + 1 for each in QUANTITIES if each.head.wide) < 86  # of 120

@@ -118,6 +118,7 @@ WRONG = {
     "no Python": ("def mine(:", "line 1: invalid syntax."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
     "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass", "has no function 'mine'; it has yours."),
+    "just enough text": ("#" * MAX_SOURCE, "mine.py has no function 'mine'."),
     "too much text": ("#" * (MAX_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
@@ -141,6 +142,8 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     assert load(source).order == 1
     more = euler("np.max(np.abs(theta)) > 0.5 and force(theta)", "import numpy as np")
     assert load(more).force_evaluations == 2  # 1.6 a step
+    wrong = load(euler(before="force = lambda theta: 0 * theta"))
+    assert (wrong.order, wrong.force_evaluations) == (0, 1)
     printed = capsys.readouterr()
     assert not printed.out
     assert "here\nthere" in printed.err
