@@ -4,7 +4,7 @@ A field and a Hamiltonian are integrated by RK4; a map and a symplectic map are 
 Field and Hamiltonian are sums of the same 60 random features, fitted to the same 600 measurements
 by least squares (tests/bench/learn.py).  Only the Hamiltonian's field consists of the slopes of one
 function, which it conserves.  The measured pendulum had w0² = 9.81 s⁻²; everything is in units of
-w0, so it holds for any w0.  These methods take w0 from the model, and never the force.
+w0.  These methods take w0 from the model, and never the force.
 """
 
 import math
