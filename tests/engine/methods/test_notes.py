@@ -121,10 +121,7 @@ def test_accuracy_costs_as_much_as_the_cards_say(key, target, cost):
     assert not reaches(key, target, round(0.93 * cost))
 
 
-@pytest.mark.parametrize(
-    ("start", "most"),
-    [((2.0, 0.0), 1e-12), ((math.radians(179.9), 0.0), 1e-6)],  # as its last digit allows
-)
+@pytest.mark.parametrize(("start", "most"), [((2.0, 0.0), 1e-12), ((3.14, 0.0), 1e-8)])
 def test_taylors_series_follows_a_swing_of_20_s_in_200_steps(start, most):
     exact = PENDULUM.exact(*start)
     states = enumerate(islice(TAYLOR_20.on(PENDULUM)(start, 0.1), 200), 1)
