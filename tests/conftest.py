@@ -42,10 +42,10 @@ if hasattr(signal, "SIGHUP"):  # which nohup ignores
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """Return twice the number of processors, as tests of screens wait half of their time."""
+    """Return half more than there are processors, as tests of screens wait."""
     if config.getoption("--snapshot-update"):
         return 0  # some tests write to the same file
-    return 2 * (os.cpu_count() or 1)
+    return round(1.5 * (os.cpu_count() or 1))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
