@@ -47,6 +47,7 @@ class Shown(NamedTuple):
     theta: float | None = None  # rad, half the width of phase space; None fits the motion
     overview: bool = False  # all angles, pendulums not enlarged
     ring: bool = False
+    section: bool = False  # one method's own map, in place of phase space
     line: Line | None = None
     held: float | None = None  # rad, where the user holds the pendulums; then there is no run
 
@@ -62,6 +63,7 @@ class Shown(NamedTuple):
             hidden=frozenset(cast - front),
             stretch=None,
             overview=False,
+            section=False,
             log_time=scene.speed >= FAST,
             **seen,
         )

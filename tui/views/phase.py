@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.reactive import var
 
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.own import OwnMethodError
@@ -184,11 +183,9 @@ class SectionPane(PhasePane):
     """The portrait or, after key x, a section of one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "section", "Map", tooltip="a method's own map")
+        Binding("x", "screen.switch('section')", "Map", tooltip="a method's own map")
     ]
     EVERY = 4
-
-    shows_section: var[bool] = var(False)
 
     def __init__(self) -> None:
         super().__init__()
@@ -197,23 +194,17 @@ class SectionPane(PhasePane):
 
     @property
     def settled(self) -> bool:
-        if self.drawable and self.shows_section:
+        if self.drawable and self.shown.section and not self.source.scene.why_not_mapped:
             return self._orbits == STARTS
         return super().settled
 
-    def watch_shows_section(self) -> None:
-        if not self.shows_section:
-            self._section.forget()
-            self.workers.cancel_node(self)
-        self.draw()
-
     def picture(self, source: Source, sample: Sample) -> Picture:
-        if self.shows_section and (why := source.scene.why_not_mapped):
-            self.notify(why, severity="warning")
-            self.shows_section = False
-        if self.shows_section:
-            return self._map(source)
-        return super().picture(source, sample)
+        if not self.shown.section:
+            return super().picture(source, sample)
+        if why := source.scene.why_not_mapped:
+            self.write_titles("Own map", "x: back")
+            return Picture(self.words(why))
+        return self._map(source)
 
     def _begun(
         self, viewport: Viewport, model: Model, method: Method, ink: int, h: float
@@ -254,9 +245,6 @@ class SectionPane(PhasePane):
     def add(self, result: "Points") -> None:
         self._section.result.add(result)
         self._orbits += result[0].shape[1]
-
-    def action_section(self) -> None:
-        self.shows_section = not self.shows_section
 
 
 class AreaTable(ErrorTable):

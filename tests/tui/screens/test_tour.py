@@ -25,7 +25,9 @@ def panel(theatre: Theatre) -> str:
 async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full(monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     async with lab(SCENES["spin"], (60, 16)) as theatre:
-        await theatre.press("T")
+        await theatre.press(
+            "f3", "x", "f2", "T"
+        )  # a page shows its own picture, whatever was there
         for number, page in enumerate(STEPS):
             shot = page.shot
             await theatre.pilot.pause()

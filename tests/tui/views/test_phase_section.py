@@ -7,7 +7,7 @@ import pytest
 from textual import events
 
 from pendu_tui.engine.methods import VELOCITY_VERLET
-from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.section import iterate, orbit
 from pendu_tui.tui.drawing.picture import faint
 from pendu_tui.tui.views.phase import SectionPane
@@ -40,7 +40,7 @@ async def section_of(theatre, *keys: str) -> SectionPane:
     await theatre.press("f3", *keys)
     await theatre.run(0.2)
     pane = theatre.stage.query_one(SectionPane)
-    await until(theatre.pilot, lambda: pane.shows_section and pane.settled)
+    await until(theatre.pilot, lambda: pane.shown.section and pane.settled)
     pane.draw()
     return pane
 
@@ -60,8 +60,12 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         own = theatre.source.stepping.own[2]
         assert own < theatre.source.stepping.h
         assert f"h {own:g} s" in str(pane.border_title)
+        await theatre.stage.start(stiff := SCENES["stiff-slow"])
+        await theatre.pilot.pause()
+        assert " ".join(pane.text.split()) == stiff.why_not_mapped
         await theatre.press("x")
         assert str(pane.border_title).startswith("Phase space")
+        await theatre.press("u", "u", "x")
         assert "E/Es" in pane.text
 
 
@@ -70,5 +74,5 @@ async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():
         for key in ("f3", "x"):
             theatre.app.post_message(events.Key(key, None))
         panes = partial(theatre.stage.query, SectionPane)
-        await until(theatre.pilot, lambda: any(pane.shows_section for pane in panes()))
-        assert [pane.shows_section for pane in panes()] == [True]
+        await until(theatre.pilot, lambda: theatre.stage.shown.section and panes())
+        assert [pane.shown.section for pane in panes()] == [True]
