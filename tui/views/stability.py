@@ -235,7 +235,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.grid = Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
         self.cells: Cells = self.grid.unknown()
         self._is_begun = False
-        self._title = ""
+        self._title = "Stability (F5)"
         self._state = ""
         self.cursor = self.pointer = None
 
