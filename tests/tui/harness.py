@@ -137,6 +137,14 @@ class Theatre:
             await self.pilot.press(key)
             await self.pilot.pause()
 
+    async def click(self, target: Any, *offset: int, **options: Any) -> None:
+        await self.pilot.click(target, offset=offset or (0, 0), **options)
+        await self.pilot.pause()
+
+    @property
+    def notices(self) -> list[str]:
+        return [each.message for each in self.app._notifications]
+
     def text(self, widget: type[CellWidget] | str) -> str:
         """Return the text of the first such widget on the screen."""
         return self.stage.query(widget).first(CellWidget).text

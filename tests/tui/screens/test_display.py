@@ -48,7 +48,6 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
         await theatre.run(1)
         for key in (*map(key_of, VIEWS), "i"):
             await theatre.press(key)
-            await theatre.pilot.pause()
             found = colours(theatre.app)
             assert len(found) > 3
             assert all(each.is_system_defined or each.is_default for each in found)

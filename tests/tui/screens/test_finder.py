@@ -60,7 +60,6 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
     async def do(words, *keys):
         await found(theatre, words)
         await theatre.press(*keys, "enter")
-        await theatre.pilot.pause()
         assert theatre.app.screen is theatre.stage
 
     async with lab(size=SIZE) as theatre:
@@ -70,8 +69,7 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         await do("theme", "down", "down", "up", "pageup", "down")
         assert theatre.app.theme == "light"
         await found(theatre, "double speed")
-        await theatre.pilot.click(Choices, offset=(3, 0))
-        await theatre.pilot.pause()
+        await theatre.click(Choices, 3, 0)
         assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed
         await do("pixels half")
         assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
@@ -99,5 +97,5 @@ async def test_keys_and_clicks_that_are_faster_than_the_list_do_no_harm(monkeypa
             await choices.run_action(move)
         # the list is emptied between a click and its arrival
         monkeypatch.setattr(type(choices), "option_count", 0)
-        await theatre.pilot.click(Choices, offset=(3, 1))
+        await theatre.click(Choices, 3, 1)
         assert theatre.app.screen is not theatre.stage

@@ -13,7 +13,6 @@ async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.press("b", "i", *"115deg", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
-        await theatre.pilot.pause()
         scene = theatre.source.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
         assert theatre.source.stepping.h == 0.01  # a new run is no reversed one
@@ -33,7 +32,6 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
             form.query_one(f"#{name}").value = value
             await theatre.pilot.pause()
             await theatre.press("enter")
-            await theatre.pilot.pause()
 
         for name, value in (("stiffness", "0.5"), ("theta", "abc"), ("theta", "")):
             before = form.query_one(f"#{name}").value
@@ -53,8 +51,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         assert form._methods == [each for each in known if "pendulum" in each.models]
 
         async def click(row):
-            await theatre.pilot.click("#cast", offset=(10, row + 1))
-            await theatre.pilot.pause()
+            await theatre.click("#cast", 10, row + 1)
 
         for row in range(4, 9):
             await click(row)
@@ -65,10 +62,8 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         assert not form.cast
         await theatre.press("enter")
         assert theatre.app.screen is form  # not without a method
-        said = [notice.message for notice in theatre.app._notifications]
-        assert [str(MAX_METHODS) in each for each in said] == [True, False]
+        assert [str(MAX_METHODS) in each for each in theatre.notices] == [True, False]
         await click(3)
         await theatre.press("home", "space", "down", "space", "space", "enter")
-        await theatre.pilot.pause()
         assert theatre.source.scene.cast == (known[3], known[0])
         assert theatre.source.scene.h == 0.1

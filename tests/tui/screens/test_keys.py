@@ -50,7 +50,6 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
         before = [settings()]
         for keys in ("+", ">", "p", ("P", *"mean", "enter"), "y"):
             await theatre.press(*keys)
-            await theatre.pilot.pause()
             before.append(settings())
         assert before[3][2] == SCENES["gentle"]
         assert settings()[1:3] == (SCENES["mean-field"].speed, SCENES["mean-field"])
@@ -93,30 +92,26 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
     async with lab() as theatre:
         await theatre.run(12)
         for row, places in ((3, [2]), (1, [0, 1, 2, 3])):
-            await theatre.pilot.click(ErrorTable, offset=(5, row))
-            await theatre.run(0)
+            await theatre.click(ErrorTable, 5, row)
             assert theatre.stage.shown.places(USUAL_CAST) == places
-        await theatre.pilot.click(TimeChart, offset=(20, 5))
+        await theatre.click(TimeChart, 20, 5)
         assert theatre.stage.shown.quantity == "theta_error"
 
         first, over, *_ = [milestone.step for milestone in theatre.source.milestones]
         listed = theatre.stage.query_one(EventList)
         row = next(at for at, line in enumerate(listed.text.splitlines()) if "over the top" in line)
-        await theatre.pilot.click(listed, offset=(8, row + 1))
-        await theatre.pilot.pause()
+        await theatre.click(listed, 8, row + 1)
         assert (theatre.source.sample.step, theatre.source.playhead.paused) == (first, True)
         for key, step in (("]", over), ("[", first), ("[", 0)):
             await theatre.press(key)
             assert theatre.source.sample.step == step
-        await theatre.pilot.click(listed, offset=(5, 4))  # below the last one
-        await theatre.pilot.pause()
+        await theatre.click(listed, 5, 4)  # below the last one
         assert theatre.app.screen.title == "Events"
         await theatre.press("escape", "r")
         theatre.stage.action_go_to(1, first)
         await theatre.pilot.pause()
-        assert "run 1;" in [each.message for each in theatre.app._notifications][-1]
-        await theatre.pilot.click("PhasePane", offset=(5, 0))
-        await theatre.pilot.pause()
+        assert "run 1;" in theatre.notices[-1]
+        await theatre.click("PhasePane", 5, 0)
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", 2)
 
 
@@ -190,13 +185,11 @@ def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner, s
 async def test_the_last_line_has_what_one_needs_now_each_a_button():
     async with lab(size=(80, 40)) as theatre:
         row = theatre.text("KeyLine")
-        await theatre.pilot.click("KeyLine", offset=(row.index("Pause") + 1, 0))
-        await theatre.pilot.click("KeyLine", offset=(row.index("-"), 0))
-        await theatre.pilot.pause()
+        await theatre.click("KeyLine", row.index("Pause") + 1, 0)
+        await theatre.click("KeyLine", row.index("-"), 0)
         assert theatre.source.playhead.paused
         assert theatre.source.stepping.h == 0.02
         await theatre.press("f3")
-        await theatre.pilot.pause()
         assert "g Ring" in theatre.text("KeyLine")
 
 

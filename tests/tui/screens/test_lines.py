@@ -50,7 +50,7 @@ LIVES = [
     taped(recording_status=None, playhead=Playhead(seen=0.0)),
     taped(playhead=Playhead(paused=True)),
     taped(failure="mine fails."),
-    *(slow(h) for h in (0.99, 1.01, 1.99, 2.01, 2.82, 2.84)),
+    *(slow(h) for h in (0.99, 1.0, 1.99, 2.01, 2.82, 2.84)),
     slow(2.0, playhead=Playhead(paused=True)),
 ]
 

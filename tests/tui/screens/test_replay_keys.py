@@ -46,8 +46,7 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
 
         listed = theatre.stage.query_one(EventList)
         row = next(at for at, line in enumerate(listed.text.splitlines()) if "mark 1" in line)
-        await theatre.pilot.click(listed, offset=(8, row + 1))
-        await theatre.pilot.pause()
+        await theatre.click(listed, 8, row + 1)
         clock, mark = next(event for event in replay.recording.events if event[1].kind == "mark")
         assert replay.playhead.position == pytest.approx(clock, abs=1 / 30)
         assert (replay.sample.run, replay.sample.step) == (1, mark.step)
@@ -59,8 +58,7 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
 async def test_an_incomplete_recording_is_said_to_be_one(path):
     path.write_bytes(path.read_bytes()[:-40])
     async with player(path) as theatre:
-        said = [notice.message for notice in theatre.app._notifications]
-        assert any("incomplete (its end is missing" in each for each in said)
+        assert "incomplete (its end is missing" in theatre.notices[0]
 
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
@@ -85,7 +83,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         # a frame has time for some samples only
         theatre.source._clock = itertools.count(0.0, 0.003).__next__
         theatre.stage.action_part(1)
-        await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
+        await theatre.click("KeyLine", theatre.text("KeyLine").index("Live"), 0)
         async with asyncio.timeout(20):
             while theatre.source.kind == "REPLAY":
                 await theatre.pilot.pause(0.01)
@@ -103,7 +101,7 @@ async def test_where_the_lab_could_not_record_the_replay_stays(path):
         await theatre.press("right", "f")
         await theatre.pilot.pause(0.1)
         assert theatre.source.kind == "REPLAY"
-        assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
+        assert any("/nowhere" in each for each in theatre.notices)
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
 
@@ -132,11 +130,10 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         replay, here = theatre.source, theatre.source.sample
         for key in keys.split():
             await theatre.press(key)
-            await theatre.pilot.pause()
         assert " LIVE " in theatre.text(StatusLine)
         assert changed(theatre.source)
         said = f"recorded as {path.with_name('new.mcap')};"
-        assert any(said in notice.message for notice in theatre.app._notifications)
+        assert any(said in each for each in theatre.notices)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
         assert replay.playhead.paused

@@ -67,18 +67,15 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         before = theatre.stage.shown
         t = theatre.source.sample.t
         await theatre.press("T")
-        await theatre.pilot.click(LessonPanel)  # goes on, as enter does
-        await theatre.pilot.pause()
+        await theatre.click(LessonPanel)  # goes on, as enter does
         assert words(STEPS[0].shot.question) in panel(theatre)
         await theatre.press("enter", "enter", "escape")
-        await theatre.pilot.pause()
         assert theatre.stage.query_one(InsightLine).is_on_screen
         assert (theatre.stage.view, theatre.stage.shown) == ("lab", before)
         assert (theatre.source.playhead.speed, theatre.source.playhead.paused) == (2, False)
         await theatre.press("u")
         assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
         await theatre.press("T")
-        await theatre.pilot.pause()
         assert words(STEPS[1].watch) in panel(theatre)
 
 

@@ -9,4 +9,4 @@ async def test_s_saves_a_picture_among_the_recordings_or_reports_why_not(tmp_pat
         assert ">scene</text>" in picture.read_text(encoding="utf-8")
         monkeypatch.setenv("PENDU_RECORDINGS", str(picture / "below"))
         await theatre.press("s")
-        assert "Screenshot not saved" in [each.message for each in theatre.app._notifications][-1]
+        assert "Screenshot not saved" in theatre.notices[-1]

@@ -52,7 +52,7 @@ async def test_a_head_under_the_pointer_says_what_it_means():
 async def test_a_click_on_a_row_shows_its_method_alone():
     async with on_screen() as theatre:
         for row, places in ((0, [0, 1, 2, 3]), (4, [3]), (1, [0, 1, 2, 3]), (1, [0])):
-            await theatre.pilot.click(ErrorTable, offset=(5, row))
+            await theatre.click(ErrorTable, 5, row)
             await theatre.run(0.1)
             assert theatre.stage.shown.places(DEFAULT_SCENE.cast) == places
 

@@ -59,9 +59,7 @@ async def test_in_a_replay_a_place_is_chosen_that_a_live_run_goes_on_with_and_u_
         await theatre.press("space", "f3")
         replay = theatre.source
         await theatre.settled()
-        for key in ("right", "right", "enter"):
-            await theatre.press(key)
-        await theatre.pilot.pause()
+        await theatre.press("right", "right", "enter")
         live = theatre.source
         assert live.kind == "LIVE"
         assert (live.scene.theta, live.scene.h, live.stepping.h) != (1.0, 0.05, 0.05)

@@ -116,9 +116,9 @@ async def test_the_wheel_zooms_around_the_pointer():
 
 async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
     async with phase_view(Scene(omega=9e8)) as (theatre, pane):
-        await theatre.pilot.click(pane, offset=(20, 1))
+        await theatre.click(pane, 20, 1)
         assert theatre.source.scene.omega == 9e8
-        assert "out of range" in str(next(iter(theatre.app._notifications)).message)
+        assert "out of range" in theatre.notices[0]
 
 
 async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away():

@@ -157,17 +157,17 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.pilot.click(Stage, offset=on_lane(theatre, 2)[1], button=3)
+        await theatre.click(Stage, *on_lane(theatre, 2)[1], button=3)
         below = theatre.stage.query_one(Stage).size.height - 1
-        await theatre.pilot.click(Stage, offset=(1, below))  # far off
+        await theatre.click(Stage, 1, below)  # far off
         assert not theatre.stage.shown.hidden
         for place in (2, 0):
             stage, cell = on_lane(theatre, place)
-            await theatre.pilot.click(stage, offset=cell)
+            await theatre.click(stage, *cell)
             await theatre.run(0.1)
             assert theatre.stage.shown.places(theatre.source.scene.cast) == [place]
             assert theatre.source.sample.run == 1
             assert stage.border_title == theatre.source.scene.cast[place].label
-            await theatre.pilot.click(stage, offset=on_lane(theatre, 0)[1])
+            await theatre.click(stage, *on_lane(theatre, 0)[1])
             await theatre.run(0.1)
             assert not theatre.stage.shown.hidden
