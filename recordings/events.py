@@ -138,9 +138,7 @@ def method_named(name: str) -> Method:
         formula="unknown",
         order=1,
         force_evaluations=1,
-        linear_limit=0.0,
         reference=name,
-        used=None,
         models=tuple(MODELS),
     )
 

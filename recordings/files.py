@@ -115,7 +115,7 @@ def is_stream(path: Path) -> bool:
     return path.exists() and not path.is_file() and not path.is_dir()
 
 
-def publish(part: Path, path: Path, force: bool = False) -> None:
+def publish(part: Path, path: Path, force: bool) -> None:
     """Give a finished and closed file its name, if that is free or may be replaced.
 
     Raises NameTakenError if another file took the name meanwhile.

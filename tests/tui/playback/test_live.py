@@ -200,8 +200,11 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench.live.start(SCENES["spin"])
     assert bench.live.stepping.equal_cost
     assert bench.live.stepping.smallest == SCENES["spin"].h
-    kinds = [event.kind for event in bench.keeper.events]
-    assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start", "set_h"]
+    told = [(event.kind, event.h or event.speed or event.text) for event in bench.keeper.events]
+    assert told == [
+        *(("start", None), ("set_h", -0.05), ("mark", "turned"), ("pause", None)),
+        *(("resume", None), ("speed", 2), ("start", None), ("set_h", bench.live.stepping.h)),
+    ]
     later = Keeper()
     bench.live.record(later)
     assert later.events == bench.keeper.events
