@@ -75,20 +75,21 @@ def test_speeds_double_exactly_within_their_limits():
 
 def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     bench = Bench()
+    lab = bench.live
     bench.run(2)
-    bench.live.pause(True)
+    lab.pause(True)
     bench.run(60)
-    bench.live.pause(False)
-    bench.live.set_speed(4)
+    lab.pause(False)
+    lab.set_speed(4)
     bench.run(1)
-    bench.live.change(Stepping(0.013))
+    lab.change(Stepping(0.013))
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
     # the recording clock stands while paused and does not care for speed
     assert bench.keeper.seconds == pytest.approx(4.0, abs=1 / 30)  # from sample to sample
-    here = bench.live.playhead.position
-    bench.live.tick(0.0)  # a clock set back
-    bench.live.tick(0.5)
-    assert bench.live.playhead.position == here + 0.5 * 4
+    here = lab.playhead.position
+    lab.tick(0.0)  # a clock set back
+    lab.tick(0.5)
+    assert lab.playhead.position == here + 0.5 * 4
 
 
 @pytest.mark.parametrize("speed", [1, 16])
@@ -113,70 +114,75 @@ def test_thirty_samples_a_second_are_recorded_or_every_step_and_the_last_one(h, 
 
 def test_between_steps_the_end_moves_on_and_the_next_step_comes_closer():
     bench = Bench(DEFAULT_SCENE.altered(h=0.5))
+    lab = bench.live
     bench.run(0.8)
-    assert bench.live.length == pytest.approx(0.8)
-    assert bench.live.next_step == pytest.approx(0.2)
-    bench.live.set_speed(2.0)
-    bench.live.change(bench.live.stepping.reversed())
-    assert bench.live.next_step == pytest.approx(0.1)
+    assert lab.length == pytest.approx(0.8)
+    assert lab.next_step == pytest.approx(0.2)
+    lab.set_speed(2.0)
+    lab.change(lab.stepping.reversed())
+    assert lab.next_step == pytest.approx(0.1)
 
 
 def test_where_a_lab_is_among_its_runs_steps_and_events():
     bench = Bench()
+    lab = bench.live
     bench.run(9)
-    bench.live.mark()
-    bench.live.start(DEFAULT_SCENE)
+    lab.mark()
+    lab.start(DEFAULT_SCENE)
     bench.run(8)  # explicit Euler goes over the top at 7.15 s
-    bench.live.change(bench.live.stepping.next(up=True))
+    lab.change(lab.stepping.next(up=True))
     bench.run(1)
-    bench.live.mark()
-    bench.live.set_speed(2.0)
-    assert bench.live.ticks == pytest.approx([0.0, 7.15, 8.0, 9.0])
-    bench.live.step(-20)
-    assert bench.live.counts == {"run": (2, 2), "step": (150, 170)}
-    assert ("mark", 1, 180) in [(each.kind, each.run, each.step) for each in bench.live.events]
+    lab.mark()
+    lab.set_speed(2.0)
+    assert lab.ticks == pytest.approx([0.0, 7.15, 8.0, 9.0])
+    lab.step(-20)
+    assert lab.counts == {"run": (2, 2), "step": (150, 170)}
+    assert ("mark", 1, 180) in [(each.kind, each.run, each.step) for each in lab.events]
     for direction, position in ((1, 8.0), (-1, 7.15), (1, 8.0), (1, 9.0), (1, 9.0)):
-        bench.live.seek_event(direction)
-        assert bench.live.playhead.position == pytest.approx(position)
+        lab.seek_event(direction)
+        assert lab.playhead.position == pytest.approx(position)
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=2.0**20, second_per_look=0.006)
+    lab = bench.live
     bench.run(1)
     # three blocks of 256 steps in 20 ms of a frame, and a row each 10 000 steps at least
     assert [sample.step for sample in bench.keeper.samples] == [0, 10_000, 20_000]
-    assert bench.live.sample.step == pytest.approx(30 * 3 * 256, abs=2 * 256)
-    share = bench.live.playhead.position / 2.0**20
-    assert bench.live.pace == pytest.approx(share + (1 - share) / math.e, abs=0.03)  # after 1 s
-    assert bench.live.playhead.position == pytest.approx(bench.live.sample.t)
-    bench.live.set_speed(1)
+    assert lab.sample.step == pytest.approx(30 * 3 * 256, abs=2 * 256)
+    share = lab.playhead.position / 2.0**20
+    assert lab.pace == pytest.approx(share + (1 - share) / math.e, abs=0.03)  # after 1 s
+    assert lab.playhead.position == pytest.approx(lab.sample.t)
+    lab.set_speed(1)
     bench.run(1)
-    assert bench.live.pace == pytest.approx(1.0)
+    assert lab.pace == pytest.approx(1.0)
 
 
 def test_after_steps_it_is_paused_and_goes_on_with_the_same_bits_and_records_nothing_twice():
     bench = Bench()
+    lab = bench.live
     before = bench.run(3).step
-    assert bench.live.step(1).step == before + 1
-    assert bench.live.step(-26).step == before - 25
-    assert bench.live.playhead.paused
-    bench.live.pause(False)
+    assert lab.step(1).step == before + 1
+    assert lab.step(-26).step == before - 25
+    assert lab.playhead.paused
+    lab.pause(False)
     sample = bench.run(4)
     assert states(sample) == simulated(DEFAULT_SCENE, sample.step)
     steps = [sample.step for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
-    bench.live.step(1500)
-    assert bench.live.step(-(10**6)).step == 0
+    lab.step(1500)
+    assert lab.step(-(10**6)).step == 0
 
 
 def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench = Bench()
+    lab = bench.live
     bench.run(1)
-    bench.live.change(Stepping(0.1))
+    lab.change(Stepping(0.1))
     bench.run(2)
-    at = bench.live.step(-5).step
-    bench.live.change(Stepping(0.02))
-    bench.live.pause(False)
+    at = lab.step(-5).step
+    lab.change(Stepping(0.02))
+    lab.pause(False)
     bench.run(1)
     second = [each for each in bench.keeper.events if each.run == 2]
     assert second[0].scene == DEFAULT_SCENE
@@ -190,23 +196,24 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
 
 def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench = Bench()
+    lab = bench.live
     bench.run(1)
-    bench.live.change(Stepping(-0.05, equal_cost=True))
-    bench.live.mark("turned")
-    bench.live.mark("turned")  # a moment has one mark
+    lab.change(Stepping(-0.05, equal_cost=True))
+    lab.mark("turned")
+    lab.mark("turned")  # a moment has one mark
     for paused, speed in ((False, 1), (True, 1), (True, 1), (False, 2), (False, 2)):
-        bench.live.pause(paused)
-        bench.live.set_speed(speed)
-    bench.live.start(SCENES["spin"])
-    assert bench.live.stepping.equal_cost
-    assert bench.live.stepping.smallest == SCENES["spin"].h
+        lab.pause(paused)
+        lab.set_speed(speed)
+    lab.start(SCENES["spin"])
+    assert lab.stepping.equal_cost
+    assert lab.stepping.smallest == SCENES["spin"].h
     told = [(event.kind, event.h or event.speed or event.text) for event in bench.keeper.events]
     assert told == [
         *(("start", None), ("set_h", -0.05), ("mark", "turned"), ("pause", None)),
-        *(("resume", None), ("speed", 2), ("start", None), ("set_h", bench.live.stepping.h)),
+        *(("resume", None), ("speed", 2), ("start", None), ("set_h", lab.stepping.h)),
     ]
     later = Keeper()
-    bench.live.record(later)
+    lab.record(later)
     assert later.events == bench.keeper.events
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
@@ -215,12 +222,13 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
 @pytest.mark.parametrize("h", [0.0, math.nan])
 def test_an_absurd_step_size_is_refused_and_changes_nothing(h):
     bench = Bench()
+    lab = bench.live
     bench.run(1)
-    bench.live.step(-3)
+    lab.step(-3)
     events = len(bench.keeper.events)
     with pytest.raises(InputError):
-        bench.live.change(Stepping(h))
-    assert (bench.live.stepping.h, bench.live.sample.run) == (0.05, 1)
+        lab.change(Stepping(h))
+    assert (lab.stepping.h, lab.sample.run) == (0.05, 1)
     assert len(bench.keeper.events) == events
 
 
@@ -246,19 +254,20 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     own = load(FAILING.format(failure))
     scene = DEFAULT_SCENE.with_cast((*DEFAULT_SCENE.cast, own))
     bench = Bench(scene)
+    lab = bench.live
     here = bench.run(2)
     monkeypatch.setenv("FAIL", "")
-    bench.live.step(-20)
-    assert words in bench.live.failure
-    assert (bench.live.sample.step, bench.live.playhead.paused) == (here.step, True)
+    lab.step(-20)
+    assert words in lab.failure
+    assert (lab.sample.step, lab.playhead.paused) == (here.step, True)
     monkeypatch.delenv("FAIL")
-    bench.live.pause(False)
-    assert bench.live.failure is None
+    lab.pause(False)
+    assert lab.failure is None
     sample = bench.run(2)
     assert states(sample) == simulated(scene, sample.step)
-    bench.live.failure = words
-    bench.live.start(scene)
-    assert bench.live.failure is None
+    lab.failure = words
+    lab.start(scene)
+    assert lab.failure is None
 
 
 def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):

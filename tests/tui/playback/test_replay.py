@@ -51,17 +51,22 @@ def table(sitting: Path) -> Table:
     return Table(sitting)
 
 
-def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_again(table):
-    assert table.replay.sample == table.samples[0].value
-    assert table.replay.length == pytest.approx(LENGTH)
-    while not table.replay.playhead.paused:
+@pytest.fixture
+def replay(table: Table) -> Replay:
+    return table.replay
+
+
+def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_again(table, replay):
+    assert replay.sample == table.samples[0].value
+    assert replay.length == pytest.approx(LENGTH)
+    while not replay.playhead.paused:
         assert table.run(0.2) == table.due
-    assert table.replay.sample == table.samples[-1].value
-    table.replay.pause(False)
-    table.replay.set_speed(4.0)
+    assert replay.sample == table.samples[-1].value
+    replay.pause(False)
+    replay.set_speed(4.0)
     table.run(0.5)
-    table.replay.pause(False)
-    assert table.replay.playhead.position == pytest.approx(2.0)
+    replay.pause(False)
+    assert replay.playhead.position == pytest.approx(2.0)
 
 
 def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_frame(sitting):
@@ -73,47 +78,47 @@ def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_fram
     assert not replay.fill()
 
 
-def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table):
-    table.replay.seek(LENGTH)
-    table.replay.set_speed(-1.0)
+def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table, replay):
+    replay.seek(LENGTH)
+    replay.set_speed(-1.0)
     runs = []
-    while not table.replay.playhead.paused:
+    while not replay.playhead.paused:
         sample = table.run(1 / FPS)
         assert sample == table.due
         runs.append(sample.run)
     assert sample == table.samples[0].value
     assert list(dict.fromkeys(runs)) == [3, 2, 1]
-    table.replay.pause(False)
-    assert table.replay.playhead.position == table.replay.length
+    replay.pause(False)
+    assert replay.playhead.position == replay.length
     steps = table.samples[-1].value.step
-    assert table.replay.counts == {"run": (3, 3), "step": (steps, steps)}
+    assert replay.counts == {"run": (3, 3), "step": (steps, steps)}
 
 
 @pytest.mark.parametrize(
     ("speed", "start", "behind"), [(1.0, LENGTH - 0.5, 0.5), (-1.0, 0.5, LENGTH - 0.5)]
 )
-def test_a_loop_goes_round_both_ways(table, speed, start, behind):
-    table.replay.looping = True
-    table.replay.set_speed(speed)
-    table.replay.seek(start)
+def test_a_loop_goes_round_both_ways(table, replay, speed, start, behind):
+    replay.looping = True
+    replay.set_speed(speed)
+    replay.seek(start)
     table.run(1)
-    assert table.replay.playhead.position == pytest.approx(behind, abs=0.1)
-    assert not table.replay.playhead.paused
+    assert replay.playhead.position == pytest.approx(behind, abs=0.1)
+    assert not replay.playhead.paused
 
 
-def test_steps_go_from_sample_to_sample_both_ways_and_not_over_the_ends(table):
+def test_steps_go_from_sample_to_sample_both_ways_and_not_over_the_ends(table, replay):
     values = [entry.value for entry in table.samples]
-    forward = [table.replay.step(1) for _ in range(len(values) + 2)]
+    forward = [replay.step(1) for _ in range(len(values) + 2)]
     assert forward == [*values[1:], *values[-1:] * 3]
-    backward = [table.replay.step(-1) for _ in range(len(values) + 2)]
+    backward = [replay.step(-1) for _ in range(len(values) + 2)]
     assert backward == [*values[-2::-1], *values[:1] * 3]
 
 
 @pytest.mark.parametrize("seconds", [-5.0, 3.3, 99.0])
-def test_a_seek_lands_where_playing_would_have_come_by(table, seconds):
-    table.replay.seek(seconds)
-    assert table.replay.playhead.position == min(max(seconds, 0.0), table.replay.length)
-    assert table.replay.sample == table.due
+def test_a_seek_lands_where_playing_would_have_come_by(table, replay, seconds):
+    replay.seek(seconds)
+    assert replay.playhead.position == min(max(seconds, 0.0), replay.length)
+    assert replay.sample == table.due
 
 
 def assert_same(one, other):
@@ -168,31 +173,31 @@ def test_of_a_long_past_the_last_minute_is_read_whole_and_300_seconds_before(tmp
     assert replay.history.window().t == pytest.approx(times[is_read])
 
 
-def test_the_next_event_and_the_one_before_are_found(table):
-    assert table.replay.ticks[-1] < 10  # the stop is no event to go to
+def test_the_next_event_and_the_one_before_are_found(replay):
+    assert replay.ticks[-1] < 10  # the stop is no event to go to
     places = [0.0]
-    while places[-1] < table.replay.length - 1e-6:
-        table.replay.seek_event(1)
-        places.append(table.replay.playhead.position)
+    while places[-1] < replay.length - 1e-6:
+        replay.seek_event(1)
+        places.append(replay.playhead.position)
         if places[-1] == pytest.approx(2.0):
-            assert table.replay.events[-1].kind == "set_h"
+            assert replay.events[-1].kind == "set_h"
     assert [round(place) for place in places] == [0, 2, 4, 5, 9, 9, 12]  # a verdict
     for place in reversed(places[:-1]):
-        table.replay.seek_event(-1)
-        assert table.replay.playhead.position == place
+        replay.seek_event(-1)
+        assert replay.playhead.position == place
 
 
 @pytest.mark.parametrize("seconds", [4.7, 11.0])
-def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
-    table.replay.seek(seconds)
-    table.replay.set_speed(-2.0)
-    live = table.replay.live()
+def test_a_lab_that_goes_on_from_here_has_the_same_bits(replay, seconds):
+    replay.seek(seconds)
+    replay.set_speed(-2.0)
+    live = replay.live()
     assert live.playhead.speed == 2.0
-    here = table.replay.sample
+    here = replay.sample
     assert (live.sample.step, live.sample.t) == (here.step, here.t)
-    assert live.stepping.h == table.replay.stepping.h
+    assert live.stepping.h == replay.stepping.h
     assert states(live.sample) == states(here)
-    ahead = table.replay.step(1)
+    ahead = replay.step(1)
     if ahead.run == here.run:
         assert states(live.step(ahead.step - here.step)) == states(ahead)
 
@@ -321,8 +326,8 @@ def test_no_lab_goes_on_without_the_users_own_method(tmp_path):
         replay.live()
 
 
-def test_a_closed_replay_stands_still(table):
-    here = table.replay.sample
-    table.replay.close()
+def test_a_closed_replay_stands_still(table, replay):
+    here = replay.sample
+    replay.close()
     assert table.run(1.0) == here
-    assert table.replay.fill()
+    assert replay.fill()
