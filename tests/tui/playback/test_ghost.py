@@ -11,11 +11,9 @@ OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 
 def test_its_pendulums_and_errors_are_where_a_lab_with_its_step_size_would_have_them():
     found = after(OTHER_H, 15.0).history.ghost()
-    for t in (1.0, 2.5, 3.0, 7.0, 14.0):
+    for t in (1.0, 2.55, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
-        for method, reading in zip(OTHER_H.cast, readings, strict=True):
-            # one step of 0.1 s
-            assert found.rods(t)[method.key] == pytest.approx(reading.theta, abs=0.7)
+        assert [*found.rods(t).values()] == [reading.theta for reading in readings]
     assert found.rods(found.window(20.0).x[-1] + 0.1)  # until its next step
     assert found.rods(15.15) == found.rods(-1.0) == {}
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)

@@ -176,17 +176,12 @@ def largest(history: History, quantity: str = "shadow_error") -> np.ndarray:
     return np.fmax.reduce(extremes[2:], axis=0)
 
 
-def test_a_modified_energy_is_flat_where_the_energy_wobbles_and_explains_it_to_fourth_order():
-    wobble, rest = (
-        {h: largest(run(DRIFT, (int(20 / h), h)), quantity) for h in (0.05, 0.025)}
-        for quantity in ("energy_error", "shadow_error")
-    )
+def test_a_modified_energy_is_flat_where_the_energy_wobbles():
+    history = run(DRIFT, (400, 0.05))
+    wobble, rest = (largest(history, quantity) for quantity in ("energy_error", "shadow_error"))
     for index in (SYMPLECTIC, VERLET):
-        assert rest[0.05][index] < wobble[0.05][index] / 100
-        # h⁴, measured 3.99 and 4.00; ±0.1 as for all orders here
-        order = math.log2(rest[0.05][index] / rest[0.025][index])
-        assert order == pytest.approx(4, abs=0.1)
-    assert np.isnan(rest[0.05][[EXPLICIT, RK4]]).all()
+        assert 0 < rest[index] < wobble[index] / 100
+    assert np.isnan(rest[[EXPLICIT, RK4]]).all()
 
 
 def test_another_step_size_has_another_modified_energy_and_begins_anew():

@@ -5,7 +5,6 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET
@@ -18,8 +17,6 @@ from pendu_tui.engine.studies.recommend import reach
 from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.harness import FPS, Clocked
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
@@ -70,18 +67,6 @@ def test_explicit_euler_gains_and_the_others_keep_their_energy_nearly():
     losses = [each[RK].energy_error for each in swings]
     assert losses == sorted(losses, reverse=True)
     assert all(abs(swings[6][place].energy_error) < 0.01 for place in (SYMPLECTIC, VERLET))
-
-
-def test_the_tilted_ellipse_is_seen_to_be_tilted():
-    shown = Shown().through(WHY, WHY.shot)
-    assert (WHY.shot.view, shown.places(WHY.cast)) == ("phase", [EXPLICIT, SYMPLECTIC])
-    states = [after(WHY, step * WHY.h)[SYMPLECTIC] for step in range(1, 100)]
-    viewport = Viewport.portrait(78, 11, WHY, WHY.shot.theta)
-    x = [viewport.x(each.theta) for each in states]
-    y = [viewport.y(each.omega) for each in states]
-    assert np.ptp(x) > 0.8 * 78  # 40 % of the dots across
-    assert np.ptp(y) > 1.6 * 11
-    assert abs(np.corrcoef(x, y)[0, 1]) > 0.2  # an upright ellipse has none
 
 
 def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
