@@ -190,7 +190,7 @@ class Report:
                 continue
             on = console(240)
             with on.capture() as drawn:  # Rich itself would end the process at a closed pipe
-                on.print(part, no_wrap=True, overflow="crop")
+                on.print(part)
             print(drawn.get(), end="")
 
 

@@ -87,10 +87,12 @@ def test_on_windows_it_says_which_terminal_to_use(session, fine, monkeypatch):
 
 @pytest.mark.parametrize(("size", "fine"), [("60x16", True), ("59x16", False), ("60x15", False)])
 def test_a_terminal_may_be_as_small_as_the_lab(size, fine, monkeypatch):
-    stdout = SimpleNamespace(isatty=lambda: True, encoding="utf-8")
+    stdout = SimpleNamespace(isatty=lambda: True, encoding="latin-1")
     monkeypatch.setattr(doctor, "sys", SimpleNamespace(stdout=stdout))
     for name, value in zip(("COLUMNS", "LINES"), size.split("x"), strict=True):
         monkeypatch.setenv(name, value)
-    found = findings()["size"]
-    assert found["found"] == size
-    assert found["advice"] == ("" if fine else "the lab needs 60x16; 120x40 shows all panes")
+    found = findings()
+    assert found["size"]["found"] == size
+    advice = "" if fine else "the lab needs 60x16; 120x40 shows all panes"
+    assert found["size"]["advice"] == advice
+    assert "PYTHONUTF8=1" in found["encoding"]["advice"]

@@ -10,11 +10,12 @@ def line_of(out, *words):
     return line.split()
 
 
-def test_a_file_of_csv_holds_what_csv_prints(tmp_path):
-    file = tmp_path / "map.csv"
+@pytest.mark.parametrize("form", ["csv", "json"])
+def test_a_file_holds_what_its_form_prints(form, tmp_path):
+    file = tmp_path / f"map.{form}"
     small = ("stability", "--steps", 30, "--z-values", "0.5,2.5", "--theta-values", "0.5,2")
     assert [pendu(*small, "-o", file, "--force").code for _ in range(2)] == [0, 0]
-    assert pendu(*small, "--csv").out == file.read_text(encoding="utf-8")
+    assert pendu(*small, f"--{form}").out == file.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

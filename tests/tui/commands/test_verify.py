@@ -72,7 +72,16 @@ def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
 
 
 def test_other_functions_of_the_machine_and_a_changed_source_are_told(whole):
-    row = verify._row(whole, None, None)
-    told = verify._sentence(row | {"other_functions": ["sin", "sqrt"], "changed_sources": ["mine"]})
-    assert "this machine computes sin() and sqrt() differently" in told
-    assert told.endswith("; the source of mine is not the recorded one")
+    first = {"run": 2, "step": 3, "t": 0.25, "field": "t", "method": None}
+    told = verify._sentence(
+        verify._row(whole, None, None)
+        | {"other_functions": ["sin", "sqrt"], "changed_sources": ["mine"]}
+        | {"first_difference": first | {"recorded": None, "computed": 0.5}}
+    )
+    assert told == (
+        f"different   {whole}: 10 samples in 2 runs; within tolerance only: this machine computes "
+        "sin() and sqrt() differently; the source of mine is not the recorded one\n"
+        "  first in t at run 2, step 3, t = 0.25 s, all methods:\n"
+        "    recorded nothing\n"
+        "    computed 0.5 (0x1.0000000000000p-1)"
+    )
