@@ -22,10 +22,6 @@ from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import PENDU, needs_signals, own_method, pendu
 
 
-def rows_of(line: str) -> dict[str, dict]:
-    return {row["method"]: row for row in pendu("run", *line.split(), "--json").json["methods"]}
-
-
 @pytest.mark.parametrize(
     ("command", "count", "whole"),
     [
@@ -54,17 +50,6 @@ def test_every_scene_and_extreme_start_runs_and_prints_no_nan(start):
     assert pendu("run", start, "--time", 5, "--json").json["steps"]  # its parser refuses nan
 
 
-def test_a_failed_method_is_reported_with_its_time():
-    # so small that its growth overflows any relative error
-    tiny = "--theta 1e-150 --time 1500 --methods explicit_euler"
-    euler = rows_of(tiny)["explicit_euler"]
-    assert euler["theta_error"] is None
-    assert euler["force_evaluations"] == round(euler["diverged_at"] / DEFAULT_SCENE.h)
-    outcome = pendu("run", *tiny.split(), "--fail-if", "explicit_euler.max_energy_error < 0")
-    assert f"failed at {euler['diverged_at']:g} s" in outcome.out
-    assert (outcome.code, "explicit_euler failed at" in outcome.err) == (1, True)
-
-
 def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_only(tmp_path):
     path = tmp_path / "run.mcap"
     run = ("run", "--scene", "spin", "--time", 5, "--record", path)
@@ -86,7 +71,7 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
         ("--time 0", ["above zero"]),
         ("--time 0.01", ["shorter than one step"]),
         ("--time 2 --h 0.05,5", ["--time 2", "5 s"]),
-        ("--time 1e10", ["out of range"]),
+        ("--time 1e9", ["out of range", "below 1e+09"]),
         ("--time 1 --fail-if rk5.theta>1", ["--fail-if", "rk5"]),
         ("", ["--time is missing"]),
         ("--h 0", ["h = 0 s"]),
@@ -187,10 +172,6 @@ def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run():
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
     assert single.items() <= rows[-1].items()
-    assert pendu(*LIST).out.split()[:3] == ["start_theta", "h", "method"]  # which vary
-    outcome = pendu(*LIST, "--time", 20, "--fail-if", "rk4.max_energy_error > 1e-4")
-    assert outcome.code == 1
-    assert "in 2 of 4 runs, first at theta 0.523599, h 0.1" in outcome.err
 
 
 ENDLESS = """\

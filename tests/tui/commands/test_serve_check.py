@@ -63,10 +63,10 @@ def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path,
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(serve, "LabServer", Server)
-    line = ("serve", "spin", "--theme", "light", "--record", "folder")
+    line = ("serve", "spin", "--theme", "light", "--record", "folder", "--port", 0)
     assert [pendu(*line).code for _ in range(2)] == [130, 130]
     assert told[0] == (SCENES["spin"], TerminalOptions("light"), tmp_path / "folder")
-    assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 8000: no such port; use")
+    assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 0: no such port; use")
 
 
 def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(monkeypatch):
