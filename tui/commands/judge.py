@@ -298,7 +298,7 @@ def lines_of(answer: Answer) -> list[str]:
     is_of_first = fields["scale"] == abs(fields["first_energy"])
     is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
     hint = ""
-    if is_of_first and is_around_zero and (fields["max_energy_error"] or 0) >= 1:
+    if is_of_first and is_around_zero:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
     distances = np.abs(answer.series.energies - np.median(answer.series.energies))
     far = int((distances > FAR * np.quantile(distances, 0.98)).sum())

@@ -57,6 +57,7 @@ FILES = {
     "zero.csv": "t,E\n" + lines("{n},{e}", [(n, (n * 7919) % 13 - 6.5) for n in range(300)]),
     "spike.csv": "t,E\n"
     + lines("{n},{e}", [(n, {0: 16, 9: 6}.get(n, n / 99)) for n in range(300)]),
+    "settled.csv": "t,E\n" + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "large.csv": "-0.1,1e305\n" + lines("{t},{e}") + "30,-1.79769e+308\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
@@ -93,6 +94,7 @@ zero.csv
 zero.csv --scale std
 zero.csv --scale 50
 spike.csv
+settled.csv
 failed.csv
 large.csv --from 0
 huge.csv
@@ -210,6 +212,12 @@ def test_a_terminal_shows_a_chart_above_the_answer(snapshot, monkeypatch):
     stdout = SimpleNamespace(isatty=lambda: True)
     monkeypatch.setattr(command, "sys", SimpleNamespace(stdout=stdout))
     snapshot("judge-chart.txt", pendu("judge", "units.csv").out)
+    for height, rows in ((20, 10), (25, 15), (40, 20)):  # with room for the answer
+        monkeypatch.setenv("LINES", str(height))
+        chart, _, _ = pendu("judge", "units.csv").out.partition("units.csv")
+        assert chart.count("\n") == rows
+    monkeypatch.setattr(command, "_chart", None)
+    assert pendu("judge", "units.csv", "--json").json
 
 
 @given(

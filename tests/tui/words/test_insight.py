@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -13,6 +14,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.words.insight import (
+    _returned,
     bounded,
     drift,
     forecast,
@@ -47,6 +49,7 @@ def changed(live, index: int, errors: dict[str, float] | None = None, **changes)
 def test_insights_as_they_are_stored(snapshot):
     texts = []
     for name, speed, clock in (
+        ("drift", 0.25, 12),
         ("drift", 1, 48),
         ("crossover", 1, 55),
         ("halving", 4, 35),
@@ -139,6 +142,9 @@ def test_an_error_past_anothers_maximum_is_news_after_what_to_watch():
     other.change(Stepping(2 * scene.h))
     other.step(round(scene.shot.moment / scene.h / 2))
     assert insight(other).text != scene.shot.sentence
+    silent = Live(scene.altered(shot=replace(scene.shot, sentence="")), clock=lambda: 0.0)
+    silent.step(round(scene.shot.moment / scene.h))
+    assert insight(silent).text
 
 
 def test_names_of_methods_are_painted_in_their_inks_and_nothing_else():
@@ -188,5 +194,12 @@ def test_there_and_back_shows_at_the_start_which_methods_are_reversible():
     miss = math.hypot(end.theta - DRIFT.theta, (end.omega - DRIFT.omega) / DRIFT.w0)
     assert missed["s"] == f"{miss:.1g}"  # not reversible, whatever the books say
     assert float(missed["e"]) > 1e-2
+    explicit, *others = live.history.returned.readings
+    readings = (explicit._replace(diverged_at=1.0), *others)
+    sample = live.history.returned._replace(readings=readings)
+    text = (
+        f"Back at t = 0; distance from the start [rad]: e failed, s {missed['s']}, r {missed['r']}."
+    )
+    assert _returned(DRIFT, sample, {"velocity_verlet"}).text == text
     live.step(round(9 / live.scene.h))
     assert insight(live).kind != "returned"
