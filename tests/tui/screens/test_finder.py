@@ -66,7 +66,7 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         await do("scene crossover")
         assert theatre.source.scene == SCENES["crossover"]
         assert not theatre.source.playhead.paused
-        await do("theme", "down", "down", "up", "pageup", "down")
+        await do("theme", "down", "pageup", "down", "down", "up")
         assert theatre.app.theme == "light"
         await found(theatre, "double speed")
         await theatre.click(Choices, 3, 0)

@@ -57,8 +57,9 @@ async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path
 
 async def test_an_incomplete_recording_is_said_to_be_one(path):
     path.write_bytes(path.read_bytes()[:-40])
-    async with player(path) as theatre:
+    async with player(path, (60, 16)) as theatre:
         assert "incomplete (its end is missing" in theatre.notices[0]
+        assert theatre.text(SeekBar).endswith("───   0.00 s of 12.00 s  run 1/3")  # has 24 columns
 
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):

@@ -67,6 +67,7 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         before = theatre.stage.shown
         t = theatre.source.sample.t
         await theatre.press("T")
+        assert theatre.stage.query_one(LessonPanel).size.height == 4
         await theatre.click(LessonPanel)  # goes on, as enter does
         assert words(STEPS[0].shot.question) in panel(theatre)
         await theatre.press("enter", "enter", "escape")
@@ -77,15 +78,6 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
         await theatre.press("T")
         assert words(STEPS[1].watch) in panel(theatre)
-
-
-async def test_its_panel_has_six_rows_or_four_on_a_wide_screen():
-    async with lab() as theatre:
-        await theatre.press("T")
-        for columns, rows in ((119, 6), (120, 4)):
-            await theatre.pilot.resize_terminal(columns, 40)
-            await theatre.pilot.pause()
-            assert theatre.stage.query_one(LessonPanel).size.height == rows
 
 
 async def test_the_command_begins_with_it():
