@@ -49,7 +49,7 @@ class Form(ModalScreen[ScreenResultType], SizedScreen[ScreenResultType]):
 
 class TextScreen(Form[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")
+        Binding("escape,?,q,space,enter,d,E,shift+e", "dismiss(None)")
     ]
 
     def __init__(self, title: str, text: str) -> None:

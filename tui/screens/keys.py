@@ -44,11 +44,11 @@ ALWAYS = 7
 """So many first keys stand on the last line in every view; then come those of the pane."""
 
 KEYS: list[BindingType] = [
-    _key("plus,equals_sign", "next_h(1)", "larger step h", "Step", "+", _H),
-    _key("minus", "next_h(-1)", "smaller step h", "Step", "-", _H),
+    _key("+,=", "next_h(1)", "larger step h", "Step", group=_H),
+    _key("-", "next_h(-1)", "smaller step h", "Step", group=_H),
     _key("space", "pause", "pause, go on", "Pause"),
     _key("v", "view", "next view", "View"),
-    _key("question_mark", "help", "this help", "Help", "?"),
+    _key("?", "help", "this help", "Help"),
     _key("q", "app.quit", "finish the recording, quit", "Quit"),
     _key("f", "live", "continue a replay live", "Live"),
     _key("p", "next_scene", "next scene", "Scene"),
@@ -67,11 +67,11 @@ KEYS: list[BindingType] = [
     _key("pageup", "part(-0.1)", "back 10 %", shown="pgup", group=_TENTHS),
     _key("pagedown", "part(0.1)", "forward 10 %", shown="pgdn", group=_TENTHS),
     _key("comma", "step(-1)", "one step back", shown=",", group=_STEPS),
-    _key("full_stop", "step(1)", "one step forward", shown=".", group=_STEPS),
-    _key("left_square_bracket", "event(-1)", "previous event", shown="[", group=_EVENTS),
-    _key("right_square_bracket", "event(1)", "next event", shown="]", group=_EVENTS),
-    _key("less_than_sign", "speed(-1)", "half speed", shown="<", group=_SPEED),
-    _key("greater_than_sign", "speed(1)", "double speed", shown=">", group=_SPEED),
+    _key(".", "step(1)", "one step forward", group=_STEPS),
+    _key("[", "event(-1)", "previous event", group=_EVENTS),
+    _key("]", "event(1)", "next event", group=_EVENTS),
+    _key("<", "speed(-1)", "half speed", group=_SPEED),
+    _key(">", "speed(1)", "double speed", group=_SPEED),
     *(
         _key(f"{n}", f"show({n - 1})", f"show or hide method {n}", group=_METHODS)
         for n in range(1, MAX_METHODS + 1)

@@ -185,7 +185,7 @@ class LabScreen(SizedScreen[None]):
             self.show_now()
         returned = live.history.returned
         is_new = returned is not None and before.step < returned.step == live.sample.step
-        if is_new and not live.playhead.paused and not live.is_marked:
+        if is_new and not live.playhead.paused:
             live.pause(True)
             live.mark("Back at the start")
             self.show_now()
@@ -276,8 +276,6 @@ class LabScreen(SizedScreen[None]):
             return source
         assert isinstance(source, Replay)
         source.pause(True)
-        if not source.fill() or source.sample.step > 100_000:  # takes more than 0.25 s
-            self.notify(f"Simulating {source.sample.step} steps ...", timeout=2)
         while not source.fill():
             await asyncio.sleep(0)
         if has_own(source.scene):

@@ -8,6 +8,7 @@ from textual.widgets import Input
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.drawing.picture import PALETTES
+from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import Choices
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
 from tests.tui.harness import Theatre, lab, until
@@ -99,3 +100,12 @@ async def test_keys_and_clicks_that_are_faster_than_the_list_do_no_harm(monkeypa
         monkeypatch.setattr(type(choices), "option_count", 0)
         await theatre.click(Choices, 3, 1)
         assert theatre.app.screen is not theatre.stage
+
+
+async def test_visitors_in_a_browser_save_no_file(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    monkeypatch.setattr(PenduApp, "is_web", True)
+    async with lab(size=SIZE) as theatre:
+        await theatre.press("s", "S")
+        assert "save a screenshot" not in await found(theatre, "save")
+    assert not [*tmp_path.iterdir()]

@@ -121,10 +121,9 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
         async def runs(state: str) -> bool:
             await theatre.pilot.pause()
             step = theatre.source.sample.step
-            for _ in range(15):
+            for _ in range(6):  # a fifth of a second, after which the line is drawn
                 theatre.now += 1 / 30
                 theatre.stage.frame()
-            theatre.stage.show_now()
             assert state in theatre.text(StatusLine)
             return theatre.source.sample.step > step
 

@@ -133,8 +133,8 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
             await theatre.press(key)
         assert " LIVE " in theatre.text(StatusLine)
         assert changed(theatre.source)
-        said = f"recorded as {path.with_name('new.mcap')};"
-        assert any(said in each for each in theatre.notices)
+        said = f"Live from 1.00 s on, recorded as {path.with_name('new.mcap')};"
+        assert any(each.startswith(said) for each in theatre.notices)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
         assert replay.playhead.paused

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
@@ -80,15 +80,21 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert words(STEPS[1].watch) in panel(theatre)
 
 
-async def test_the_command_begins_with_it():
+def guided(lesson: Lesson, scene: Scene, size: tuple[int, int] = (120, 40)):
+    """A lab as a command with a lesson begins it."""
+
     def make(clock):
-        lesson = tour()
-        screen = LabScreen(Live(lesson.page, clock=lambda: 0.0), clock)
+        screen = LabScreen(Live(scene, clock=lambda: 0.0), clock)
         screen.guide = lesson
         return screen
 
-    async with on_stage(make, (120, 40)) as theatre:
-        await theatre.pilot.pause()
+    return on_stage(make, size)
+
+
+async def test_the_command_begins_with_it_unless_its_options_alter_the_scene():
+    async with guided(tour(), STEPS[0].altered(h=0.1)) as theatre:
+        assert not theatre.stage.is_guided
+    async with guided(tour(), STEPS[0]) as theatre:
         assert theatre.source.sample.run == 1
         while not theatre.source.playhead.paused:
             theatre.now += 1 / FPS
@@ -99,13 +105,6 @@ async def test_the_command_begins_with_it():
 
 async def test_of_a_page_that_is_too_long_the_end_is_kept():
     page = replace(STEPS[0], watch=100 * "too " + "long.")
-
-    def make(clock):
-        screen = LabScreen(Live(page, clock=lambda: 0.0), clock)
-        screen.guide = Lesson("Page", [page])
-        return screen
-
-    async with on_stage(make, (60, 16)) as theatre:
-        await theatre.pilot.pause()
+    async with guided(Lesson("Page", [page]), page, (60, 16)) as theatre:
         assert panel(theatre).startswith("Page 1 of 1")
         assert panel(theatre).endswith("long.")
