@@ -16,6 +16,7 @@ async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
         scene = theatre.source.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
         assert theatre.source.stepping.h == 0.01  # a new run is no reversed one
+        assert theatre.stage.shown.theta is None  # phase space fits it
         assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
 
 
