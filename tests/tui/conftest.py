@@ -44,6 +44,17 @@ def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.Monk
 
 
 @pytest.fixture
+def uncomputed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Views get no results."""
+
+    async def nothing(*_: object) -> AsyncIterator[object]:
+        return
+        yield
+
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", nothing)
+
+
+@pytest.fixture
 def snapshot(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
     """Compare a text with the file of that name; --snapshot-update writes the file."""
 

@@ -187,26 +187,20 @@ async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
             await pilot.pause(0.05)
 
 
-async def uncomputed(*_: object) -> AsyncIterator[object]:
-    """Replace tui.views.background.computed where a test needs no results."""
-    return
-    yield
-
-
 @asynccontextmanager
 async def view_of(
-    stage: LabScreen,
     key: str,
     kind: type[Any],
     complete: Callable[[Any], bool],
-    size: tuple[int, int],
-) -> AsyncIterator[tuple[Pilot[Any], Any]]:
-    """Show a view by its key; yield the pilot and a pane of the view once it is complete."""
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.press(key)
-        await until(pilot, lambda: app.screen.query(kind))
-        pane = app.screen.query_one(kind)
-        await until(pilot, lambda: complete(pane))
+    scene: Scene = DEFAULT_SCENE,
+    size: tuple[int, int] = (80, 24),
+) -> AsyncIterator[tuple[Pilot[Any], Any, Live]]:
+    """Show a view of a paused lab by its key; yield its pane once it is complete."""
+    live = Live(scene)
+    live.pause(True)
+    async with on_stage(lambda clock: LabScreen(live), size) as theatre:
+        await theatre.press(key)
+        pane = theatre.stage.query_one(kind)
+        await until(theatre.pilot, lambda: complete(pane))
         pane.draw()
-        yield pilot, pane
+        yield theatre.pilot, pane, live

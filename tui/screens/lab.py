@@ -385,7 +385,6 @@ class LabScreen(SizedScreen[None]):
     ) -> None:
         before, view, self._undo = self._before_lesson
         self.is_guided = False
-        self._undo.append(before)
         self.shown = before.shown
         self.source.set_speed(abs(before.run.speed))
         self.source.pause(False)

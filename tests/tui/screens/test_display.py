@@ -12,7 +12,7 @@ from pendu_tui.tui.screens.app import PenduApp, portable
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views import VIEWS
 from tests.tui.drawn import screen
-from tests.tui.harness import key_of, lab, uncomputed
+from tests.tui.harness import key_of, lab
 
 
 async def test_a_theme_changes_all_colours_and_no_character():
@@ -41,8 +41,8 @@ def colours(app) -> set[Color]:
     return {each for style in styles for each in (style.color, style.bgcolor)} - {None}
 
 
+@pytest.mark.usefixtures("uncomputed")
 async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     async with lab() as theatre:
         theatre.app.action_use_theme("ansi")
         await theatre.run(1)

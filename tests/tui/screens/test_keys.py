@@ -48,11 +48,12 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
             return source.stepping.h, source.playhead.speed, source.scene, theatre.stage.shown
 
         before = [settings()]
-        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "y"):
+        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "p", "y"):
             await theatre.press(*keys)
             before.append(settings())
         assert before[3][2] == SCENES["gentle"]
-        assert settings()[1:3] == (SCENES["mean-field"].speed, SCENES["mean-field"])
+        assert before[4][1:3] == (SCENES["mean-field"].speed, SCENES["mean-field"])
+        assert before[5][2] == SCENES["drift"]  # the first comes after the last
         for earlier in reversed(before[:-1]):
             await theatre.press("u")
             assert settings() == earlier

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from tests.tui.drawn import screen
-from tests.tui.harness import Theatre, lab, uncomputed
+from tests.tui.harness import Theatre, lab
 
 KEYS = (
     *("plus", "minus", "minus", "n", "n", "b", "b", "u", "space", "comma", "full_stop", "m", "m"),
@@ -17,7 +17,7 @@ KEYS = (
     *("space", "escape", "question_mark", "escape", "d", "escape", "E", "escape", "ctrl+p"),
     *("escape", "P", "escape", "f", "r", "T", "space", "1", "2", "3", "space", "f3"),
     *("question_mark", "escape", "plus", "u", "enter", "enter", "enter", "enter", "backspace"),
-    *("u", "u", "u", "3", "enter", "T", "z", "escape"),
+    *("u", "u", "u", "3", "enter", "T", "z", "escape", "u"),
 )
 
 
@@ -39,10 +39,10 @@ def words(theatre: Theatre) -> list[str]:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has ctrl+z in the help, and / in names")
+@pytest.mark.usefixtures("uncomputed")
 async def test_a_walk_over_the_keys(snapshot, monkeypatch, tmp_path):
     """After each key the lines that it has changed."""
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
     texts: list[str] = []
     before: list[str] = []
     async with lab(size=(120, 40)) as theatre:

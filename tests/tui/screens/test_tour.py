@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
@@ -9,7 +11,7 @@ from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import InsightLine, LessonPanel
 from pendu_tui.tui.views.lab import TimeChart
-from tests.tui.harness import FPS, Theatre, lab, on_stage, uncomputed
+from tests.tui.harness import FPS, Theatre, lab, on_stage
 
 STEPS = tour().pages
 
@@ -22,8 +24,8 @@ def panel(theatre: Theatre) -> str:
     return words(theatre.text(LessonPanel))
 
 
-async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full(monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
+@pytest.mark.usefixtures("uncomputed")
+async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full():
     async with lab(SCENES["spin"], (60, 16)) as theatre:
         await theatre.press(
             "f3", "x", "f2", "T"
@@ -66,7 +68,7 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert theatre.source.scene == SCENES["spin"]  # its keys do nothing yet
         before = theatre.stage.shown
         t = theatre.source.sample.t
-        await theatre.press("T")
+        await theatre.press("T", "u")  # which does not leave it
         assert theatre.stage.query_one(LessonPanel).size.height == 4
         await theatre.click(LessonPanel)  # goes on, as enter does
         assert words(STEPS[0].shot.question) in panel(theatre)

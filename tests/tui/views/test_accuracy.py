@@ -1,6 +1,6 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
-from contextlib import asynccontextmanager
+from functools import partial
 
 import pytest
 from textual.geometry import Size
@@ -8,8 +8,6 @@ from textual.geometry import Size
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
@@ -48,13 +46,7 @@ def test_a_point_is_found_within_six_columns_or_three_rows():
     assert [nearest([(10, 5, "here")], *cell) for cell in cells] == ["here", None] * 2
 
 
-@asynccontextmanager
-async def accuracy_view(scene=SCENES["drift"], size=(80, 24)):
-    """The view of a paused lab, once it is complete."""
-    live = Live(scene)
-    live.pause(True)
-    async with view_of(LabScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
-        yield pilot, pane, live
+accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)
 
 
 @pytest.mark.other_process

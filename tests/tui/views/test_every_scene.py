@@ -11,7 +11,7 @@ from pendu_tui.tui.views.accuracy import AccuracyPane
 from pendu_tui.tui.views.phase import SectionPane
 from pendu_tui.tui.views.stability import StabilityPane
 from pendu_tui.tui.views.view import Pane
-from tests.tui.harness import key_of, lab, player, uncomputed
+from tests.tui.harness import key_of, lab, player
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 STIFF = SCENES["stiff-slow"]
@@ -22,10 +22,8 @@ def words(theatre):
 
 
 @pytest.mark.parametrize("view", VIEWS)
-async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(
-    view, monkeypatch
-):
-    monkeypatch.setattr("pendu_tui.tui.views.background.computed", uncomputed)
+@pytest.mark.usefixtures("uncomputed")
+async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(view):
     async with lab() as theatre:
         await theatre.press(key_of(view))
         for scene in SCENES.values():

@@ -1,15 +1,13 @@
 """F5: the stability map under mouse and keyboard."""
 
 import math
-from contextlib import asynccontextmanager
+from functools import partial
 
 import numpy as np
 import pytest
 
-from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.stability import UNKNOWN
-from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.stability import StabilityPane
 from tests.tui.harness import view_of
 
@@ -21,14 +19,7 @@ def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (20, 60))
 
 
-@asynccontextmanager
-async def stability_view(scene: Scene = SCENES["drift"], size: tuple[int, int] = (80, 24)):
-    """The view with a map of 60 steps, once that is complete."""
-    live = Live(scene)
-    live.pause(True)
-    screen = LabScreen(live)
-    async with view_of(screen, "f5", StabilityPane, lambda pane: pane.settled, size) as view:
-        yield *view, live
+stability_view = partial(view_of, "f5", StabilityPane, lambda pane: pane.settled)
 
 
 async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen():
