@@ -492,8 +492,6 @@ class LabScreen(SizedScreen[None]):
         notice = "Undone"
         if state.source is not self.source:
             self.source.close()
-            ours = (each for each in self._undo if each.source is state.source)
-            self._undo = deque(ours, maxlen=self._undo.maxlen)
             self._enter(state.source)
             notice = "Back in the replay"
         self.source.return_to(state.run)

@@ -8,7 +8,6 @@ from textual.widgets import Input
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.drawing.picture import PALETTES
-from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import Choices
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
 from tests.tui.harness import Theatre, lab, until
@@ -74,11 +73,13 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed
         await do("pixels half")
         assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
-        await theatre.press("e", "1", "-")
+        await theatre.press("e", "1", "-", "n", "b")
         await do("scene file")
         await until(theatre.pilot, (tmp_path / "scene.toml").exists)
+        stepping = theatre.source.stepping
         (scene,) = read_scenes(tmp_path / "scene.toml").values()
-        assert (scene.h, scene.cast) == (0.1, SCENES["crossover"].cast)
+        assert (scene.h, scene.cast) == (stepping.smallest, SCENES["crossover"].cast)
+        assert scene.shot.equal_cost
         front = [scene.cast[place].key for place in theatre.stage.shown.places(scene.cast)]
         assert (scene.shot.quantity, [*scene.shot.front]) == ("theta_error", front)
         assert len(front) < len(scene.cast)
@@ -100,12 +101,3 @@ async def test_keys_and_clicks_that_are_faster_than_the_list_do_no_harm(monkeypa
         monkeypatch.setattr(type(choices), "option_count", 0)
         await theatre.click(Choices, 3, 1)
         assert theatre.app.screen is not theatre.stage
-
-
-async def test_visitors_in_a_browser_save_no_file(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    monkeypatch.setattr(PenduApp, "is_web", True)
-    async with lab(size=SIZE) as theatre:
-        await theatre.press("s", "S")
-        assert "save a screenshot" not in await found(theatre, "save")
-    assert not [*tmp_path.iterdir()]

@@ -12,6 +12,7 @@ from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens import keys
+from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, help_text, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import StatusLine
@@ -95,6 +96,8 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         for row, places in ((3, [2]), (1, [0, 1, 2, 3])):
             await theatre.click(ErrorTable, 5, row)
             assert theatre.stage.shown.places(USUAL_CAST) == places
+            assert len(theatre.notices) == (places == [2])  # it is alone
+            theatre.app.clear_notifications()
         await theatre.click(TimeChart, 20, 5)
         assert theatre.stage.shown.quantity == "theta_error"
 
@@ -167,6 +170,24 @@ async def test_thirty_changes_can_be_undone_and_a_step_takes_the_line_of_its_sce
             seen.append(stage.shown)
         changes = [one != other for one, other in pairwise(seen)]
         assert changes == [*[True] * 30, False]
+
+
+async def test_pictures_and_scenes_are_saved_among_the_recordings_or_say_why_not(tmp_path, monkeypatch):
+    folder = tmp_path / "to" / "make"
+    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
+    async with lab(size=(80, 24)) as theatre:
+        await theatre.press("s", "S")
+        picture, scene = sorted(folder.iterdir())
+        assert ">scene</text>" in picture.read_text(encoding="utf-8")
+        monkeypatch.setattr(PenduApp, "is_web", True)
+        await theatre.press("s", "S")  # a visitor's do nothing
+        assert [*folder.iterdir()] == [picture, scene]
+        monkeypatch.setattr(PenduApp, "is_web", False)
+        monkeypatch.setenv("PENDU_RECORDINGS", str(picture / "below"))
+        theatre.app.clear_notifications()
+        await theatre.press("s", "S")
+        said = [each.partition(" not saved: ")[0] for each in theatre.notices]
+        assert said == ["Screenshot", "Scene"]
 
 
 @pytest.mark.parametrize("owner", [LabScreen, SectionPane])

@@ -17,7 +17,7 @@ KEYS = (
     *("space", "escape", "question_mark", "escape", "d", "escape", "E", "escape", "ctrl+p"),
     *("escape", "P", "escape", "f", "r", "T", "space", "1", "2", "3", "space", "f3"),
     *("question_mark", "escape", "plus", "u", "enter", "enter", "enter", "enter", "backspace"),
-    *("u", "u", "u", "3", "enter", "T", "z", "escape", "u"),
+    *("u", "u", "u", "3", "enter", "T", "z", "escape", "u", "r", "w"),
 )
 
 
