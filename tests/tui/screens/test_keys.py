@@ -172,7 +172,9 @@ async def test_thirty_changes_can_be_undone_and_a_step_takes_the_line_of_its_sce
         assert changes == [*[True] * 30, False]
 
 
-async def test_pictures_and_scenes_are_saved_among_the_recordings_or_say_why_not(tmp_path, monkeypatch):
+async def test_pictures_and_scenes_are_saved_among_the_recordings_or_say_why_not(
+    tmp_path, monkeypatch
+):
     folder = tmp_path / "to" / "make"
     monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
     async with lab(size=(80, 24)) as theatre:
