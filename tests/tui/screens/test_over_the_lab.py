@@ -85,7 +85,9 @@ async def test_notices_lie_on_the_insight_line_and_replace_equal_ones():
         assert app.screen.query_one(InsightLine).region.contains_region(region)
         await pilot.press("m", *["minus"] * 9)
         refused = [each for each in app._notifications if "not a usable" in each.message]
-        assert [each.severity for each in refused] == ["warning"]
+        assert [(each.severity, each.markup) for each in refused] == [("warning", False)]
+        app.notify("\x1b")
+        assert "\x1b" not in [*app._notifications][-1].message
         assert [event.kind for event in live.events].count("mark") == 1
 
 

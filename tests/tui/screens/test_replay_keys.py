@@ -93,7 +93,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         assert "over the top" in theatre.text(EventList)
 
 
-async def test_where_the_lab_could_not_record_the_replay_stays(path):
+async def test_where_the_lab_could_not_record_the_replay_stays_and_what_it_records_is_closed(path):
     def refuse(live):
         raise UserError("/nowhere is not writable: choose another folder.")
 
@@ -105,6 +105,9 @@ async def test_where_the_lab_could_not_record_the_replay_stays(path):
         assert any("/nowhere" in each for each in theatre.notices)
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
+        theatre.stage.record = lambda live: start_recording(live, path.with_name("new.mcap"))
+        await theatre.press("f")
+    assert path.with_name("new.mcap").exists()  # it has this name when it is closed
 
 
 @pytest.mark.parametrize(
