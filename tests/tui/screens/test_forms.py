@@ -12,7 +12,7 @@ from tests.tui.harness import lab
 async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("b", "i", *"115deg", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
+        await theatre.press("b", "i", *"115deg ", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
         scene = theatre.source.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
         assert theatre.source.stepping.h == 0.01  # a new run is no reversed one

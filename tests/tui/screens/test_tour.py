@@ -32,7 +32,6 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
         )  # a page shows its own picture, whatever was there
         for number, page in enumerate(STEPS):
             shot = page.shot
-            await theatre.pilot.pause()
             assert (theatre.stage.view, theatre.source.scene) == (shot.view, page)
             assert theatre.stage.shown == Shown().through(page)
             assert words(page.watch) in panel(theatre)
@@ -54,7 +53,6 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert words(shot.truth) in panel(theatre)
             assert "enter go on" in panel(theatre)
             await theatre.press("enter")
-        await theatre.pilot.pause()
         assert not theatre.stage.query_one(LessonPanel).is_on_screen
         assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
         await theatre.press("u")
