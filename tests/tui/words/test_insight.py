@@ -138,8 +138,10 @@ def test_an_error_past_anothers_maximum_is_news_after_what_to_watch():
     (top,) = (each for each in live.milestones if each.kind == "over the top")
     live.milestones = [*live.milestones, top._replace(step=live.sample.step)]
     assert insight(live).kind == "over the top"  # which matters more
+    assert insight(live, {top.method.key}).kind == "errors cross"
     other = Live(scene, clock=lambda: 0.0)
     other.change(Stepping(2 * scene.h))
+    assert insight(other).kind == "nothing"
     other.step(round(scene.shot.moment / scene.h / 2))
     assert insight(other).text != scene.shot.sentence
     silent = Live(scene.altered(shot=replace(scene.shot, sentence="")), clock=lambda: 0.0)
@@ -166,6 +168,9 @@ def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
     live = Live(DRIFT.altered(theta=1e-150, h=0.3), clock=lambda: 0.0)
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
+    failed = next(each for each in live.milestones if each.kind == "failed")
+    over = failed._replace(kind="over the top", step=0, method=USUAL_CAST[RK4])
+    live.milestones = [over, failed]
     found, *others = lasting(live)
     assert found.kind == "failed"
     assert seconds(live.sample.readings[EXPLICIT].diverged_at) in found.text
