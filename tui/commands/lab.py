@@ -168,7 +168,7 @@ def say_goodbye(source: Source) -> int:
         file = recorder.part
     if file.exists():
         for line in (f"saved {file}", f"replay it with: pendu-tui replay {quoted([str(file)])}"):
-            print(printable(line, limit=5000))  # whole, to be copied
+            print(printable(line, len(line)))  # whole, to be copied
     if recorder.failed:
         warn(f"the recording stopped: {recorder.failed}")
         return Exit.DISK

@@ -215,7 +215,7 @@ def drift(source: Source, index: int) -> Insight | None:
     rate = judgement.slope or 0.0
     if verdict not in LEAVES or rate == 0.0 or (rate > 0) != (verdict == GROWS):
         return None
-    if judgement.growth and verdict == GROWS:
+    if judgement.growth:
         tenfold = about(math.log(10) / judgement.growth)
         return Insight("multiplies", f"{name}'s energy grows tenfold every {tenfold}.")
     unit = "E0" if conserved else "the true energy"

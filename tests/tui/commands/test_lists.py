@@ -53,7 +53,8 @@ def test_the_gate_of_a_right_method_passes():
     right = ("methods", "velocity_verlet", "--fail-if", "order < 1.9 or symplectic != yes")
     assert pendu(*right).code == 0
     assert pendu("methods", "heun", *right[2:]).code == 1
-    assert pendu("methods", "halving_verlet", *right[2:]).code == 1  # its order is not measured
+    gate = ("--fail-if", "symplectic == yes")  # which is not measured of halving, like its order
+    assert pendu("methods", "halving_verlet", *gate).code == 1
 
 
 @pytest.mark.parametrize("expression", ["verdict == grows", "symplectic < 1", "symplectic == no_"])

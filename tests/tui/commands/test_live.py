@@ -1,5 +1,6 @@
 """`pendu-tui live` before there is a screen."""
 
+import gc
 import signal
 from pathlib import Path
 from types import SimpleNamespace
@@ -97,6 +98,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     )
     looping = ("--loop", "--paused", "--start-at", 3, "--speed", 2, "--no-record")
     replay = ("replay", "drift", *looping)
+    gc.enable()
     for command in (
         replay,
         ("replay", "drift", "--method", "mine.py"),
@@ -104,6 +106,8 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
         ("live", "--scene", asking, "--record", "new.mcap"),
     ):
         assert pendu(*command).code == 0
+    assert not gc.isenabled()  # which would delay the first paint
+    gc.enable()
     assert ["record" in vars(screen) for screen in screens] == [False, True, False, True]
     assert screens[-1].record.keywords == {"file": Path("new.mcap")}
     assert [screen.guide is None for screen in screens] == [True, True, True, False]

@@ -64,9 +64,10 @@ def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     ("colour", "ground"),
     [
         ("rgb:ffff/ffff/ffff", "light"),
-        ("rgb:0/f/0", "light"),  # green is the brightest
+        ("rgb:f/7/0", "light"),  # green is the brightest
+        ("rgb:0/9/f", "light"),
         ("rgb:f/0/0", "dark"),
-        ("rgba:0000/0000/ffff", "dark"),
+        ("rgba:0000/8888/ffff", "dark"),
         ("", None),
     ],
 )
