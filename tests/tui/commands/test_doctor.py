@@ -20,7 +20,6 @@ def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_te
     lab = findings()["lab"]
     assert lab["found"] == "cannot start here"
     assert "Use pendu-tui run" in lab["advice"]
-    assert findings()["encoding"] == {"what": "encoding", "found": "utf-8", "advice": ""}
 
 
 @pytest.mark.parametrize("folder", ["file", "file/below", "lost link"])

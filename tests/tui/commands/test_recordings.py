@@ -81,7 +81,6 @@ def test_an_unfinished_recording_is_listed_shown_and_exported_as_it_is(library):
     assert pendu("recordings", "--json").json["recordings"][0]["file"] == str(part)
     assert 0 < pendu("recordings", "show", "latest", "--json").json["samples"] < 10
     assert pendu("export", "latest").out.count("\n") > 1
-    assert pendu("verify", "latest").code == 0
     assert part.exists()
 
 

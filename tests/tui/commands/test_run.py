@@ -165,10 +165,8 @@ def stopped(path, name: str) -> tuple[int, str, str]:
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
 
 
-def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run():
-    text = pendu(*LIST, "--csv").out
-    rows = list(csv.DictReader(text.splitlines()))
-    assert len({(row["start_theta"], row["h"], row["method"]) for row in rows}) == 2 * 2 * 2
+def test_the_rows_of_a_list_are_those_of_single_runs():
+    rows = list(csv.DictReader(pendu(*LIST, "--csv").out.splitlines()))
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
     assert single.items() <= rows[-1].items()

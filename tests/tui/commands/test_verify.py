@@ -3,7 +3,7 @@ import pytest
 from pendu_tui.recordings.files import golden_names
 from pendu_tui.tui.commands import verify
 from tests.recordings.examples import record, two_runs
-from tests.tui.command_line import Outcome, own_method, pendu
+from tests.tui.command_line import own_method, pendu
 
 
 @pytest.fixture
@@ -11,24 +11,19 @@ def whole(tmp_path):
     return record(tmp_path / "whole.mcap", two_runs())
 
 
-def first_words(outcome: Outcome) -> list[str]:
-    return [line.split()[0] for line in outcome.out.splitlines()]
-
-
-def test_a_folder_means_all_recordings_below_it_and_golden_the_bundled_ones(tmp_path, monkeypatch):
-    assert pendu("verify", tmp_path).refused(3, "no recordings in this folder")
-    (tmp_path / "a").mkdir()
-    record(tmp_path / "one.mcap", two_runs())
-    record(tmp_path / "a" / "two.mcap", two_runs())
-    (tmp_path / "being made.mcap.part").touch()
-    ours = pendu("verify", tmp_path)
-    assert first_words(ours) == ["identical", "identical", "2"]
-    assert "differently" not in ours.out
+def test_golden_means_the_bundled_recordings_or_all_below_a_folder_of_that_name(
+    tmp_path, monkeypatch
+):
     count = len(golden_names())
-    assert first_words(pendu("verify", "golden")) == [*["identical"] * count, str(count)]
-    (tmp_path / "golden").mkdir()
+    told = pendu("verify", "golden").out
+    assert told.count("identical   ") == count
+    assert told.endswith(f"\n{count} recordings, {count} identical\n")
     monkeypatch.chdir(tmp_path)
+    below = tmp_path / "golden" / "below"
+    below.mkdir(parents=True)
     assert pendu("verify", "golden").refused(3, "no recordings in this folder")
+    record(below / "one.mcap", two_runs())
+    assert pendu("verify", "golden").out.startswith("identical")
 
 
 COMMANDS = (
