@@ -39,8 +39,6 @@ class _Line(Strip):
         self.behind = behind  # segments
 
     def __getattr__(self, name: str) -> Any:
-        if not name.endswith("_cache"):
-            raise AttributeError(name)
         setattr(self, name, FIFOCache(4))
         return getattr(self, name)
 
