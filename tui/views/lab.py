@@ -125,7 +125,7 @@ class TimeChart(Pane):
             window = history.window(back)
         else:
             window = history.between(look.stretch.begin, look.stretch.end)
-            until = min(until, look.stretch.end)
+            until = look.stretch.end
             back = until - look.stretch.begin
         ghost = None
         if source.ghost is not None:
