@@ -145,7 +145,7 @@ class Canvas:
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots within `radius` of the one at (x, y); `hollow`: only the rim."""
-        if isfinite(x) and isfinite(y):
+        if isfinite(x + y):
             layer = self._layer(ink)
             column, right = divmod(floor(x), 2)
             row, down = divmod(floor(y), 4)

@@ -165,7 +165,7 @@ def draw_points(canvas: Canvas, viewport: Viewport, points: Sequence[PhasePoint]
     for point, right, down in places:
         canvas.disc(right, down, DISC, point.ink, hollow=point.ink == EXACT)
     for point, x, y in places:
-        if math.isfinite(x) and math.isfinite(y):
+        if math.isfinite(x + y):
             column = int(min(max(x, 0), canvas.width - 1)) // 2
             row = int(min(max(y, 0), canvas.height - 1)) // 4
             near = [(column + right, row + down) for right, down in BESIDE]

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.picture import EXACT, FAINT, FRAME, TEXT, Picture, faint
 from tests.tui.drawn import cells
+from tests.tui.drawn import inks as inks_of
 
 DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))  # by bit
 COLUMNS, ROWS = 10, 6
@@ -125,12 +126,13 @@ def test_flat_lines_in_a_row_of_cells_keep_their_heights_and_never_meet(heights,
     assert [ink for _, ink in picture.rows[0]] == [place % len(heights) for place in range(6)]
 
 
-def test_trails_in_one_place_have_as_many_cells_each():
-    canvas = Canvas(6, 1)
-    for ink in range(3):
-        canvas.line(0, 1.5, 12, 1.5, faint(ink))
-    owners = sorted(ink for _, ink in cells(canvas.picture()).values())
-    assert owners == [faint(0)] * 2 + [faint(1)] * 2 + [faint(2)] * 2
+@pytest.mark.parametrize("end", [(12, 0), (12, 24), (0, 24)])
+def test_trails_in_one_place_are_all_seen(end):
+    trails = {faint(ink) for ink in range(3)}
+    canvas = Canvas(6, 6)
+    for ink in trails:
+        canvas.line(0, 0, *end, ink)
+    assert inks_of(canvas.picture()) == trails
 
 
 def test_a_letter_stands_where_no_other_method_is():

@@ -1,3 +1,4 @@
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -97,10 +98,11 @@ HOUR = 3600
             "0.01 s 0.1 s 1 s 2 s 5 s 10 s 20 s 1 min 2 min 5 min 10 min 20 min"
             " 1 h 2 h 5 h 10 h 1 d 10 d 100 d 1000 d",
         ),
-        (theta_ticks(-3.2, 3.2, 5), "-pi -pi/2 0 pi/2 pi"),
+        (theta_ticks(-math.pi, math.pi, 4), "-pi -pi/2 0 pi/2 pi"),
         (theta_ticks(-0.6, 0.6, 4), "-0.5 0 0.5"),
         (theta_ticks(-1.0, 1.0, 4), "-pi/4 0 pi/4"),
         (number_ticks(0.0, 1234.56, 4), "0 500 1000"),
+        (number_ticks(2.0, 2.0, 4), "2"),
     ],
 )
 def test_the_most_common_labels_of_the_lab(labels, text):

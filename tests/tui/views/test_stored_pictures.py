@@ -65,7 +65,7 @@ def test_tables_and_titles(snapshot):
         live.step(100)
         live.change(live.stepping.toggled())
         live.step(1)
-        for width, held in ((60, None), (80, None), (119, None), (120, 1.0), (150, None)):
+        for width, held in ((60, None), (77, None), (119, None), (120, 1.0), (150, None)):
             rows = table(live, live.sample, Shown(held=held, hidden=frozenset({"rk4"})), width)
             texts.append(look(Picture(rows)))
         for quantity, log, room in product(quantities(live.scene), (True, False), (25, 40, 60)):
@@ -73,6 +73,9 @@ def test_tables_and_titles(snapshot):
             texts.append(title(shown, live.exact, live.scene.equations, room))
         shown = Shown(stretch=Stretch(1, 2.5, 7.25, True), log_time=True)
         texts.append(title(shown, live.exact, live.scene.equations))
+    spin = SCENES["spin"]
+    for room in (24, 100):
+        texts.append(title(Shown(), spin.exact(), spin.equations, room))
     texts += [f"{size} {places(*size)}" for size in SIZES]
     text = "\n".join(texts) + "\n"
     snapshot("tables.txt", re.sub(r"[-+](?=0\.0+\b)", " ", text))  # such a sign is one of rounding
@@ -88,17 +91,21 @@ def test_phase_space(snapshot):
     )
     model = DRIFT.equations
     texts = []
-    state = State(0.5, -2.0)
-    for viewport, shown, around in views:
+    states = State(0.5, -2.0), State(3.1, -0.5), State(0.0, -12.0)
+    for (viewport, shown, around), state in zip(views, states, strict=True):
         portrait = Portrait.of(viewport, model)
         points = method_points(live, live.sample, shown, around)
         line = Line("omega", 9.0, "pi/h")
-        picture = phase_picture(portrait, points, state, state if around else None, line)
+        picture = phase_picture(portrait, points, states[0], state, line)
         texts.append(look(Picture(framed(viewport, picture))))
     angle = np.linspace(0, math.tau, 64, endpoint=False)
     ring = math.pi + 0.5 * np.cos(angle), 1.5 * np.sin(angle)
     nowhere = PhasePoint(math.nan, math.nan, 3, "r", ring=ring)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), [nowhere])))
+    ends = zip((-9.0, 9.0, 0.1, 0.2), (1.0, -1.0, 30.0, -30.0), strict=True)
+    outside = [PhasePoint(*each, ink, "esvr"[ink]) for ink, each in enumerate(ends)]
+    part = Portrait.of(views[0][0]._replace(wrap=False), model)
+    texts.append(look(phase_picture(part, outside)))
     short = after(DRIFT, 1)
     points = method_points(short, short.sample, Shown(), None)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
@@ -136,12 +143,6 @@ def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, speed, joined)
     live.playhead.speed = speed
     points = method_points(live, live.sample, Shown(), None)
     assert {point.chords > 0 for point in points} == {joined}
-
-
-def test_no_word_covers_the_letter_of_a_method():
-    portrait = Portrait.of(Viewport.portrait(46, 15, DRIFT), DRIFT.equations)
-    for theta in np.linspace(-2, 2, 50):
-        assert "#" in phase_picture(portrait, [PhasePoint(theta, 0, 0, "#")]).text
 
 
 def test_the_legend_of_stability(snapshot):

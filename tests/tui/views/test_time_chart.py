@@ -1,4 +1,4 @@
-"""The chart: its title, how it answers to the mouse, and that it depends on the run alone."""
+"""The chart: how it answers to the mouse, and that it depends on the run alone."""
 
 import pytest
 from textual.events import MouseScrollDown, MouseScrollUp
@@ -8,7 +8,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown, Stretch
-from pendu_tui.tui.views.lab import TimeChart, title
+from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import lab
 from tests.tui.playback.test_history import run
 
@@ -38,21 +38,6 @@ def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_th
     back = nearer.zoomed(history.window(), 10.0, column)
     assert back is None or back == pytest.approx((plot.times[0], plot.times[-1]), rel=0.2, abs=2)
     assert nearer.zoomed(history.window(), 1e3) is None
-
-
-@pytest.mark.parametrize(
-    ("name", "stretch", "room", "text"),
-    [
-        ("drift", None, 100, "max |dE/E0| per half swing, all"),
-        ("spin", None, 100, "max |dE/E0| per turn, all"),
-        ("spin", None, 24, "max |dE/E0|, all"),
-        ("spin", Stretch(1, 2.0, 3.5, False), 100, "max |dE/E0|, 2 to 3.5 s"),
-    ],
-)
-def test_the_title_says_of_what_each_point_is_the_largest(name, stretch, room, text):
-    scene = SCENES[name]
-    shown = Shown(stretch=stretch)
-    assert title(shown, scene.exact(), scene.equations, room) == text
 
 
 async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():
