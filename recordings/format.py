@@ -18,7 +18,14 @@ from pendu_tui.engine.models import COMMON, DEFAULT_MODEL, MODELS, NUMBERS
 from pendu_tui.engine.models.model import Number
 from pendu_tui.engine.quantities import ENERGY_ERROR, EXTREMES, RECORDED, Quantity
 from pendu_tui.engine.run.lockstep import Reading, Sample
-from pendu_tui.engine.run.verdicts import VERDICTS, Milestone, MilestoneKind, word_of_before
+from pendu_tui.engine.run.verdicts import (
+    CHAOTIC,
+    UNDECIDED,
+    VERDICTS,
+    Milestone,
+    MilestoneKind,
+    direction,
+)
 from pendu_tui.engine.scenes import MAX_METHODS, Scene
 from pendu_tui.recordings.events import (
     Arithmetic,
@@ -273,7 +280,7 @@ def _milestone(fields: dict[str, Any]) -> Milestone:
     kind = fields["milestone"]
     method = method_named(fields["method"])
     error = fields[ENERGY_ERROR.name]
-    verdict = word_of_before(fields["verdict"], error, method.symplectic)
+    verdict = _word_of_today(fields["verdict"], error, method.symplectic)
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
     values = {name: fields[name] for name in Milestone._fields if name in fields}
@@ -281,6 +288,17 @@ def _milestone(fields: dict[str, Any]) -> Milestone:
     if kind == "errors cross":
         values["other"] = method_named(fields["other"])
     return Milestone(**values)
+
+
+def _word_of_today(word: str, change: float, symplectic: bool) -> str:
+    """Return today's word for a verdict of an older recording; other words as they are."""
+    if word == "caught":
+        return direction(change)
+    if word == "wanders":
+        return CHAOTIC if symplectic else UNDECIDED
+    if word == "too early":
+        return UNDECIDED
+    return word
 
 
 def values_of(reading: Reading) -> dict[str, float | None]:

@@ -84,17 +84,6 @@ def direction(change: float) -> str:
     return LOSES
 
 
-def word_of_before(word: str, change: float, symplectic: bool) -> str:
-    """Return today's word for a verdict of an older recording; other words as they are."""
-    if word == "caught":
-        return direction(change)
-    if word == "wanders":
-        return CHAOTIC if symplectic else UNDECIDED
-    if word == "too early":
-        return UNDECIDED
-    return word
-
-
 class Progress(NamedTuple):
     """How far it is to a verdict: "4 of 8 swings"."""
 
