@@ -54,11 +54,10 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
 def resolution(energies: Any) -> float:
     """Return the smallest difference of energies that repeat, as printed ones do; or rounding."""
     rounding = 8 * float(np.finfo(float).eps)
-    some = energies[:: len(energies) // 10_000 + 1]
-    differences = np.diff(np.unique(some))
+    differences = np.diff(np.unique(energies))
     differences = differences[differences > rounding]
-    jumps = int((np.abs(np.diff(some)) > rounding).sum())
-    repeat = 0 < len(differences) < len(some) / 2 and jumps >= levels.MIN_JUMPS
+    jumps = int((np.abs(np.diff(energies)) > rounding).sum())
+    repeat = 0 < len(differences) < len(energies) / 2 and jumps >= levels.MIN_JUMPS
     return float(differences.min()) if repeat else rounding
 
 

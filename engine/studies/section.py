@@ -154,7 +154,7 @@ def nearest_fraction(rotation: float) -> Fraction:
 
     Below 1/LARGEST it is one over the nearest number of whole steps a turn.
     """
-    if 1e-9 < rotation < 1 / LARGEST:
+    if 0 < rotation < 1 / LARGEST:
         return Fraction(1, round(1 / rotation))
     return Fraction(rotation).limit_denominator(LARGEST)
 
@@ -164,7 +164,7 @@ def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, s
     q = fraction.denominator
     steps = len(points[0]) - 1
     tolerance = 0.1 / steps  # a tenth of a turn in all
-    if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > tolerance:
+    if q > LARGEST or abs(abs(rotation) - fraction) > tolerance:
         return False
     theta = points[0][::q]
     omega = points[1][::q] / w0
