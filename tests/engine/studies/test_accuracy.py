@@ -52,10 +52,6 @@ def test_errors_are_the_largest_of_the_run(steps):
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     largest = max(abs(energy(y) - start) / start for y in path)
     assert point.errors == {"theta": max(off), "energy": largest, "final": off[-1]}
-    sampled = Study(DRIFT, 10.0).run(V, steps).errors
-    # between two of 400 comparisons in 5 swings the error moves by some percent of its largest value
-    assert 0.97 * max(off) <= sampled["theta"] <= max(off)
-    assert sampled["energy"] == largest
 
 
 @pytest.mark.parametrize("steps", [799, 800, 1199, 5000])

@@ -6,6 +6,7 @@ from itertools import count
 
 import pytest
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import compiled
@@ -54,6 +55,12 @@ def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     assert coarser.errors[kind] > target
 
 
+def test_a_target_as_large_as_the_swing_is_refused():
+    study = Study(DRIFT, 1.0)
+    with pytest.raises(InputError, match="as large as the swing"):
+        least_cost(study, "theta", study.sizes["theta"])
+
+
 def test_a_target_near_the_rounding_floor_is_reached():
     point = recommended(DRIFT, 20.0, "theta", 2e-13)
     assert point.method is R
@@ -88,8 +95,8 @@ def test_if_no_method_reaches_the_target_each_has_its_reason():
     reasons = {each.method: each.why_not for each in reach(study, "theta", 1e-17, 400_000)}
     assert reasons[R].startswith("rounding stops it at ")
     assert reasons[V] == "not within 400000 evaluations"
-    (euler,) = reach(Study(replace(DRIFT, cast=(E,)), 10.0), "theta", 1e-3, 1000)
-    assert euler.why_not == "not within 1000 evaluations"
+    (euler,) = reach(Study(replace(DRIFT, cast=(E,)), 10.0, compiled), "theta", 1e-9)
+    assert euler.why_not == "not within 20000000 evaluations"
 
 
 def test_a_method_is_given_up_only_if_its_order_predicts_twice_the_limit():

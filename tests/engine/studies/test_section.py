@@ -137,8 +137,9 @@ def test_at_rest_and_in_few_steps_nothing_turns():
         found = kind(VERLET, 1.0, 0.3, steps)
         assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
     angle = 0.13 * math.tau * np.arange(5)  # two steps in each half
-    assert rotation_number(np.cos(angle), -np.sin(angle), w0=1.0) == pytest.approx(0.13)
-    assert rotation_number(np.cos(angle[1:]), -np.sin(angle[1:]), w0=1.0) is None
+    circle = np.cos(angle), -3 * np.sin(angle)
+    assert rotation_number(*circle, w0=3.0) == pytest.approx(0.13)
+    assert rotation_number(circle[0][1:], circle[1][1:], w0=3.0) is None
 
 
 def test_an_orbit_ends_where_numbers_stop_being_finite():
