@@ -42,16 +42,15 @@ def _models(count: int) -> _Models:
     angles = np.pi * np.arange(1, count) / count
     cosines = np.cos(angles[:, None] * (np.arange(count) + 0.5)) * math.sqrt(2 / count)
     j = np.arange(1.0, count)
+    digits = np.frexp(j)[1]  # binary ones of j: the same within an octave
     shapes = [1 + 0 * j, *(1 / (1 + (j / knee) ** 2) for knee in _KNEES), 1 / j, 1 / j**2]
     weights = [1.0] * (1 + len(_KNEES)) + [_PINK_PRIOR, 1.0]
     rows = []
     for edge in sorted({min(edge, count - 1) for edge in (*_EDGES, count - 1)}):
-        octaves = np.zeros((4, count - 1))
+        octaves = (digits == np.arange(4, 8)[:, None]) & (j > edge)
         prior = math.lgamma((edge - 1) / 2) + math.log((edge + 1) / 2)
         prior -= (edge - 1) / 2 * math.log(math.pi)
-        for row, begin in enumerate(2**k for k in range(3, 7) if edge < 2**k < count):
-            octaves[row, begin - 1 : 2 * begin - 1] = 1
-            size = min(2 * begin, count) - begin
+        for size in filter(None, octaves.sum(axis=1).tolist()):
             prior += math.lgamma(size / 2) - size / 2 * math.log(math.pi) - _OCTAVE
         for shape, weight in zip(shapes, weights, strict=True):
             inverse = np.where(j <= edge, 1 / shape, 0.0)
