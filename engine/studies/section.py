@@ -60,7 +60,7 @@ def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> P
     phases = [start]
     with suppress(*OVERFLOW):
         for phase in islice(method.phases(model.force(), start, h), steps):
-            if not (math.isfinite(phase[0]) and math.isfinite(phase[1])):
+            if not all(map(math.isfinite, phase)):
                 break
             phases.append(phase)
     theta, omega = np.array(phases, np.float64).T
@@ -106,7 +106,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
         rotation = rotation_number(theta - math.tau * lap[0], omega, model.w0, spins)
     if rotation is not None:
         fraction = nearest_fraction(abs(rotation))
-        island = _is_island(points, model.w0, rotation, fraction, spins)
+        island = _is_island(points, rotation, fraction, spins)
     energy = model.energy()((float(theta[-1]), float(omega[-1])))
     (drift,) = model.reference(*start).errors(0.0, energy)
     return OrbitKind(
@@ -159,7 +159,7 @@ def nearest_fraction(rotation: float) -> Fraction:
     return Fraction(rotation).limit_denominator(LARGEST)
 
 
-def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
+def _is_island(points: Points, rotation: float, fraction: Fraction, spins: bool) -> bool:
     """Return whether the points of every q-th step wind around a point of their own."""
     q = fraction.denominator
     steps = len(points[0]) - 1
@@ -167,7 +167,7 @@ def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, s
     if q > LARGEST or abs(abs(rotation) - fraction) > tolerance:
         return False
     theta = points[0][::q]
-    omega = points[1][::q] / w0
+    omega = points[1][::q]
     if spins:
         turn = math.copysign(math.tau * fraction.numerator, rotation)
         theta = theta - turn * np.arange(len(theta))
