@@ -87,7 +87,10 @@ def test_neighbours_follow_so_many_steps_at_once_and_in_each_methods_own():
     run.forward(12)
     for step in (5, 10, 12):
         found = rings(neighbours, run, most=5)
+        ring = neighbours.ring_of(DRIFT, 1)
         assert neighbours.step == step
+    rings(neighbours, run)
+    assert neighbours.ring_of(DRIFT, 1) is ring  # it has not begun again
     assert np.array_equal(found, [*expected((48, 0.05))[:3], expected((12, 0.2))[3]])
 
 
