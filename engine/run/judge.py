@@ -71,41 +71,19 @@ class _Bin(NamedTuple):
         )
 
 
-class Bands:
-    """The bins of a run, in constant memory: at first one a look point; 64 merge pairwise.
+def _with_look(bins: list[_Bin], look: _Bin) -> list[_Bin]:
+    """Return the bins of a run with one more look point, in constant memory.
 
-    `bins` is replaced and never changed in place, so `copy.copy` makes an independent copy.
+    At first a bin is one look point; 64 merge pairwise.  The last may have fewer than the others.
     """
-
-    def __init__(self) -> None:
-        self.bins: list[_Bin] = []
-        self._open: _Bin | None = None
-        self._size = 1  # look points in a bin
-
-    def add(self, each: _Bin) -> bool:
-        """Add a look point; return whether a bin is full."""
-        self._open = self._open.joined(each) if self._open else each
-        if self._open.looks < self._size:
-            return False
-        self.bins = [*self.bins, self._open]
-        self._open = None
-        if len(self.bins) == levels.MAX_BINS:
-            pairs = zip(self.bins[::2], self.bins[1::2], strict=True)
-            self.bins = [earlier.joined(later) for earlier, later in pairs]
-            self._size *= 2
-        return True
-
-    def recent(self) -> tuple[float, float]:
-        """Return the lowest and the highest value of the last quarter of the bins."""
-        last = self.bins[-max(1, len(self.bins) // 4) :]
-        return min(each.low for each in last), max(each.high for each in last)
-
-    @property
-    def one_way(self) -> float:
-        """The share of moves from bin to bin that go the more common way: 0.5 to 1."""
-        rises = [a.low + a.high < b.low + b.high for a, b in pairwise(self.bins)]
-        rising = sum(rises) / max(len(rises), 1)
-        return max(rising, 1 - rising)
+    if bins and bins[-1].looks < bins[0].looks:
+        bins = [*bins[:-1], bins[-1].joined(look)]
+    else:
+        bins = [*bins, look]
+    if len(bins) == levels.MAX_BINS and bins[-1].looks == bins[0].looks:
+        pairs = zip(bins[::2], bins[1::2], strict=True)
+        bins = [earlier.joined(later) for earlier, later in pairs]
+    return bins
 
 
 class Judge:
@@ -124,7 +102,7 @@ class Judge:
         self._start_error = start.error  # bands are relative to it
         self._last = start
         self._judged = 0  # the step of the last judgement
-        self._bands = Bands()
+        self._bins: list[_Bin] = []  # replaced and never changed in place
         self._left = ""  # the word of the first judgement that it leaves
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
@@ -136,7 +114,6 @@ class Judge:
     def copy(self) -> Self:
         """Return another judge that goes on from here."""
         other = copy.copy(self)
-        other._bands = copy.copy(self._bands)
         other._orbit = copy.copy(self._orbit)
         return other
 
@@ -148,10 +125,12 @@ class Judge:
             self._orbit.look(self._last, point)
         low = point.low - self._start_error
         high = point.high - self._start_error
-        each = _Bin(1, (self._last.step + point.step) / 2, (low + high) / 2, low, high)
+        look = _Bin(1, (self._last.step + point.step) / 2, (low + high) / 2, low, high)
+        self._bins = _with_look(self._bins, look)
         self._last = point
         self.peak = max(self.peak, -point.low, point.high)
-        is_full = self._bands.add(each) and len(self._bands.bins) >= levels.MIN_BINS
+        last_is_full = self._bins[-1].looks == self._bins[0].looks
+        is_full = last_is_full and len(self._bins) >= levels.MIN_BINS
         is_due = self._swings >= levels.MIN_SWINGS and point.step >= levels.LONGER_BY * self._judged
         if is_full and is_due:
             self._judged = point.step
@@ -199,12 +178,14 @@ class Judge:
         rounding = levels.WALK * self._method.epsilon * math.sqrt(self._last.step)
         if not self._model.conserves_energy:
             rounding = max(rounding, levels.REFERENCE_ERROR)
-        bins = bins_of_looks(self._bands.bins, self._h, rounding)
+        bins = bins_of_looks(self._bins, self._h, rounding)
         if self._orbit:
             measured = measure_bins(bins)
             return measured._replace(verdict=self.judgement.verdict, is_evident=False)
         found = judge_bins(bins, levels.AHEAD)
-        low, high = self._bands.recent()
+        present = self._bins[-(len(self._bins) // 4) :]
+        low = min(each.low for each in present)
+        high = max(each.high for each in present)
         away = max(low, -high)  # how far the present band is from the start
         if found.verdict == UNDECIDED:
             found = self._kept(found, low, high)
@@ -229,8 +210,10 @@ class Judge:
     def _doubt(self, verdict: str, is_away: bool) -> str:
         """Return why a verdict of the core does not hold for this run; "" if it does."""
         is_long = self._last.step >= levels.LONG
-        is_straight = is_long and self._bands.one_way >= levels.MIN_ONE_WAY
-        if self._may_beat and not is_straight:
+        rises = [a.low + a.high < b.low + b.high for a, b in pairwise(self._bins)]
+        falls = len(rises) - sum(rises)
+        is_straight = max(sum(rises), falls) >= levels.MIN_ONE_WAY * len(rises)
+        if self._may_beat and not (is_long and is_straight):
             return levels.BEATS
         if verdict in LEAVES and self._method.symplectic:
             return levels.RETURNS
