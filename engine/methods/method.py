@@ -126,7 +126,6 @@ class Method:
 
 
 SMALL_ERROR = 0.1  # rad; larger ones are not yet proportional to a power of h
-LOWEST_ORDER = 0.5  # half-way between an error that falls like h and one that stays
 
 
 class Measured(NamedTuple):
@@ -156,7 +155,7 @@ def no_order(order: float | None) -> str:
     """Return why a method has no order, a clause; "" if it has one."""
     if order is None:
         return f"no order: its error stays above {SMALL_ERROR:g} rad; it solves the wrong equation"
-    if order < LOWEST_ORDER:
+    if round(order) < 1:
         return f"order {order:.3f}: the error does not fall with h; it solves the wrong equation"
     return ""
 

@@ -143,7 +143,7 @@ def own_function(source: str, name: str, file: str) -> Phases:
     namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file}
     try:
         with USER_CODE:
-            exec(compile(source, file, "exec", dont_inherit=True), namespace)
+            exec(compile(source, file, "exec"), namespace)
     except SyntaxError as error:
         raise OwnMethodError(f"{file}, line {error.lineno or 1}: {error.msg}.") from None
     except KeyboardInterrupt:
