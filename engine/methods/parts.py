@@ -175,7 +175,6 @@ MEAN_FIELD_SPLITTING = Method(
     note="Its kicks are counted; each moves the two levels exactly over a step.",
     models=("mean_field",),
     takes="parts",
-    any_numbers=False,
 )
 
 FAST_AND_SLOW = (RESPA, IMEX_EULER, MEAN_FIELD_SPLITTING)
@@ -255,5 +254,4 @@ TAYLOR_20 = Method(
     used="astronomy and spacecraft: heyoka [bluescarni.github.io, heyoka]",
     models=("pendulum",),
     takes="parts",
-    any_numbers=False,
 )
