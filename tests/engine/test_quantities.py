@@ -14,6 +14,7 @@ def test_a_reading_has_the_recorded_quantities_in_order_and_requires_those_alway
     assert set(defaults) - {"extra"} <= optional
     variables = [each for model in MODELS.values() for each in model.variables]
     assert all(each.unit or each.about for each in (*RECORDED, *variables))  # which viewers show
+    assert [each.name for each in (*QUANTITIES, *variables) if each.relative] == ["spring_energy"]
 
 
 def test_no_two_quantities_share_a_name_or_a_head():

@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import TAYLOR_20, learned, method_of
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, SCENES, Scene, Shot
+from pendu_tui.engine.scenes import DEFAULT_SCENE, GROUPS, MAX_METHODS, SCENES, Scene, Shot
 from tests.sine import needs_rounded_sine
 from tests.truths import LIMITS
 
@@ -19,6 +19,7 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 @pytest.mark.parametrize("field", LIMITS)
 def test_a_value_beyond_its_limits_is_refused_in_a_sentence(field):
     low, high = LIMITS[field]
+    assert [getattr(Scene(**{field: value}), field) for value in (low, high)] == [low, high]
     beyond = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
     for value in (*beyond, math.nan, math.inf, -math.inf):
         with pytest.raises(InputError, match=rf"^{field} = .* is out of range; use .* to .*\.$"):
@@ -35,6 +36,8 @@ def test_a_number_is_for_the_model_that_has_it_and_within_limits():
         Scene(parameters={"friction": 0.1})
     with pytest.raises(InputError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 "):
         Scene(model="spring", cast=())
+    with pytest.raises(InputError, match=r"^Symplectic Euler is not for .* is for pendulum or lin"):
+        damped.with_cast(DEFAULT_SCENE.cast)
 
 
 @pytest.mark.parametrize(
@@ -61,6 +64,7 @@ def test_a_step_is_measured_by_the_fastest_motion():
 def test_a_useless_step_size_is_refused_and_a_good_one_is_named(h):
     for usable in (4999, 5.001e-9):
         assert Scene(gravity=0.04, h=usable).z == pytest.approx(0.2 * usable)
+    assert [Scene(gravity=1.0, h=h).z for h in (1e-9, 1e3)] == [1e-9, 1e3]
     with pytest.raises(
         InputError, match=r"not a usable step; use 5e-09 to 5e\+03 s, for example 0\.7\.$"
     ):
@@ -97,6 +101,7 @@ def test_every_scene_has_its_name_and_group_and_says_what_to_watch():
     assert [scene for group in GROUPS.values() for scene in group] == list(SCENES.values())
     for name, scene in SCENES.items():
         assert scene.name == name
+        assert len(scene.cast) <= MAX_METHODS == 6
         assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and a blank
         assert scene.h / scene.speed < 0.4  # s from a step to the next
         if moment := scene.shot.moment:
