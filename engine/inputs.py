@@ -53,7 +53,7 @@ def angle(text: str) -> float:
 def start_angle(text: str) -> float:
     """Return an angle [rad]; above a turn it needs a unit, because degrees may be meant."""
     value = angle(text)
-    if abs(value) > math.tau and not re.search(r"deg|°|rad|pi|π", text):
+    if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
         turns = abs(value) / math.tau
         raise ValueError(f"{text} is {turns:.3g} turns; write {text}deg or {text}rad")
     return value

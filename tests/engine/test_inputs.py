@@ -22,6 +22,7 @@ from pendu_tui.engine.inputs import angle, number, seconds, start_angle
         (angle, "-0.5*π", -math.pi / 2),
         (angle, "100", 100.0),
         (start_angle, "6.28", 6.28),
+        (start_angle, "inf", math.inf),  # a scene says within which limits
         (start_angle, "-6.29rad", -6.29),
         (start_angle, "3pi", 3 * math.pi),
         (start_angle, "400deg", math.radians(400)),
