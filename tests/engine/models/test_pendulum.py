@@ -26,7 +26,6 @@ STARTS = {
     "just below the separatrix, falling back": (2.0, -JUST * math.cos(1.0) * (1 - 1e-13)),
     "just above it, falling back": (2.0, -JUST * math.cos(1.0) * (1 + 1e-13)),
     "within rounding of it": (0.0, JUST),
-    "rotation backwards": (3.0, -8.0),
     "swinging many turns up": (1e6, 1.0),
     "spinning many turns down": (-1e6, -9.0),
 }
