@@ -330,7 +330,7 @@ class Sheet:
         if len(self.names) > 1 and not self.names[0] and any(self.names) and not _counts(samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
-        if not self._is_printed and self.puts >= SAMPLE:
+        if self.puts >= SAMPLE:
             self.kept = (self.choice or Choice()).columns or (0,)  # to count rows
 
     def series(self) -> Iterator["Series"]:
@@ -398,13 +398,9 @@ class Sheet:
 
 
 def _counts(samples: Sequence[Any]) -> bool:
-    """Return whether the first column counts rows or steps, and the second does not fall."""
+    """Return whether the first column counts rows or steps."""
     steps = np.diff(samples[0])
-    return bool(
-        (samples[0] % 1 == 0).all()
-        and (len(steps) == 0 or np.median(steps) > 0)
-        and (len(samples[1]) < 2 or np.median(np.diff(samples[1])) >= 0)
-    )
+    return bool((samples[0] % 1 == 0).all() and (len(steps) == 0 or np.median(steps) > 0))
 
 
 def _runs(times: Any, is_again: Any) -> Iterator[slice]:
@@ -486,8 +482,7 @@ class Series:
                 f"{in_turn} of {len(times)} rows have the time of the row before, but another "
                 "energy; keep one body or method, for example with grep, or print more digits."
             )
-        is_dead = self.has_ended and np.isnan(times[~is_later]).all()
-        if (~is_later).sum() > len(times) / 2 and not is_dead:
+        if (~is_later).sum() > len(times) / 2 and not self.has_ended:
             raise unreadable(NOT_LATER)
         behind = np.isfinite(times[np.flatnonzero(is_later)[-1] + 1 :]).sum()
         if behind > len(times) / 10:
@@ -528,8 +523,7 @@ class Series:
         if wanted.step:
             found["time"] = wanted.step[1]
         time_unit, energy_unit = (shown(*each) for each in (found | wanted.units).items())
-        if kinetic:
-            self._unit("energy", kinetic, energy_unit)
+        self._unit("energy", kinetic, energy_unit)
         return time_unit, energy_unit
 
     def _unit(self, kind: str, group: Group, *energies: str) -> str:
