@@ -627,8 +627,7 @@ class _Text:
         width = len(fields)
         last = self._tables[-1]
         labels = [self._labelled(width)]
-        has_labels = len(last.names) != width and last.names == self._labelled(len(last.names))
-        if has_labels and last.puts > 1:
+        if len(last.names) > width and last.puts > 1:
             labels.clear()  # a row that was cut
         for names in chain(labels, *reversed(self._heads.values())):
             if len(names) == width - 1 and fields[-1] == "":
@@ -678,7 +677,7 @@ class _Text:
             match = _WITH_UNIT.fullmatch(field)
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"
-            if match and not units[place]:
+            if match:
                 units[place] = match[2]
             if place:
                 units[place] = units[place] or self._shared

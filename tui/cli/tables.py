@@ -149,7 +149,7 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
 def _is_in_turn(sample: Any) -> bool:
     """Return whether a column counts bodies, methods or processes again and again."""
     again = np.flatnonzero(np.asarray(sample[1:]) == sample[:1]) + 1
-    if not len(again) or again[0] < 2 or len(sample) < 3 * again[0] or np.mod(sample, 1).any():
+    if not len(again) or again[0] < 2 or len(sample) < 3 * again[0]:
         return False
     is_periodic = np.array_equal(sample[again[0] :], sample[: -again[0]])
     return is_periodic and len({*sample[: again[0]]}) == again[0]
