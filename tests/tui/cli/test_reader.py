@@ -188,7 +188,7 @@ def array(*unnamed: object, **named: object) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        json.dumps({"run": {"h": 0.5, "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
+        "\ufeff" + json.dumps({"run": {"h": 0.5, "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
@@ -277,6 +277,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t,E\n" + rows("{t},{e}") + "45.0,10.000-344\n", None, 1),
         ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
         ("t,E\n" + rows("{t},{e}") + "3600\n4800\n", None, 2),  # a remark
+        ("t E\n" + rows("{t} {e}") + "drift: nan\n", None, 0),
         ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
 )
@@ -431,6 +432,7 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (f"Step A B E\n{rows('{s} 1 2 {e}')}Step E\n1 2 3 4\nStep E\n{rows('{s} {e}')}", [90, 90]),
         ("a n t E\na 5 0.1-1.0\n" + rows("a 5 {t} -{k}").replace("7.0 ", "7.0"), [90]),
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
+        (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
         (pages(rows("t E\n{s} {e}\nt K", 0, 1), "{t} {k}", 0), [1, 18] * 5),
