@@ -19,7 +19,7 @@ from pendu_tui.engine.methods.own import (
     own_method,
 )
 from pendu_tui.engine.scenes import MAX_METHODS
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import UserError, unreadable
 from pendu_tui.tui.cli.options import given_by
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
             source = file.read(MAX_SOURCE + 1)
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
-        raise UserError(f"{path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
+        raise unreadable(f"{path} cannot be read: {why}.") from None
     return own_method(source, key, letter, path, _tried(source, key, path))
 
 

@@ -35,6 +35,10 @@ class UserError(InputError):
         self.code = code
 
 
+def unreadable(sentence: str) -> UserError:
+    return UserError(sentence, Exit.INPUT_UNREADABLE)
+
+
 def explained(error: BaseException) -> UserError:
     """Return the error as a sentence for the user.  Raises it again if it is a bug."""
     if isinstance(error, UserError):
@@ -50,10 +54,9 @@ def explained(error: BaseException) -> UserError:
         case InputError():
             return UserError(str(error))
         case RecordingError() | OwnMethodError():
-            return UserError(str(error), Exit.INPUT_UNREADABLE)
+            return unreadable(str(error))
         case MemoryError():
-            why = "not enough memory; use less of it, or smaller input."
-            return UserError(why, Exit.INPUT_UNREADABLE)
+            return unreadable("not enough memory; use less of it, or smaller input.")
         case OSError():  # also DiskError
             why = (error.strerror or str(error)) + ADVICE.get(error.errno or 0, "")
             return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)

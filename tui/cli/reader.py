@@ -23,8 +23,9 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 
+from pendu_tui.tui.cli.errors import unreadable
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
-from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names, unreadable
+from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names
 from pendu_tui.tui.cli.units import UNIT, is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # characters

@@ -30,7 +30,7 @@ from pendu_tui.engine.scenes import (
 )
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.cast import cast_of, check_fits, own_method_at
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import UserError, unreadable
 from pendu_tui.tui.cli.options import moment
 
 
@@ -137,8 +137,9 @@ def read_scenes(path: Path) -> dict[str, Scene]:
         isinstance(tables, list)
         and all(isinstance(each, dict) and (each or given) for each in tables)
     ):
-        why = f"{path} describes no scene; use [[scene]], then fields as in scenes --json."
-        raise UserError(why, Exit.INPUT_UNREADABLE)
+        raise unreadable(
+            f"{path} describes no scene; use [[scene]], then fields as in scenes --json."
+        )
     heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
     heads += [0] * len(tables)
     found: dict[str, Scene] = {}
@@ -152,7 +153,7 @@ def read_scenes(path: Path) -> dict[str, Scene]:
                 raise _FieldError(f"there are two scenes named {scene.name}.", "name")
         except _FieldError as error:
             where = error.line(text, heads[nth - 1])
-            raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+            raise unreadable(f"{path}{where}: {error}") from None
         found[scene.name] = scene
     return found
 
@@ -168,7 +169,7 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
         why = f"cannot read {path}: {error.strerror}."
     except (ValueError, RecursionError) as error:  # binary data, or an integer of 5,000 digits
         why = f"{path} is not TOML: {printable(str(error), 200)}."
-    raise UserError(why, Exit.INPUT_UNREADABLE)
+    raise unreadable(why)
 
 
 def _scene(given: Mapping[str, Any], folder: Path) -> Scene:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendu_tui.engine.run.verdicts import TOO_LARGE
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import UserError, unreadable
 from pendu_tui.tui.cli.layouts import key, role
 from pendu_tui.tui.cli.units import Moment, is_of_another_kind, plain, shown, size, split_unit
 
@@ -35,10 +35,6 @@ OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N"}}
 COUNTS = ("N", "i", "n")  # if they are whole numbers
 Group = tuple[int, ...]
 """Columns to add up."""
-
-
-def unreadable(sentence: str) -> UserError:
-    return UserError(sentence, Exit.INPUT_UNREADABLE)
 
 
 @dataclass(frozen=True)

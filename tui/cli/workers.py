@@ -29,7 +29,7 @@ from typing import Any
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.recordings.files import printable
-from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, warn
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, progress, unreadable, warn
 from pendu_tui.tui.cli.files import interruptible, keep_older
 
 MAX_WORKERS = 61  # Windows waits for no more
@@ -145,7 +145,7 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
                 raise
             except Exception as error:
                 why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
-                raise UserError(f"the workers are lost ({why}).", Exit.INPUT_UNREADABLE) from error
+                raise unreadable(f"the workers are lost ({why}).") from error
 
         try:
             yield run

@@ -21,10 +21,10 @@ from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
-from pendu_tui.tui.cli.errors import Exit, UserError
+from pendu_tui.tui.cli.errors import Exit, UserError, unreadable
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series, Wanted, find, unreadable
+from pendu_tui.tui.cli.tables import Series, Wanted, find
 from pendu_tui.tui.commands.report import Report, fields_of, finite, publish
 from pendu_tui.tui.words.numbers import counted
 
