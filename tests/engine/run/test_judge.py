@@ -97,7 +97,6 @@ def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict():
     spin = Scene(theta=0.0, omega=2.2 * W0 / 0.1, h=0.1 / W0, cast=(R, E))
     lockstep = moved(spin, [1000])
     assert words(lockstep) == ["undecided", "undecided"]
-    assert {each.progress.need for each in lockstep.judgements} == {1432}  # swings in 4096 steps
     lockstep.advance(5000)
     assert words(lockstep) == ["loses", "grows"]
 
@@ -275,8 +274,6 @@ def test_before_four_swings_there_is_neither_verdict_nor_slope():
     for steps, known in ((64, False), (66, True)):
         judgement = judge_of([0.0] * steps).judgement
         assert (judgement.verdict, judgement.slope is not None) == ("undecided", known)
-        assert judgement.progress is not None
-        assert judgement.progress.have < judgement.progress.need
     judgement = judge_of([0.0] * 33).judgement
     assert str(judgement) == str(judgement._replace(reason="")) == "undecided: 2 of 4 swings"
 
