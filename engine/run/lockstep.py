@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import permutations
 from typing import Any, NamedTuple
 
-from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models.model import NO_EXTRA, Phase
 from pendu_tui.engine.run.judge import Judge, LookPoint, stride
 from pendu_tui.engine.run.levels import ROUNDING
@@ -184,15 +183,13 @@ class Lockstep:
         self._below: frozenset[tuple[int, int]] = frozenset()
         if self._judged:
             methods = zip(self.scene.cast, self._tracks, self.stepping.own, strict=True)
-            self._judges = [self._judge_of(*each) for each in methods]
+            for method, track, h in methods:
+                start = self._look_point(track)
+                judge = Judge(h, self.period, method=method, model=self._model, start=start)
+                if track.diverged_at is not None:
+                    judge.fail(0)
+                self._judges.append(judge)
         self._next_stop = self._following_stop()
-
-    def _judge_of(self, method: Method, track: _Track, h: float) -> Judge:
-        start = self._look_point(track)
-        judge = Judge(h=h, period=self.period, method=method, model=self._model, start=start)
-        if track.diverged_at is not None:
-            judge.fail(0)
-        return judge
 
     def advance(self, n: int) -> None:
         """Take n steps."""
