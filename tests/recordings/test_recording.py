@@ -29,6 +29,7 @@ def test_everything_recorded_is_read_in_order_with_a_stop_at_the_end(path, check
     expected = [*entries, Entry(4.0, Event("stop", last.run, last.step, last.t))]
     with Recording.open(path, check) as recording:
         assert recording.bytes == path.stat().st_size
+        assert [run.inputs for run in recording.runs] == [5, 2]
         for (clock, value), (when, was) in zip(recording.entries(), expected, strict=True):
             assert clock == when
             if isinstance(was, Event):

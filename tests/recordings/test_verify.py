@@ -55,6 +55,7 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(verified):
     assert (verification.complete, verification.identical) == (True, True)
     assert (verification.reason, verification.first_difference) == (None, None)
     assert (verification.runs, verification.samples) == (2, 10)
+    assert verification.methods == tuple(method.key for method in SCENE.cast)
     assert verification.other_functions == ()
 
 

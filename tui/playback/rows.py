@@ -52,7 +52,7 @@ class Ghost:
 
     def rods(self, t: float) -> dict[str, float]:
         """Return the angles [rad] at a time [s] by method key."""
-        row = int(np.searchsorted(self._window.x, t + 1e-9, "right")) - 1
+        row = int(np.searchsorted(self._window.x, t, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._window.x[-1] + abs(self.scene.h):
             return {}
         keys = (method.key for method in self.scene.cast)

@@ -52,15 +52,19 @@ def test_forward_goes_to_the_moment_the_truth_and_the_next_page_and_ends_after_t
 ):
     stages = []
     while lesson.forward(live):
-        stages.append((lesson.index, lesson.stage, round(live.sample.t, 6)))
+        stages.append((lesson.title, lesson.stage, round(live.sample.t, 6), lesson.text))
+    asked = (QUESTION.sentence, "Which one is exact?  1: Neither.  2: RK4.  3: All.")
     assert stages == [
-        (0, "asked", 1.0),
-        (0, "answered", 1.0),
-        (1, "watching", 0.0),
-        (1, "told", 0.4),
-        (2, "watching", 0.0),
+        ("Page 1 of 3: asks", "asked", 1.0, asked),
+        ("Page 1 of 3: asks", "answered", 1.0, ("1: Neither.", QUESTION.truth)),
+        ("Page 2 of 3: tells", "watching", 0.0, (TELLS.watch,)),
+        ("Page 2 of 3: tells", "told", 0.4, ("Here.",)),
+        ("Page 3 of 3: shows", "watching", 0.0, ("It spins.",)),
     ]
     assert lesson.index == 0
+    for name, index in (("tells", 1), ("drift", -1)):
+        lesson.look_up(name)
+        assert lesson.index == index
 
 
 def test_the_lab_pauses_at_the_moment_and_again_after_the_user_went_back(lesson, live):

@@ -59,6 +59,7 @@ def replay(table: Table) -> Replay:
 def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_again(table, replay):
     assert replay.sample == table.samples[0].value
     assert replay.length == pytest.approx(LENGTH)
+    assert replay.recording_status == ("eventful.mcap", replay.length, None)
     while not replay.playhead.paused:
         assert table.run(0.2) == table.due
     assert replay.sample == table.samples[-1].value
@@ -182,6 +183,11 @@ def test_the_next_event_and_the_one_before_are_found(replay):
         if places[-1] == pytest.approx(2.0):
             assert replay.events[-1].kind == "set_h"
     assert [round(place) for place in places] == [0, 2, 4, 5, 9, 9, 12]  # a verdict
+    replay.pause(False)
+    assert replay.go_to(1, 40)
+    assert (replay.playhead.position, replay.playhead.paused) == (places[1], True)
+    assert not replay.go_to(1, 41)
+    replay.seek(LENGTH)
     for place in reversed(places[:-1]):
         replay.seek_event(-1)
         assert replay.playhead.position == place
@@ -247,6 +253,7 @@ def told(source):
 
 def test_it_says_at_each_sample_what_the_lab_said_and_shows_the_trend_of_each_verdict(lab):
     live, first, said, path = lab
+    assert live.recording_status == ("lab.mcap", live.recorder.seconds, None)
     assert verify(path).identical
     replay = Table(path).replay
     seen = {}
