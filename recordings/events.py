@@ -167,7 +167,7 @@ def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 def steps_for(scene: Scene, time: float) -> int:
     """Return the number of steps in a simulated time [s]."""
-    return max(0, round(time / scene.h))
+    return round(time / scene.h)
 
 
 def simulate(

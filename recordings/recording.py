@@ -275,7 +275,7 @@ class Recording:
 
 def _as_recorded(clock: float) -> int:
     """Return the log_time of a clock [s]: files round to nanoseconds."""
-    return CLOCK_OFFSET + round(max(clock, 0.0) * 1e9)
+    return CLOCK_OFFSET + round(clock * 1e9)
 
 
 def _clock(log_time: int) -> float:

@@ -61,7 +61,7 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(verified):
 
 def test_the_room_offers_what_programs_import_and_nothing_else(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs())
-    assert dir(recordings) == ["Recording", "verify"]
+    assert recordings.__all__ == ["Recording", "verify"]
     assert recordings.verify(path).identical
     with recordings.Recording.open(path) as recording:
         assert len(recording.runs) == 2
