@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mcap.writer import Writer
 
 from pendu_tui.engine.methods import RK4
 from pendu_tui.engine.run.verdicts import Milestone
@@ -99,6 +100,16 @@ def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_ref
     with Recording.open(record(tmp_path / "b.mcap", [*two_runs()[:4], *starts])) as recording:
         runs = [(run.steps, run.begin, run.end) for run in recording.runs]
     assert runs == [(6, 0.0, 1.0), (0, 1.0, 1.0), (0, 1.0, 1.0)]
+
+
+def test_a_file_of_another_program_is_called_so(tmp_path):
+    path = tmp_path / "robot.mcap"
+    with path.open("wb") as stream:
+        writer = Writer(stream, enable_data_crcs=True)
+        writer.start()
+        writer.finish()
+    with pytest.raises(RecordingError, match="not a recording of pendu-tui"):
+        Recording.open(path)
 
 
 def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
