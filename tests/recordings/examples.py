@@ -71,14 +71,14 @@ def record(path: Path, entries: list[Entry]):
     return path
 
 
-Changes = Sequence[tuple[int, float]]
-"""(step, h): from this step on, this step size [s].  Steps ascend."""
-
-
 def with_changes(
-    scene: Scene, time: float, recorder: Recorder, changes: Changes, sample_every: int = 1
+    scene: Scene,
+    time: float,
+    recorder: Recorder,
+    changes: Sequence[tuple[int, float]],
+    sample_every: int,
 ):
-    """`headless.simulate` with changes of h; the clock runs forwards in both directions of time."""
+    """`simulate` with changes, each a step and h from there on; the clock always runs forwards."""
     lockstep = Lockstep(scene, judged=True)
     clock = 0.0
     remaining = time

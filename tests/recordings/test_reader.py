@@ -216,7 +216,6 @@ class Whole:
     def __init__(self, path):
         self.path = path
         self.data = path.read_bytes()
-        self.chunks = [place.offset for place in places_in(path)]
         with Recording.open(path) as recording:
             self.entries = list(recording.entries())
             self.scenes = [run.scene for run in recording.runs]
@@ -255,21 +254,3 @@ def test_a_flipped_bit_is_noticed_and_never_a_wrong_number(whole, cut):
         data = bytearray(whole.data[: len(whole.data) - cut])
         data[CHANCE.randrange(len(data))] ^= 1 << CHANCE.randrange(8)
         whole.check(data)
-
-
-def test_a_hole_costs_the_chunks_that_it_hits(whole, out):
-    for _ in range(15):
-        begin = CHANCE.randrange(whole.chunks[-1])
-        end = begin + CHANCE.randrange(1, 5_000)
-        rest = whole.data[end:]
-        whole.check(whole.data[:begin] + CHANCE.randbytes(end - begin) + rest)
-        ends = [*whole.chunks[1:], len(whole.data)]
-        chunks = zip(whole.chunks, ends, strict=True)
-        assert {a for a, b in chunks if b <= begin or a >= end} <= {
-            place.offset for place in places_in(whole.path)
-        }
-        with suppress(RecordingError):
-            recover(whole.path, out, overwrite=True)
-            was = [value for _, value in whole.entries]
-            known = [*was, *(without_extremes(each) for each in was if not isinstance(each, Event))]
-            assert all(value in known for value in values(out, check=True))
