@@ -183,7 +183,7 @@ class Recorder:
     def _register(self, topic: str, schema: dict[str, Any], **metadata: str) -> None:
         title = schema["title"]
         if title not in self._schemas:
-            data = json.dumps(schema, separators=(",", ":")).encode()
+            data = json.dumps(schema).encode()
             self._schemas[title] = self._writer.register_schema(title, "jsonschema", data)
         if topic not in self._channels:
             number = self._writer.register_channel(topic, "json", self._schemas[title], metadata)
