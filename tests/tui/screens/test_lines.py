@@ -2,17 +2,27 @@
 
 from itertools import product
 
+import pytest
+
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.tui.drawing.picture import TEXT, Picture
+from pendu_tui.tui.drawing.picture import TEXT, WARN, Picture
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import Playhead, RecordingStatus
-from pendu_tui.tui.screens.lines import BADGE, bar, facts, status_row, text_rows, without_folder
+from pendu_tui.tui.screens.lines import (
+    BADGE,
+    InsightLine,
+    bar,
+    facts,
+    status_row,
+    text_rows,
+    without_folder,
+)
 from tests.tui.drawn import look
-from tests.tui.harness import eventful
+from tests.tui.harness import eventful, lab
 
 
 def text(row) -> str:
@@ -109,3 +119,23 @@ def test_why_something_failed_is_told_without_a_folder():
         for told in ("e.py, line 7: `a / b` raises Error: x.", "run.mcap.part: 1 of 2/3 is full."):
             assert without_folder(folder + told) == told
     assert without_folder(told := "omega = 1e10 rad/s is too fast.") == told
+
+
+@pytest.mark.parametrize("size", [(60, 16), (120, 40)])
+async def test_the_insight_line_tells_a_failure_before_all_else_and_has_one_row_or_two(
+    size, monkeypatch
+):
+    failed = TAPE._replace(failed="/tmp/run.mcap.part: full.")
+    monkeypatch.setattr(Live, "recording_status", failed)
+    async with lab(size=size) as theatre:
+        line = theatre.stage.query_one(InsightLine)
+        for failure, told in (
+            (None, "Not recording: run.mcap.part: full."),
+            (f"own/e.py: {40 * 'no '}", "e.py: no no"),
+        ):
+            theatre.source.failure = failure
+            await theatre.run(0)
+            rows = line._picture.rows
+            assert len(rows) == line.size.height
+            assert text(rows[-1]).startswith(f" {told}")
+            assert rows[-1][-1][1] == WARN

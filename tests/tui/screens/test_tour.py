@@ -38,6 +38,7 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert f"Tour {number + 1} of {len(STEPS)}: " in panel(theatre)
             region = theatre.stage.query_one(LessonPanel).region
             assert (region.width, region.height, region.bottom) == (60, 6, 15)  # above the key line
+            assert max(map(len, theatre.text(LessonPanel).splitlines())) <= 60
             assert not theatre.stage.query_one(InsightLine).is_on_screen
             assert shot.view != "lab" or theatre.stage.query_one(TimeChart).size.height >= 5
             assert ("enter end" in panel(theatre)) == (page is STEPS[-1])
