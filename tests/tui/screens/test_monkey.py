@@ -3,10 +3,9 @@
 import itertools
 import os
 import random
-import shutil
 import string
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from functools import partial
 
 import pytest
 from textual._xterm_parser import XTermParser
@@ -104,32 +103,28 @@ async def play(theatre: Theatre, what: list[str | tuple[int, int]]) -> None:
         await settle()
 
 
-@pytest.mark.parametrize("command", ["live", "replay"])
-async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monkeypatch, command):
-    library = tmp_path / "library"
-    library.mkdir()
+@pytest.mark.parametrize(
+    "source",
+    [partial(Live, DEFAULT_SCENE), lambda clock: Replay(Recording.open(resolve("drift")), clock)],
+    ids=["live", "replay"],
+)
+async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monkeypatch, source):
     few = ladder(5.0, 0.2, 0.05, 2)
-    monkeypatch.setenv("PENDU_RECORDINGS", str(library))
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     monkeypatch.setattr("pendu_tui.tui.views.accuracy.usual", lambda scene, all: (5.0, few))
     monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (2, 6))
     monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
-    work_clock = itertools.count(0.0, LOOK).__next__
 
     def make(clock: Callable[[], float]) -> LabScreen:
-        if command == "live":
-            live = Live(DEFAULT_SCENE, clock=work_clock)
-            live.record(LiveRecorder(new_path(library)))
-            return LabScreen(live, clock)
-        path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
-        screen = LabScreen(Replay(Recording.open(path), clock=work_clock), clock)
-        screen.record = lambda live: live.record(LiveRecorder(new_path(library)))
+        screen = LabScreen(source(clock=itertools.count(0.0, LOOK).__next__), clock)
+        screen.record = lambda live: live.record(LiveRecorder(new_path(tmp_path)))
         return screen
 
     events = [*wild_presses(80, SEED), ESC, ESC, "f", *wild_presses(80, SEED + 1)]
     async with on_stage(make, (120, 40)) as theatre:
         await play(theatre, events)
         assert theatre.app.is_running
-    paths = list(library.glob("*.[mp]*"))
+    paths = list(tmp_path.glob("*.[mp]*"))
     assert paths
     for path in paths:
         assert path.suffix == ".mcap"

@@ -38,8 +38,6 @@ def test_the_command_writes_the_same_picture_for_viewers_that_ignore_a_texts_len
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--size", "10x10"], "60x16"),
-        (["--size", "120x201"], "400x200"),
         (["--size", "big"], "120x40"),
         (["--time", "nan"], "out of range"),
         (["-o", "lab.png"], "lab.svg"),
