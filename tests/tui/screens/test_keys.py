@@ -206,12 +206,14 @@ def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner, s
 
 
 async def test_the_last_line_has_what_one_needs_now_each_a_button():
-    async with lab(size=(80, 40)) as theatre:
+    async with lab(size=(82, 40)) as theatre:
         row = theatre.text("KeyLine")
+        end = len(row.rstrip()) + 1
         await theatre.click("KeyLine", row.index("Pause") + 1, 0)
-        await theatre.click("KeyLine", row.index("-"), 0)
+        for column, h in ((row.index("-"), 0.02), (row.index("Step"), 0.01), (end, 0.01)):
+            await theatre.click("KeyLine", column, 0)
+            assert theatre.source.stepping.h == h
         assert theatre.source.playhead.paused
-        assert theatre.source.stepping.h == 0.02
 
 
 async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
