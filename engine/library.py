@@ -363,12 +363,9 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 
 def _cast(methods: Methods) -> Cast:
-    given: Iterable[Any] = [methods]
     if isinstance(methods, str):
-        given = methods.split(",")
-    elif isinstance(methods, Iterable):
-        given = methods
-    return all_named([getattr(each, "key", str(each)) for each in given])
+        methods = methods.split(",")
+    return all_named([getattr(each, "key", str(each)) for each in methods])
 
 
 def _number(name: str, value: Any) -> float:
