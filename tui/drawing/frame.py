@@ -97,7 +97,7 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
 
     Labels are two to five rows apart.
     """
-    least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
+    least = max(1e-4 * abs(high), 1e-16)
     if high - low < least:
         low = low - least
         high = high + least
@@ -146,7 +146,7 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
             labels[place] = text
     if len(labels) < 2:  # short, and so almost linear
         linear = time_axis(start, end, columns, note).labels
-        labels = {math.log10(value): text for value, text in linear.items() if value > 0}
+        labels = {math.log10(value): text for value, text in linear.items()}
     else:
         labels[max(labels)] += note
     return Axis(low, high, labels)

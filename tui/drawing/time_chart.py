@@ -222,7 +222,7 @@ class _Plot(LineChart):
         for text, level in self.levels.items():
             down = canvas.height * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
             canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
-            row = min(max(int(down) // 4 - 1, 0), self.rows - 1)
+            row = max(int(down) // 4 - 1, 0)
             canvas.label(1, row, text, EXACT)
 
     def on_chart(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
