@@ -54,7 +54,7 @@ def test_charts_as_they_are_stored(snapshot):
     names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     ghost = (window(t, 1.7 * grows), USUAL_CAST)
     changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
-    limit = {"line": Line("energy_error", 0.4, "limit")}
+    limit = {"line": Line("energy_error", -0.4, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
     pictures = [
@@ -147,6 +147,7 @@ def test_any_points_make_a_loglog_chart(data, width, height):
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
     assert "A chart needs 20×4" in " ".join(text.split())
+    assert "┤" in plot(window([1, 2], [1, 2]), MIN_COLUMNS, MIN_ROWS).picture.text
 
 
 def crosses(chart):

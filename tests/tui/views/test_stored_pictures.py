@@ -65,8 +65,9 @@ def test_tables_and_titles(snapshot):
         live.step(100)
         live.change(live.stepping.toggled())
         live.step(1)
-        for width, held in ((60, None), (77, None), (119, None), (120, 1.0), (150, None)):
-            rows = table(live, live.sample, Shown(held=held, hidden=frozenset({"rk4"})), width)
+        for width in (60, 77, 85, 92, 119, 120, 150):
+            shown = Shown(held={120: 1.0}.get(width), hidden=frozenset({"rk4"}))
+            rows = table(live, live.sample, shown, width)
             texts.append(look(Picture(rows)))
         for quantity, log, room in product(quantities(live.scene), (True, False), (25, 40, 60)):
             shown = Shown(quantity=quantity, log=log, seconds=20.0)
