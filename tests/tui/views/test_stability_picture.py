@@ -8,8 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.studies import stability as fates
-from pendu_tui.engine.studies.stability import CELL, GROWS, HOLDS, LOSES, UNKNOWN, Grid
+from pendu_tui.engine.studies.stability import (
+    CELL,
+    GROWS,
+    HOLDS,
+    LOSES,
+    OVER_THE_TOP,
+    UNKNOWN,
+    Grid,
+)
 from pendu_tui.tui.drawing.frame import Axis, Frame
 from pendu_tui.tui.drawing.picture import PALETTES, Picture
 from pendu_tui.tui.views import stability as drawing
@@ -95,19 +102,19 @@ LADDER_GRID = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]),
 
 def cells(*rows: tuple[int, float, int]) -> np.ndarray:
     """Outcomes (z, method, theta)."""
-    return np.array([*rows], fates.CELL).reshape(-1, 1, 1)
+    return np.array([*rows], CELL).reshape(-1, 1, 1)
 
 
 LADDER = cells(
-    (300, 1e-3, fates.HOLDS),
-    (300, 2e-2, fates.HOLDS),
-    (300, 0.2, fates.HOLDS),
-    (40, 0.9, fates.OVER_THE_TOP),
-    (3, 5.0, fates.GROWS),
+    (300, 1e-3, HOLDS),
+    (300, 2e-2, HOLDS),
+    (300, 0.2, HOLDS),
+    (40, 0.9, OVER_THE_TOP),
+    (3, 5.0, GROWS),
 )
-BEGUN = cells((300, 1e-3, fates.HOLDS), *[(0, 0.0, fates.UNKNOWN)] * 4)
-HELD = cells(*[(300, 1e-3, fates.HOLDS)] * 5)
-LOST = cells(*[(0, 2.0, fates.GROWS)] * 5)
+BEGUN = cells((300, 1e-3, HOLDS), *[(0, 0.0, UNKNOWN)] * 4)
+HELD = cells(*[(300, 1e-3, HOLDS)] * 5)
+LOST = cells(*[(0, 2.0, GROWS)] * 5)
 
 
 @pytest.mark.parametrize(
