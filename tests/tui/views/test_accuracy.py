@@ -8,7 +8,7 @@ from textual.geometry import Size
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -32,13 +32,6 @@ def is_complete(pane: AccuracyPane) -> bool:
 
 async def complete(pilot, pane: AccuracyPane) -> None:
     await until(pilot, lambda: is_complete(pane))
-
-
-@pytest.mark.parametrize(("kind", "orders"), [("energy", {1, 2, 5}), ("theta", {1, 2, 4})])
-def test_the_guides_have_the_measured_orders_of_the_error_on_the_chart(kind, orders):
-    points = [*measured(SCENES["drift"], 5.0, RUNGS)]
-    series = accuracy_series(points, kind, "evaluations", USUAL_CAST)
-    assert {one.mark for one in series if one.dotted} == {f"slope {order}" for order in orders}
 
 
 def test_a_point_is_found_within_six_columns_or_three_rows():
