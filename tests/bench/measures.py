@@ -20,11 +20,11 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 859_500,
-    "characters_of_engine": 260_000,
-    "characters_of_recordings": 69_200,
-    "characters_of_tui": 530_300,
-    "characters_of_tests": 753_500,
+    "characters": 849_000,
+    "characters_of_engine": 255_900,
+    "characters_of_recordings": 68_100,
+    "characters_of_tui": 525_100,
+    "characters_of_tests": 730_600,
     "characters_of_bench": 60_000,
     "files": 127,
     "parallel_assignments": 9,
