@@ -67,6 +67,7 @@ def test_descriptions_as_they_are_stored(snapshot):
         lambda: live.change(Stepping(0.2, equal_cost=True)),
         lambda: live.change(Stepping(-0.05)),
         lambda: live.start(SCENES["spin"]),
+        lambda: live.start(SCENES["stiff-limit"]),
         lambda: setattr(live, "failure", "mine fails."),
         lambda: live.start(SCENES["damped"].altered(theta=3.1, h=0.2)) or live.step(200),
     ):
