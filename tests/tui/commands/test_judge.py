@@ -155,7 +155,6 @@ np.savez(PICKLES, t=np.arange(3.0), E=np.array([{}, {}, {}], dtype=object))
         (TABLE, "t E --atoms 10", 2, "--step 0.5fs"),
         (f"-0.1,inf\n{lines('{t},{e}')}", "1 2", 3, "--from"),
         ("t,E\n0,0\n1,1\n", "t E", 2, "give a typical energy with --scale"),
-        ("t,E,K\n0,0,0\n1,1,0\n", "t E --scale kinetic:K", 2, "scale = 0.0 is 0"),
         (UNITS, "t E --scale kinetic:K", 2, "of K and the energy differ (kJ/mol, kcal/mol)"),
         (UNITS, "t E --units energy=eV", 2, "E is in kJ/mol, not in eV"),
         (UNITS.replace(" [kJ/mol]", ""), UNIT_GIVEN, 2, "(kJ/mol, kcal/mol)"),

@@ -44,7 +44,6 @@ def folder(tmp_path, monkeypatch):
         ("recordings", "show", f"cut{NAME}.mcap"),
         ("recordings", "recover", f"cut{NAME}.mcap", "-o", f"new{NAME}.mcap"),
         ("export", f"cut{NAME}.mcap", "-o", f"new{NAME}.csv"),
-        ("export", f"whole{NAME}.mcap", "-o", f"absent{EVIL}/new.csv"),
         ("replay", f"none{NAME}.mcap", "--plain"),
         ("run", "--time", "1", "--record", f"run{NAME}.mcap"),
         ("run", "--time", "1", "--scene", f"bad{NAME}.toml"),

@@ -30,7 +30,6 @@ def test_every_method_card_fits():
 def test_a_scene_card_has_what_to_watch(scene):
     card = words(scene_card(scene))
     assert " ".join(scene.watch.split()) in card
-    assert ("often said" in card) == bool(scene.often_said)
     # where there is no closed form
     assert ("right to 1e-10 rad" in card) == (scene.exact().accuracy > 0)
 

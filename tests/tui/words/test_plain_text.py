@@ -11,7 +11,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.playback.lesson import tour
+from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
@@ -101,22 +101,22 @@ def test_every_event_has_a_sentence_also_at_another_speed():
         said(live, 1)
 
 
-def test_a_lesson_asks_at_its_moment_and_gives_time_to_read_before_it_answers():
+def test_a_lesson_gives_time_to_read_asks_at_its_moment_answers_and_ends():
     clock = Hour()
     told = []
-    lesson = tour()
-    shot = lesson.shot
+    page = tour().page
     begin = clock.now
-    live = Live(lesson.page, clock=clock.read)
+    live = Live(DRIFT, clock=clock.read)
 
     def emit(sentence):
         told.append((clock.now - begin, sentence))
 
-    tell(live, emit, lambda: clock.now > begin + 25, clock.read, clock.sleep, lesson=lesson)
-    asked = next(at for at, sentence in told if shot.question in sentence)
-    answered = next(at for at, sentence in told if shot.truth in sentence)
-    assert asked == pytest.approx(shot.moment, abs=0.1)
-    assert answered - asked == pytest.approx(READING, abs=0.1)
+    lesson = Lesson("Page", [DRIFT, page])
+    tell(live, emit, lambda: clock.now > begin + 60, clock.read, clock.sleep, lesson=lesson)
+    asked = next(at for at, sentence in told if page.shot.question in sentence)
+    answered = next(at for at, sentence in told if page.shot.truth in sentence)
+    times = (READING + page.shot.moment, READING, READING)
+    assert (asked, answered - asked, clock.now - begin - answered) == pytest.approx(times, abs=0.2)
 
 
 def test_a_replay_ends_at_its_end():
