@@ -72,7 +72,7 @@ def test_a_paste_without_an_end_counts_as_ended_after_2_s(monkeypatch):
     now = 0.0
     monkeypatch.setattr(driver, "time", SimpleNamespace(monotonic=lambda: now))
     parser = PatientParser()
-    assert not [*parser.feed("\x1b[200~text")]
+    assert not [*parser.feed("\x1b[20"), *parser.feed("0~text")]
     now = 1.9
     assert not [*parser.tick()]
     now = 2.1

@@ -114,13 +114,16 @@ def test_a_screen_has_60x16_to_400x200_cells(text):
         cells(text)
 
 
-@pytest.mark.parametrize("stream", ["stdin", "stdout", "stderr", ""])
-def test_the_lab_needs_a_terminal_for_all_that_it_reads_and_writes(stream, monkeypatch):
-    monkeypatch.setattr(options, "environment", lambda: {"TERM": "dumb"})
+@pytest.mark.parametrize(
+    "lacks", ["stdin", "stdout", "stderr", "TERM=", "TERM=dumb", "TERM=unknown"]
+)
+def test_the_lab_needs_a_terminal_for_all_that_it_reads_and_writes(lacks, monkeypatch):
+    monkeypatch.setattr(options, "environment", lambda: {"TERM": lacks.removeprefix("TERM=")})
     for name in ("stdin", "stdout", "stderr"):
-        terminal = SimpleNamespace(isatty=lambda is_one=name != stream: is_one)
+        terminal = SimpleNamespace(isatty=lambda is_one=name != lacks: is_one)
         monkeypatch.setattr(sys, name, terminal)
-    with pytest.raises(UserError, match="not a term" if stream else "TERM=dumb") as error:
+    why = rf"\({lacks}\)" if "TERM" in lacks else "not a term"
+    with pytest.raises(UserError, match=why) as error:
         check_terminal()
     assert error.value.code == 4
 

@@ -150,6 +150,6 @@ def test_changes_and_marks_are_listed_pauses_are_not_and_a_step_back_removes_wha
     live.change(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     snapshot("events.txt", "\n".join(numbered(event_lines(live))) + "\n")
-    live = after(DRIFT, 8)
+    live = after(DRIFT.altered(theta=1.001), 8)
     live.step(-20)
-    assert numbered(event_lines(live)) == [" 0.00 s start drift, h 0.05 s"]
+    assert numbered(event_lines(live)) == [" 0.00 s start 57.35° 0 rad/s, h 0.05 s"]
