@@ -39,5 +39,6 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     assert live.ghost is None
     live.start(live.scene.altered(theta=2.0))
     assert (live.scene.name, live.ghost) == ("drift (altered)", None)
+    live.set_speed(2.0)
     live.return_to(left)
-    assert live.ghost is left.ghost
+    assert (live.playhead.speed, live.ghost) == (1.0, left.ghost)
