@@ -19,6 +19,14 @@ PENDU = [
     "-c",
     "import sys; from pendu_tui.tui.cli.dispatch import main; sys.exit(main())",
 ]
+EULER = """\
+def {name}(force, phase, h):
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+"""
 ROOT = Path(__file__).parents[2]
 IS_WINDOWS = sys.platform == "win32"
 needs_signals = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="needs POSIX signals")
@@ -64,15 +72,7 @@ def shortened(text: str) -> str:
 
 def own_method(folder: Path) -> str:
     """Write symplectic Euler to a file, and return the argument of --method."""
-    lines = [
-        "def mine(force, phase, h):",
-        "    theta, omega = phase",
-        "    while True:",
-        "        omega = omega + h * force(theta)",
-        "        theta = theta + h * omega",
-        "        yield theta, omega",
-    ]
-    (folder / "my methods.py").write_text("\n".join(lines))
+    (folder / "my methods.py").write_text(EULER.format(name="mine"))
     return f"{folder}/my methods.py:mine"
 
 

@@ -12,17 +12,9 @@ from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.scene import scene_of
-from tests.tui.command_line import PENDU, ROOT, pendu
+from tests.tui.command_line import EULER, PENDU, ROOT, pendu
 
-STEP = """
-def {name}(force, phase, h):
-    theta, omega = phase
-    while True:
-        omega = omega + h * force(theta)
-        theta = theta + h * omega
-        yield theta, omega
-"""
-SOURCE = STEP.format(name="kick_drift") + STEP.format(name="rk4")
+SOURCE = EULER.format(name="kick_drift") + EULER.format(name="rk4")
 
 
 @pytest.fixture
@@ -129,7 +121,7 @@ def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_
 threading.Thread(target=time.sleep, args=(60,)).start()
 print("C")
 """
-    loud = STEP.format(name="loud").replace(
+    loud = EULER.format(name="loud").replace(
         "yield", "sys.stdout.write('A'); os.write(1, b'B'); yield"
     )
     (tmp_path / "loud.py").write_text(head + loud)

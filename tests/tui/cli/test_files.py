@@ -22,10 +22,7 @@ from pendu_tui.tui.cli.files import text_file, whole_file
 from pendu_tui.tui.cli.options import resolve
 from tests.tui.command_line import pendu
 
-WRITERS = {
-    "export": ("export", "drift", "-o"),
-    "run": ("run", "--time", 1, "-o"),
-}
+EXPORT = ("export", "drift", "-o")
 
 
 def write(file: Path, after, force: bool = False) -> None:
@@ -131,7 +128,7 @@ def test_a_device_is_written_to_and_not_replaced():
         assert str(meanwhile) == os.devnull
 
 
-@pytest.mark.parametrize("command", WRITERS.values(), ids=WRITERS)
+@pytest.mark.parametrize("command", [EXPORT, ("run", "--time", 1, "-o")])
 def test_every_command_overwrites_only_with_force(tmp_path, command):
     file = tmp_path / "file.csv"
     file.write_text("older")
@@ -145,7 +142,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 
 def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.export.write_csv", None)
-    refusal = pendu(*WRITERS["export"], tmp_path / "no" / "file.csv")
+    refusal = pendu(*EXPORT, tmp_path / "no" / "file.csv")
     assert refusal.refused(5, "does not exist", "choose another")
 
 

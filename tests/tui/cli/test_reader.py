@@ -277,7 +277,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t,E\n" + rows("{t},{e}") + "45.0,10.000-344\n", None, 1),
         ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
         ("t,E\n" + rows("{t},{e}") + "3600\n4800\n", None, 2),  # a remark
-        ("t E\n" + rows("{t} {e}") + "mean drift: nan\n", None, 0),
+        ("t E\n" + rows("{t} {e}") + "energy nan detected\n", None, 0),
         ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
 )
