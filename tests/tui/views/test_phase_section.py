@@ -1,33 +1,15 @@
-"""The phase portrait of a method's own map, as a picture and in the view."""
+"""The phase portrait of a method's own map, in the view."""
 
 from functools import partial
 
-import numpy as np
 import pytest
 from textual import events
 
-from pendu_tui.engine.methods import VELOCITY_VERLET
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.studies.section import iterate, orbit
-from pendu_tui.tui.drawing.picture import faint
 from pendu_tui.tui.views.phase import SectionPane
-from pendu_tui.tui.views.portrait import Section
-from pendu_tui.tui.views.viewport import Viewport
-from tests.tui.drawn import places
 from tests.tui.harness import lab, until
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
-MODEL = SCENE.equations
-VIEWPORT = Viewport.portrait(70, 24, SCENE)
-REST = orbit(VELOCITY_VERLET, MODEL, SCENE.h, (0.0, 0.0), 1)
-
-
-def test_an_orbit_that_leaves_no_gap_to_those_before_is_not_drawn():
-    drawing = Section(VIEWPORT, MODEL, VELOCITY_VERLET, 2)
-    for theta, is_drawn in ((1.6, True), (1.61, False), (2.0, True), (0.3, True)):
-        before = places(drawing.picture(REST, (0.0, 0.0)), faint(2))
-        drawing.add(iterate(VELOCITY_VERLET, MODEL, 0.05, (np.array([theta]), np.zeros(1)), 500))
-        assert (places(drawing.picture(REST, (0.0, 0.0)), faint(2)) != before) == is_drawn
 
 
 @pytest.fixture(autouse=True)

@@ -115,7 +115,7 @@ def test_phase_space(snapshot):
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
     for method in (VELOCITY_VERLET, RK4):
         section = Section(views[0][0], model, method, method.hue)
-        for theta in (0.7, 1.4, 2.1, 2.11):
+        for theta in (0.7, 1.4, 1.6, 1.7, 1.8, 2.1, 2.11, 2.2):
             section.add(iterate(method, model, 0.2, (np.array([theta]), np.zeros(1)), 300))
         orbit, _ = orbit_of(method, model, 0.2, State(1.8, 0.0))
         texts.append(look(section.picture(orbit, State(1.8, 0.0), state)))
