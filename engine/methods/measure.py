@@ -89,7 +89,7 @@ def evaluations(phases: Phases) -> tuple[float, int]:
     after(phases, counted, START, 0.05, 50)
     first = count
     after(phases, counted, START, 0.05, 100)
-    fifty = count - 2 * first  # the second run takes as many more than the first
+    fifty = count - 2 * first
     return fifty / 50, first - fifty
 
 

@@ -291,7 +291,6 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
         ("Störmer Verlet", ["velocity_verlet"]),
         ("rk", ["rk4"]),  # those for one scene match only if no general one does
         ("single", []),  # a label is matched whole
-        ("SINGLE VERLET", ["verlet_float32"]),
         ("uler", []),  # not from the middle of a word
         ("verlet", ["velocity_verlet"]),  # another name
         ("moan", ["blanes_moan_4", "blanes_moan_6"]),  # a later word

@@ -173,6 +173,7 @@ def test_conformal_verlet_shrinks_areas_as_the_motion_does():
 def test_a_number_of_32_bits_is_numpys_float32(a):
     assert Float32(a) == np.float32(a)
     assert VERLET_FLOAT32.epsilon == np.finfo(np.float32).eps / 2
+    assert VELOCITY_VERLET.epsilon == np.finfo(float).eps / 2
 
 
 def test_a_compensation_goes_on_where_a_run_is_continued():

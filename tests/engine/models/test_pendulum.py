@@ -23,11 +23,10 @@ STARTS = {
     "back through the bottom": (-1.0, -3.0),
     "a pico-radian from upright": (math.pi - 1e-12, 0.0),
     "at math.pi, which is not pi": (math.pi, 0.0),
-    "just below the separatrix, falling back": (2.0, -JUST * math.cos(1.0) * (1 - 1e-13)),
-    "just above it, falling back": (2.0, -JUST * math.cos(1.0) * (1 + 1e-13)),
+    "just below the separatrix": (2.0, -JUST * math.cos(1.0) * (1 - 1e-13)),
+    "just above it": (2.0, -JUST * math.cos(1.0) * (1 + 1e-13)),
     "within rounding of it": (0.0, JUST),
-    "swinging many turns up": (1e6, 1.0),
-    "spinning many turns down": (-1e6, -9.0),
+    "many turns down": (-1e6, -9.0),
 }
 
 
