@@ -79,6 +79,8 @@ def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none(right, wron
     assert reader._head_at(hostile.false_head(right), 0)
     with pytest.raises(ValueError, match=r"^$"):
         reader._head_at(hostile.false_head(wrong), 0)
+    with pytest.raises(ValueError, match="messages"):
+        reader._records(b"")
 
 
 @pytest.mark.parametrize(
