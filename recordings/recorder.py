@@ -218,7 +218,7 @@ class LiveRecorder(Recorder):
     def __init__(self, path: Path) -> None:
         super().__init__(path)
         self._lock = RLock()
-        Thread(target=self._keep, name="recorder", daemon=True).start()
+        Thread(target=self._keep, daemon=True).start()
 
     def add(self, value: Sample | Event | None, clock: float) -> None:
         self._in_turn(super().add, value, clock)
