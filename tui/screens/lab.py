@@ -276,6 +276,8 @@ class LabScreen(SizedScreen[None]):
             return source
         assert isinstance(source, Replay)
         source.pause(True)
+        if source.sample.step > 100_000:  # takes more than 0.25 s
+            self.notify(f"Simulating {source.sample.step} steps ...", timeout=2)
         while not source.fill():
             await asyncio.sleep(0)
         if has_own(source.scene):
