@@ -22,10 +22,11 @@ class Bins(NamedTuple):
     highs: Any
     spreads: Any  # standard deviations within each
     rounding: float  # differences up to this mean nothing
+    white: float = 0.0  # the deviation of the means if all samples were independent; 0 if unknown
 
     def last(self, count: int) -> "Bins":
         """Return so many of the last bins."""
-        return Bins._make([*(column[-count:] for column in self[:5]), self.rounding])
+        return Bins._make([*(column[-count:] for column in self[:5]), *self[5:]])
 
     def scaled(self, factor: float) -> "Bins":
         """Return the bins of energies multiplied by a factor."""
@@ -45,7 +46,7 @@ class Part:
     def __init__(self, bins: Bins, values: Any) -> None:
         self.bins = bins
         self.values = values
-        self.slope = Slope(bins.times, values, bins.rounding)
+        self.slope = Slope(bins.times, values, bins.rounding, bins.white)
         count = len(values)
         # the middles of the bins cover one bin less
         self.length = float(bins.times[-1] - bins.times[0]) * count / (count - 1)
@@ -67,7 +68,7 @@ class Part:
 
     def described(self, verdict: str, **known: Any) -> Judgement:
         """Return a judgement with this verdict, the slope of this part, and what else is known."""
-        spread = self.slope.uncertainty * self.length
+        spread = max(self.slope.uncertainty * self.length, 1e-300)
         return Judgement(
             verdict,
             slope=self.slope.mean,
@@ -151,16 +152,17 @@ def whole_of(bins: Bins) -> tuple[float, Part]:
     """
     unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
     bins = bins.scaled(1 / unit)
-    parts = (Part(bins, bins.means), Part(bins, (bins.lows + bins.highs) / 2))
+    known = bins._replace(white=0.0)
+    parts = (Part(bins, bins.means), Part(known, (bins.lows + bins.highs) / 2))
     whole = min(parts, key=lambda part: part.slope.uncertainty)
     rest = without_wave(bins.times, whole.values)
-    return unit, whole if rest is whole.values else Part(bins, rest)
+    return unit, whole if rest is whole.values else Part(known, rest)
 
 
 def _moved(whole: Part) -> Judgement | None:
     """Return the judgement if the energy moves for good, in one of the windows up to the end."""
     ranks = np.unique(whole.values, return_inverse=True)[1].astype(float)
-    ranked = Part(whole.bins._replace(rounding=1.0), ranks)
+    ranked = Part(whole.bins._replace(rounding=1.0, white=0.0), ranks)
     for share in levels.WINDOWS:
         last = whole.last(share)
         if not last.exceeds(levels.MATERIAL, last.move):

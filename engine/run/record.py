@@ -48,6 +48,7 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
         highs=np.maximum.reduceat(energies, begins),
         spreads=np.sqrt(squares),
         rounding=rounding,
+        white=math.sqrt((squares / (sizes - 1)).mean()),
     )
 
 

@@ -22,6 +22,7 @@ _EDGES = (7, 15, 31)  # and the last term
 _KNEES = (7, 15, 31)  # of 1/(1 + (j/k)²): correlation times of a 22nd, 47th and 97th of the record
 _PINK_PRIOR = 0.3  # of 1/j, which few integrators make; other shapes have 1
 _OCTAVE = math.log(2 * math.log(1000))  # the cost of a variance: a flat prior of its logarithm
+_KNOWN = 60  # degrees of freedom of a known variance: as good as endless
 _HALVINGS = 10  # of an interval that holds a quantile: to a thousandth of its size
 _NEGLIGIBLE = 1e-7  # weight of a model
 
@@ -59,11 +60,25 @@ def _models(count: int) -> _Models:
     return _Models(cosines, *map(np.array, zip(*rows, strict=True)))
 
 
+def _white_model(v: Any, x: Any, white: float) -> tuple[Any, ...]:
+    """Return the slope's distribution if the noise is white, with a known standard deviation."""
+    square = float((v * v).sum())
+    centre = float((v * x).sum()) / square
+    misfit = float(((x - centre * v) ** 2).sum()) / white**2
+    log = _OCTAVE + math.log((len(x) + 1) / 2) - math.log(square) / 2
+    log -= ((len(x) - 1) * math.log(math.tau * white**2) + misfit) / 2
+    return centre, white / math.sqrt(square), _KNOWN, False, log
+
+
 class Slope:
     """The slope of four or more values: a mixture of Student's t, one for each noise model."""
 
-    def __init__(self, times: Any, values: Any, rounding: float) -> None:
-        """Each value is rounded to `rounding`."""
+    def __init__(self, times: Any, values: Any, rounding: float, white: float = 0.0) -> None:
+        """Each value is rounded to `rounding`.
+
+        `white`: the values' standard deviation if they are means of independent samples, which is
+        one more model.
+        """
         models = _models(len(values))
         v = (models.cosines * times).sum(axis=1)
         x = (models.cosines * values).sum(axis=1)
@@ -77,13 +92,18 @@ class Slope:
         log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
         log = log - (sizes / 2 * log_sums).sum(axis=1)
         deviations = np.sqrt(residual / models.freedoms / squares)
+        columns: Any = (centres, deviations, models.freedoms, models.walks, log)
+        if white > 0:
+            known = _white_model(v, x, white)
+            columns = (np.append(*each) for each in zip(columns, known, strict=True))
+        centres, deviations, freedoms, walks, log = columns
         weights = np.exp(log - log.max())
         weights = weights / weights.sum()
         self.mean = float((weights * centres).sum())
         self.uncertainty = float((weights * deviations).sum())  # 68 % lie within
-        self.walk = float(weights[models.walks].sum())  # probability of an endless variance
+        self.walk = float(weights[walks].sum())  # probability of an endless variance
         some = weights > _NEGLIGIBLE
-        columns = (centres, deviations, models.freedoms, weights)
+        columns = (centres, deviations, freedoms, weights)
         self._parts = list(zip(*(column[some].tolist() for column in columns), strict=True))
 
     def below(self, slope: float) -> float:
@@ -127,6 +147,6 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     if deviation == 0:
         return 0.5 + math.copysign(0.5, distance) * (distance != 0)
     t = distance / deviation
-    size = math.sqrt(freedom * math.log1p(t * t / freedom))
+    size = math.sqrt(freedom * math.log1p(min(t * t, 1e300) / freedom))
     normal = math.copysign((8 * freedom + 1) / (8 * freedom + 3) * size, t)
     return math.erfc(-normal / math.sqrt(2)) / 2
