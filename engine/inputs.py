@@ -13,7 +13,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that is most like this one, "" if none is."""
     from difflib import get_close_matches  # slow to load, and few words are wrong
 
-    return next(iter(get_close_matches(word, known, n=1)), "")
+    return next(iter(get_close_matches(word[:200], known, n=1)), "")  # longer ones take seconds
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -27,7 +27,7 @@ def check_name(what: str, name: str, known: Iterable[str]) -> None:
     names = [*known]
     if name not in names:
         advice = did_you_mean(name, names) or f"; choose from {', '.join(names)}."
-        raise InputError(f"there is no {what} {name!r}{advice}")
+        raise InputError(f"there is no {what} {name[:60]!r}{advice}")
 
 
 def number(text: str) -> float:

@@ -137,7 +137,7 @@ def simulate(
 
 
 def _stops(scene: Scene, time: float, every: int) -> list[int]:
-    steps = round(time / scene.h)
+    steps = round(min(time, 1e15) / scene.h)
     if steps < 1:
         raise InputError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
     if steps / _whole("every", every) * len(scene.cast) > MAX_READINGS:
@@ -186,8 +186,10 @@ class Judged:
             band = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
             bound = f"relative {self.bound:.1e} {per} at 99 %; over this record {band} the band"
             lines.append(f"bound         {bound}")
-        error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "
-        error += f"{self.scale:.6g} {energy_unit}".rstrip()
+        error = "too large for a number"
+        if math.isfinite(self.max_error):
+            error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "
+            error += f"{self.scale:.6g} {energy_unit}".rstrip()
         return [*lines, f"energy error  {error}"]
 
 
@@ -211,6 +213,8 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
+    if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
+        scaled = scaled._replace(slope=None, uncertainty=None, bound=None)
     return Judged(
         verdict=judgement.verdict,
         reason=judgement.reason,
@@ -363,14 +367,17 @@ def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, 
 
 
 def _cast(methods: Methods) -> Cast:
+    given: Iterable[Any] = [methods]
     if isinstance(methods, str):
-        methods = methods.split(",")
-    return all_named([getattr(each, "key", str(each)) for each in methods])
+        given = methods.split(",")
+    elif isinstance(methods, Iterable):
+        given = methods
+    return all_named([getattr(each, "key", str(each)) for each in given])
 
 
 def _number(name: str, value: Any) -> float:
     try:
-        if math.isfinite(value):
+        if not isinstance(value, str | bool) and math.isfinite(value):
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
@@ -427,6 +434,9 @@ def _series(
         raise InputError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
+    span = float(t[-1] - t[0])
+    if len(t) > 1 and not 1e-100 < span < 1e100:  # else squares are beyond doubles
+        raise InputError(f"times span {span:.3g}; give them in a unit nearer to that.")
     return t, e
 
 

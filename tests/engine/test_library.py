@@ -52,7 +52,7 @@ def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
     assert library.MAX_READINGS * 4 * 8 == 320e6  # bytes
     monkeypatch.setattr("pendu_tui.engine.library.MAX_READINGS", 40)
     assert len(simulate(h=0.1, time=2, methods="rk4,verlet").t) == 21
-    assert len(simulate(h=0.1, time=0.3, methods="rk4").t) == 4
+    assert len(simulate(h=0.1, time=0.3, methods=METHODS["rk4"]).t) == 4
     assert len(simulate(h=0.1, time=8, methods="rk4", every=2).t) == 41
     with pytest.raises(ValueError, match="21 steps are too many"):
         simulate(h=0.1, time=2.1, methods="rk4,verlet")
@@ -91,6 +91,12 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
     assert found.error == pytest.approx((RISING[-1] - RISING[0]) / found.scale)
     assert judge(TIMES, WAVE).max_error == pytest.approx(2 / 11, rel=1e-3)  # downwards
+
+
+def test_a_trend_is_never_beyond_doubles():
+    found = judge(TIMES, 1e290 * (WAVE + TIMES), scale=1e-300)
+    assert (found.slope, found.bound) == (None, None)
+    assert found.lines()[-1] == "energy error  too large for a number"
 
 
 def test_a_judged_series_prints_as_the_command_does():
@@ -145,8 +151,13 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: simulate("pendulum", time=1), "no scene 'pendulum'; choose from drift, gentle, "),
         (lambda: recommend(1e-3, error="angle"), "no kind of error 'angle'"),
         (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'"),
+        (lambda: simulate(time=1, methods=5), "no method '5'"),
+        (lambda: simulate(time=1e308), r"steps are too many to keep; use every="),
+        (lambda: judge(1e160 * TIMES, WAVE), r"times span 2e\+163"),
+        (lambda: judge(1e-200 * TIMES, WAVE), "times span 2e-197"),
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
+        (lambda: simulate(time=True), "time = True"),
         (lambda: simulate(time=126_000), r"use every=252\."),  # ten million readings
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
