@@ -5,6 +5,7 @@ summary of where its chunks are.  Without a summary, or if the file's checksum i
 wrong, the intact chunks are searched for.  All work is proportional to the file's size.
 """
 
+import mmap
 import struct
 import zlib
 from collections.abc import Iterator
@@ -23,6 +24,7 @@ from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
 
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
+MAX_SUMMARY = 1 << 28  # bytes; enough for two weeks
 MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]
@@ -106,7 +108,7 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
     stream.seek(max(0, size - _FOOTER.size))
     try:
         opcode, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
-        if (opcode, magic) != (Opcode.FOOTER, MAGIC):
+        if (opcode, magic) != (Opcode.FOOTER, MAGIC) or size - start > MAX_SUMMARY:
             return None
         stream.seek(start - 4)
         data = stream.read()
@@ -154,7 +156,7 @@ def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Group
     """
     try:
         stream.seek(offset)
-        packed, checksum = _head_at(stream.read(_MAX_HEAD), 0)
+        packed, checksum = _sizes_in(stream.read(_MAX_HEAD))
         stream.seek(offset + _CHUNK.size)
         data = zstandard.ZstdDecompressor().decompress(stream.read(packed))
         if zlib.crc32(data) != checksum:
@@ -164,12 +166,12 @@ def read_chunk(stream: BinaryIO, offset: int) -> tuple[list[Channel], list[Group
         raise RecordingError("a chunk is damaged") from error
 
 
-def _head_at(block: bytes, at: int) -> tuple[int, int]:
+def _sizes_in(head: bytes) -> tuple[int, int]:
     """Return the compressed size of a chunk's contents, and their checksum, from its head.
 
     Raises ValueError, ZstdError or struct.error if its numbers cannot be those of a chunk.
     """
-    opcode, length, _, _, size, checksum, compression, packed = _CHUNK.unpack_from(block, at)
+    opcode, length, _, _, size, checksum, compression, packed = _CHUNK.unpack_from(head)
     is_possible = (
         opcode == Opcode.CHUNK
         and compression == _ZSTD
@@ -177,9 +179,8 @@ def _head_at(block: bytes, at: int) -> tuple[int, int]:
         and length <= MAX_RECORD
         and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
     )
-    frame = block[at + _CHUNK.size : at + _MAX_HEAD]
     # what zstandard allocates
-    if not is_possible or zstandard.frame_content_size(frame) != size:
+    if not is_possible or zstandard.frame_content_size(head[_CHUNK.size :]) != size:
         raise ValueError
     return packed, checksum
 
@@ -223,48 +224,51 @@ def _search(stream: BinaryIO, topics: dict[int, str]) -> Contents:
     """Find the intact chunks of a file, and by their sequence numbers what is lost between them."""
     contents = Contents(topics)
     sequence = 0  # of the next entry
-    stream.seek(0)
-    data = stream.read()
-    for offset, channels, groups in _intact_chunks(data):
+    for offset, channels, groups in _intact_chunks(stream):
         for channel in channels:
             contents.add(channel)
         first = groups[0]
         last = groups[-1]
         missing = first.sequence - sequence
         sequence = last.sequence + 1
-        if missing:
+        if missing > 0:
             contents.entries_lost += missing
             contents.damage(f"{missing} entries are lost")
+        elif missing < 0:
+            contents.damage("its entries are out of order")
         used = set(chain.from_iterable(group.channels for group in groups))
         has_events = any(contents.topics.get(number) == EVENTS for number in used)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)
-    start = data[: len(MAGIC)]
+    stream.seek(0)
+    start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:
         contents.damage("its first bytes are not those of an MCAP file")
     return contents
 
 
-def _intact_chunks(data: bytes) -> Iterator[tuple[int, list[Channel], list[Group]]]:
-    """Yield offset, channels and messages of each intact chunk in the bytes of a file.
+def _intact_chunks(stream: BinaryIO) -> Iterator[tuple[int, list[Channel], list[Group]]]:
+    """Yield offset, channels and messages of each intact chunk in a file.
 
-    It ends early when as many bytes as there are were read for chunks that are not intact.
+    It ends early when as many bytes as the file has were read for chunks that are not intact.
     """
-    stream = BytesIO(data)
     in_vain = 0
     at = 0
-    while in_vain <= len(data) and (found := data.find(_ZSTD, at + _BEFORE_ZSTD)) >= 0:
-        at = found - _BEFORE_ZSTD
-        packed = 0
-        try:
-            packed, _ = _head_at(data, at)
-            channels, groups = read_chunk(stream, at)
-        except (ValueError, struct.error, zstandard.ZstdError, RecordingError):
-            in_vain += packed
-            at += 1
-        else:
-            yield at, channels, groups
-            at += _CHUNK.size + packed
+    if not stream.seek(0, SEEK_END):  # which has no map
+        return
+    with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        while in_vain <= len(data) and (found := data.find(_ZSTD, at + _BEFORE_ZSTD)) >= 0:
+            at = found - _BEFORE_ZSTD
+            packed = 0
+            try:
+                packed, _ = _sizes_in(data[at : at + _MAX_HEAD])
+                channels, groups = read_chunk(stream, at)
+            except (ValueError, struct.error, zstandard.ZstdError, RecordingError):
+                in_vain += packed
+                at += 1
+            else:
+                yield at, channels, groups
+                at += _CHUNK.size + packed
 
 
 def _checksum(stream: BinaryIO, size: int) -> int:

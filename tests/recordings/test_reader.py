@@ -57,12 +57,15 @@ def limits(path):
     return {
         "MAX_RECORD": max(head[4] for head in heads),
         "MAX_EXPANSION": max(-(-head[4] // (head[1] + 128)) for head in heads),
+        "MAX_SUMMARY": len(data) - FOOTER.unpack(data[-FOOTER.size :])[2],
         "MAX_TIME": max(head[3] for head in heads),
         "MAX_EVENTS": 10,  # that they are, with the stop
     }
 
 
-@pytest.mark.parametrize("name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_TIME", "MAX_EVENTS"])
+@pytest.mark.parametrize(
+    "name", ["MAX_RECORD", "MAX_EXPANSION", "MAX_SUMMARY", "MAX_TIME", "MAX_EVENTS"]
+)
 def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
     limit = limits(path)[name]
     module = recording if name == "MAX_EVENTS" else reader
@@ -76,9 +79,9 @@ def test_a_limit_is_met_on_both_sides(path, monkeypatch, name):
     [((1 << 22) - 44, (1 << 22) - 43), (31_078, 31_077)],  # 4 MB at once, 4 MB of a 128th
 )
 def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none(right, wrong):
-    assert reader._head_at(hostile.false_head(right), 0)
+    assert reader._sizes_in(hostile.false_head(right))
     with pytest.raises(ValueError, match=r"^$"):
-        reader._head_at(hostile.false_head(wrong), 0)
+        reader._sizes_in(hostile.false_head(wrong))
     with pytest.raises(ValueError, match="messages"):
         reader._records(b"")
 
@@ -100,6 +103,15 @@ def test_a_change_outside_of_chunks_is_damage_where_all_is_checked(path, at, cut
         assert (checked.damaged, checked.reason) == (True, reason)
         assert checked.samples == unchecked.samples
     assert not verify(path).identical
+
+
+def test_a_chunk_that_is_there_twice_is_damage_and_no_loss(path):
+    data = path.read_bytes()
+    begin, end = (place.offset for place in places_in(path)[1:3])
+    path.write_bytes(data[:end] + data[begin:end])
+    with Recording.open(path) as read:
+        assert (read.damaged, read.entries_lost) == (True, 0)
+        assert read.reason == "its entries are out of order"
 
 
 def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_limits(out):
