@@ -480,7 +480,7 @@ class _Text:
                 self._is_over = "end" in groups
             case {"error": text}:
                 for sheet in (self._tables[-1], self._prints[-1]):
-                    sheet.error = text
+                    sheet.error = sheet.error or text  # later ones follow from the first
             case _ if self._is_over:
                 pass
             case {"value": value}:
@@ -492,8 +492,9 @@ class _Text:
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
-                self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
-                self._over = line
+                if len(self._above) < MAX_HEADS:
+                    self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
+                self._over = line if line in self._above else ""
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
                 self._row(fields, delimiter, fields[0] * (number(fields[0]) is None))
@@ -604,7 +605,7 @@ class _Text:
         elif goes_on:
             last.heads.append(self._line)
         for line, ways in self._heads.items() if goes_on else ():
-            if names in ways:
+            if names in ways and len(self._page) < MAX_HEADS:
                 self._page.add(line)
             elif not any(map(self._worth, ways)):  # it never will be a head
                 self._remember(line, {})

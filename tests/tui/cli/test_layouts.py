@@ -154,6 +154,11 @@ def test_each_layout_reads_its_case(layout):
     assert len(series.times) == 90
 
 
+def test_of_the_errors_that_end_a_log_the_first_is_told():
+    (series,) = tables(rows("t = {t}, E = {e}") + "ERROR: Lost atoms\nERROR: MPI abort follows\n")
+    assert series.sheet.error == "ERROR: Lost atoms"
+
+
 @pytest.mark.parametrize(
     ("row", "found"),
     [
