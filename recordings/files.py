@@ -158,7 +158,7 @@ def listing(being_made: bool = False) -> list[Item]:
             if _is_recording(path) and (path.suffix == PART and in_use(path)) == being_made:
                 status = path.stat()
                 items.append(Item(path, status.st_size, status.st_mtime))
-    return sorted(items, key=lambda item: item.modified, reverse=True)
+    return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
 
 
 def golden_names() -> list[str]:

@@ -31,7 +31,7 @@ def _list(options: argparse.Namespace) -> Report:
         Column("newest first", lambda row: Path(row["file"]).name),
         Column("length", "seconds", seconds),
         Column("size", "bytes", file_size),
-        Column("scenes", lambda row: "; ".join(filter(None, (*row["scenes"], row["reason"])))),
+        Column("scenes", _scenes),
     )
     return Report(
         name="recordings",
@@ -41,6 +41,13 @@ def _list(options: argparse.Namespace) -> Report:
         fields={"folder": folder, "recordings": rows},
         notes=[f"recording now: {each.path.stem}" for each in files.listing(being_made=True)],
     )
+
+
+def _scenes(row: dict[str, Any]) -> str:
+    scenes = row["scenes"]
+    if len(scenes) > 2:
+        scenes = [scenes[0], f"{len(scenes) - 1} more"]
+    return "; ".join(filter(None, (", ".join(scenes), row["reason"])))
 
 
 def _facts(item: files.Item) -> dict[str, Any]:
@@ -71,13 +78,16 @@ def _contents(recording: Recording) -> Report:
     if recording.damaged:
         health = f"damaged: {health}"
     samples = counted(recording.samples, "sample")  # reads them all
+    notes = []
+    if len(runs) > MAX_RUNS:
+        notes = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
     return Report(
         name="recordings-show",
         title=f"{recording.path}: {health}\n"
         f"{seconds(recording.length)}, {samples}, {file_size(recording.bytes)}\n"
         f"methods: {', '.join(cast)}\n",
         columns=RUN_COLUMNS,
-        rows=[run["scene"] | run for run in runs],
+        rows=[run["scene"] | run for run in runs[:MAX_RUNS]],
         fields={
             "file": str(recording.path),
             "runs": runs,
@@ -85,9 +95,11 @@ def _contents(recording: Recording) -> Report:
             "methods": cast,
             **fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
         },
+        notes=notes,
     )
 
 
+MAX_RUNS = 500  # in the table, of which Rich draws a thousand rows a second
 RUN_COLUMNS = (
     Column("run", "run", "d"),
     Column("scene", "name"),

@@ -16,7 +16,7 @@ from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
 from pendu_tui.engine.run.verdicts import UNDECIDED, Progress
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.recordings.events import simulate, steps_for
+from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
 from pendu_tui.tui.cli.checks import Check, Gate, conclude, parse
 from pendu_tui.tui.cli.errors import Exit, UserError, progress, warn
@@ -98,18 +98,18 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
     """Run to the end or until a signal; return the last sample, or for a figure all of them."""
     scene = lockstep.scene
     recorder: Any = nullcontext()
-    every: int | None = MAX_BATCH
+    every = MAX_BATCH
     if options.method:  # a method of the user's own may be slow, and Ctrl+C waits for a batch
         every = 16
-    is_figure = form_of(options) == "figure"
-    if is_figure:
-        every = math.ceil(steps / MAX_POINTS)
     if options.record:
         from pendu_tui.recordings.recorder import Recorder  # slow to load
 
         recorder = Recorder(options.record, overwrite=options.force)
-        every = None  # 1/30 s
+        every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
     every = options.sample_every or every
+    is_figure = form_of(options) == "figure"
+    if is_figure:
+        every = min(every, math.ceil(steps / MAX_POINTS))
     samples: list[Sample] = []
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(

@@ -2,6 +2,7 @@
 
 import csv
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,8 @@ from mcap.writer import Writer
 
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
-from tests.recordings.examples import record, start, two_runs
+from tests.recordings import hostile
+from tests.recordings.examples import SCENE, record, start, two_runs
 from tests.tui.command_line import pendu
 
 
@@ -34,6 +36,14 @@ def test_show_says_what_is_damaged(whole):
     whole.write_bytes(data)
     damaged = f"{whole}: damaged: its checksum is wrong\n"
     assert pendu("recordings", "show", whole).out.startswith(damaged)
+
+
+@pytest.mark.parametrize(("most", "more"), [(1, 1), (2, 0)])
+def test_show_tabulates_so_many_runs_at_most(most, more, whole, monkeypatch):
+    monkeypatch.setattr("pendu_tui.tui.commands.recordings.MAX_RUNS", most)
+    out = pendu("recordings", "show", whole).out
+    assert out.count("\n  1  test ") + out.count("\n  2  test ") == most
+    assert (f"\nand {more} runs more; --json" in out) == bool(more)
 
 
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
@@ -110,6 +120,14 @@ def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
 @pytest.mark.parametrize("words", ["list a", "show", "show a -o b", "recover a", "-o b"])
 def test_each_verb_takes_its_own_files(words):
     assert pendu("recordings", *words.split()).refused(2, "use recordings, recordings show FILE")
+
+
+def test_of_many_scenes_the_first_is_named(library):
+    with Recorder(library / "tour.mcap") as recorder:
+        for run, name in enumerate("kmn", 1):
+            recorder.add(start(run, replace(SCENE, name=name)), float(run))
+            recorder.add(hostile.first_sample(run), float(run))
+    assert pendu("recordings").out.count("k, 2 more\n") == 1
 
 
 def test_export_to_stdout_is_the_file(tmp_path):
