@@ -175,7 +175,7 @@ class Results:
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
         chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
         yield from lines_of(chart, PALETTES["dark"])
-        if self.options.all:
+        if self.options.all and self.points:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
         if self.attempts:
             yield from self._advice_notes()

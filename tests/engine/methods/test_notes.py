@@ -182,11 +182,14 @@ def test_a_compensation_goes_on_where_a_run_is_continued():
     assert propagate(propagate((1.0, 0.0), 0.01, 1000), 0.01, 1000) == whole
 
 
-def test_imex_euler_is_stable_at_any_stiffness():
-    stiffest = Spring(9.81, 1e14)
+def test_imex_euler_is_stable_at_any_stiffness_and_stops_the_swing_too():
+    stiffest, stiff = Spring(9.81, 1e14), Spring(9.81, 2500.0)
     z, w = PlainLoops(IMEX_EULER, stiffest).propagate(stiffest.start(1.0, 0.0), 0.02, 1500)
     assert z == pytest.approx(-1j, abs=0.02)
     assert abs(w) < 0.2
+    phases = islice(IMEX_EULER.on(stiff)(stiff.start(1.0, 0.0), 0.02), 500)
+    left = [stiff.energy()(phase) / stiff.reference(1.0, 0.0).start for phase in phases]
+    assert (left[49], left[499]) == pytest.approx((0.52, 0.065), abs=0.01)  # after 1 and 10 s
 
 
 def rows(name):
@@ -248,3 +251,13 @@ def test_rk4_loses_little_of_the_learned_hamiltonian():
     end = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).propagate((1.5, 0.0), 0.032, 3125)
     share = (energy(end) - start) / (start - energy((0.0, 0.0)))
     assert share / 100 == pytest.approx(-2.5e-7, rel=0.05)  # 1/s
+
+
+@pytest.mark.parametrize("method", FAMILY, ids=by_key)
+def test_what_was_learned_holds_for_any_length_and_gravity(method):
+    """In units of w0 the motion is the same: here on the Moon."""
+    moon = Pendulum(1.62)
+    share = PENDULUM.w0 / moon.w0
+    theta, omega = PlainLoops(method, PENDULUM).propagate((1.0, 0.5 * PENDULUM.w0), 0.02, 100)
+    on_moon = PlainLoops(method, moon).propagate((1.0, 0.5 * moon.w0), 0.02 * share, 100)
+    assert on_moon == pytest.approx((theta, omega / share), rel=1e-9)

@@ -2,6 +2,8 @@
 
 import hashlib
 import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -12,7 +14,8 @@ from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.studies.stability import Grid, Part
 from tests.own_methods import VERLET, load
 
 EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
@@ -79,6 +82,14 @@ def test_a_method_that_takes_rates_integrates_friction_too():
         SCENES["damped"].with_cast((load(VERLET),))
 
 
+def test_it_has_the_same_bits_in_another_process():
+    grid = Grid(np.array([0.5, 2.0]), np.array([0.3, 1.9]), 50, (load(VERLET), VELOCITY_VERLET))
+    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
+        mine, verlet = executor.map(Part.cells, grid.parts())
+    assert (mine == verlet).all()
+    assert (mine == grid.cells()[:, 0]).all()
+
+
 WRONG = {
     "a step instead of a generator": (
         f"def mine(force, phase, h):\n    theta, omega = phase\n    {EULER}\n    return theta, omega",
@@ -142,6 +153,13 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
         print("still there")
     print("here again")
     assert capsys.readouterr() == ("here again\n", "still there\n")
+
+
+def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
+    late = load(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
+    lockstep = Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,)))
+    with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple "):
+        lockstep.advance(30_000)
 
 
 @pytest.mark.parametrize("step", ["", "omega ** 4"])  # a power overflows with an exception
