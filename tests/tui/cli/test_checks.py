@@ -163,6 +163,8 @@ def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
         ("trend > 1e-5", 2e-5, 3.1e-5, "cannot tell"),
         ("trend > 1e-5", -2e-5, 3e-5, ""),
         ("trend < -1e-5", -1e-6, 1e-5, ""),
+        ("trend >= 1e-5", 1e-6, 1e-5, ""),
+        ("trend <= -1e-5", -1e-6, 1e-5, ""),
         ("trend < -1e-5", -1e-6, 1.1e-5, "cannot tell"),
         ("trend < -1e-5", -2e-5, 2.9e-5, "trend is -2e-05"),
         ("trend > 1e-5", 1e-6, None, "cannot tell: trend is not known"),

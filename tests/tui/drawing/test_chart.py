@@ -166,19 +166,23 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross():
 
 
 @pytest.mark.parametrize(
-    ("columns", "half_swing", "apart", "crosses"),
+    ("columns", "back", "half_swing", "apart", "crosses"),
     [
-        (3, 0, 5, 0),
-        (4, 3, 5, 1),
-        (4, 4, 5, 0),
-        (96, 3.5, 5, 1),  # half a swing before the first column is seen
-        (96, 3.6, 5, 0),
-        (50, 0, 0.5, 1),
-        (50, 0, 0.49, 0),
+        (3, 0, 0, 5, 0),
+        (4, 0, 3, 5, 1),
+        (4, 0, 4, 5, 0),
+        (96, 0, 3.5, 5, 1),  # half a swing before the first column is seen
+        (96, 0, 3.6, 5, 0),
+        (50, 0, 0, 0.5, 1),
+        (50, 0, 0, 0.49, 0),
+        (50, 1, 0, 5, 0),  # it may not last
     ],
 )
-def test_a_pass_lasts_for_a_25th_of_the_chart_and_half_a_swing(columns, half_swing, apart, crosses):
-    later = np.where(np.arange(100) < 100 - columns, 10.0 - apart, 10.0 + apart)
+def test_a_pass_lasts_for_a_25th_of_the_chart_and_half_a_swing_to_the_end(
+    columns, back, half_swing, apart, crosses
+):
+    at = np.arange(100)
+    later = np.where((at < 100 - columns) | (at >= 100 - back), 10.0 - apart, 10.0 + apart)
     heights = np.column_stack((np.full(100, 10.0), later))
     assert len(_crossings(heights, np.arange(100.0) + 0.5, half_swing)) == crosses
 

@@ -3,7 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -123,6 +123,7 @@ def series(draw):
     return x, low, low + draw(arrays(np.float64, (count, 2), elements=st.floats(0, 10)))
 
 
+@example((np.array([40.0]), np.zeros((1, 2)), np.ones((1, 2))), 1, 0.0)  # at the end of the axis
 @given(series(), st.integers(1, 30), st.just(0.0) | st.floats(0.01, 50))
 def test_a_column_has_the_extremes_of_its_rows_and_of_those_held_from_before(data, columns, hold):
     x, low, high = data
