@@ -163,6 +163,11 @@ def test_thousands_may_have_commas_beside_decimal_points(form):
     assert list(series.times) == [*range(0, 4500, 50)]
 
 
+def test_thousands_may_have_points_before_a_decimal_comma():
+    (series,) = tables("t;E\n" + rows("{n};4.450,{n:02}"))
+    assert series.energies[:2].tolist() == [4450.0, 4450.01]
+
+
 @pytest.mark.parametrize("more", ["", "12.05.2024 v1.2 "])
 def test_numbers_without_a_point_beside_them_have_decimal_commas(more):
     (series,) = tables(rows(more + "t={n},125 E=-41,9{n:02} J"))
@@ -499,7 +504,7 @@ def test_steps_and_units_of_the_owner_are_applied():
         tables("Time (ps),E\n" + rows("{t},{e}"), step=(0.5, "fs"))
 
 
-@pytest.mark.timeout(10)
+@pytest.mark.timeout(30)
 @pytest.mark.parametrize("part", ["a ", "a", "1 ", "(a ", "=", "1,", '"a": ', '{"a":'])
 def test_long_lines_take_no_longer_than_short_ones(part):
     assert tables(part * 50_000 + "\n") == []
@@ -510,5 +515,7 @@ def test_documents_without_a_table_hold_none(text):
     assert [len(series.times) for series in tables(text)] == []
 
 
-def test_a_name_may_have_a_plus():
+def test_a_name_may_have_a_plus_and_its_unit_counts_before_its_case_does_not():
     assert find(("t", "KE+PE"), "KE+PE") == (1,)
+    assert find(("E (eV)", "E (J)", "e"), "e (j)") == (1,)
+    assert find(("E (eV)", "E (J)", "e"), "E") == (2,)
