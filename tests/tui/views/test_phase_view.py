@@ -97,14 +97,14 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
 async def test_the_wheel_zooms_around_the_pointer():
     async with phase_view() as (theatre, pane):
         before = pane.viewport
-        state = before.at_cell(30 - LEFT, 5)
+        state = before.at_cell(30 - LEFT, 2)
         what = dict.fromkeys(("button", "shift", "meta", "ctrl", "delta_x", "delta_y"), 0)
         x, y = pane.content_region.offset
-        where = {"screen_x": x + 30, "screen_y": y + 5}
-        pane.post_message(events.MouseScrollUp(pane, 31, 6, **what, **where))
+        where = {"screen_x": x + 30, "screen_y": y + 2}
+        pane.post_message(events.MouseScrollUp(pane, 31, 3, **what, **where))
         await theatre.pilot.pause()
         assert pane.viewport.theta_span < before.theta_span
-        after = pane.viewport.at_cell(30 - LEFT, 5)
+        after = pane.viewport.at_cell(30 - LEFT, 2)
         assert after.theta == pytest.approx(state.theta, abs=pane.viewport.theta_per_dot)
         assert after.omega == pytest.approx(state.omega, abs=pane.viewport.omega_per_dot)
         nearer = pane.viewport
@@ -112,6 +112,12 @@ async def test_the_wheel_zooms_around_the_pointer():
         assert pane.viewport == nearer
         await theatre.press("escape")
         assert pane.viewport == before
+
+
+async def test_z_zooms_around_the_crosshair_and_moves_it_to_the_middle():
+    async with phase_view() as (theatre, pane):
+        await theatre.press("right", "up", "up", "z")
+        assert (pane.viewport.theta, pane.viewport.omega) == pytest.approx(pane.cursor)
 
 
 async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
