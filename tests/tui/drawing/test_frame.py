@@ -109,6 +109,19 @@ def test_the_most_common_labels_of_the_lab(labels, text):
     assert " ".join(labels.values()) == text
 
 
+def test_labels_stand_at_their_values():
+    hours = time_axis(2 * HOUR, 8 * HOUR, 60).labels
+    assert {place / HOUR: text for place, text in hours.items()} == {
+        **{hour: f"{hour}" for hour in range(2, 8)},
+        8: "8 h",
+    }
+    quarters = [quarter * math.pi / 2 for quarter in range(-2, 3)]
+    assert [*theta_ticks(-math.pi, math.pi, 4)] == pytest.approx(quarters)
+    assert [*log_time_axis(1.0, 86400.0, 60).labels] == pytest.approx(
+        np.log10([1, 5, 60, 300, HOUR, 5 * HOUR, 24 * HOUR])
+    )
+
+
 def test_a_label_at_the_end_of_an_axis_stays_inside():
     frame = Frame(Axis(0.0, 1.0, {1.0: "pi/2"}), Axis(0.0, 1.0, {0.5: "1"}), 12, 1)
     assert Picture(frame.around([[("field", TEXT)]])).text == "    1┤field\n     └────── pi/2"
