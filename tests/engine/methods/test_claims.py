@@ -304,7 +304,8 @@ def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed,
 
 @pytest.mark.parametrize(
     ("share", "above", "kept"),
-    [(1e-16, 0.0, True), (1e-10, 0.0, False), (1e-10, 7.5, False)],  # rad/s
+    # rad/s; ten swings lose a hundred times the share
+    [(1e-16, 0.0, True), (1e-10, 0.0, False), (1e-12, 0.0, False), (1e-10, 7.5, False)],
 )
 def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, kept):
     def losing(force, phase, h):

@@ -73,6 +73,7 @@ def test_a_method_far_dearer_than_another_is_given_up():
     cheapest, dear = attempts
     assert cheapest.succeeded
     assert not dear.succeeded
+    assert (cheapest.cost, dear.cost) == (cheapest.point.force_evaluations, math.inf)
     budget = 300 * cheapest.point.force_evaluations
     assert dear.why_not == f"not within {budget} evaluations"
     assert dear.point.force_evaluations <= budget

@@ -66,6 +66,11 @@ def test_small_steps_turn_as_the_exact_pendulum_does():
         assert spun.rotation == pytest.approx(math.copysign(0.01 / turning, omega), rel=2e-5)
 
 
+def test_a_swing_that_starts_turns_away_turns_as_fast():
+    here, away = (kind(VERLET, 1.0 + turns * math.tau, 0.3) for turns in (0, 3))
+    assert away.rotation == pytest.approx(here.rotation, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("key", "theta", "z", "fraction"),
     [

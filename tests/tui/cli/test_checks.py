@@ -107,6 +107,7 @@ def test_a_verdict_is_compared_with_one_of_its_words(word):
         ("x" * 60, f"{'x' * 60}' is not understood"),
         ("x" * 61, f"{'x' * 57}...' is not understood"),
         ("velocity_verlt.energy > 1", "no method 'velocity_verlt': did you mean velocity_verlet?"),
+        ("heun.energy > 1", "choose from explicit_euler, symplectic_euler, velocity_verlet, rk4."),
         ("rk4.max_enrgy_error > 1", "'max_enrgy_error': did you mean max_energy_error?"),
     ],
 )

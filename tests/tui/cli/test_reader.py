@@ -163,6 +163,13 @@ def test_thousands_may_have_commas_beside_decimal_points(form):
     assert list(series.times) == [*range(0, 4500, 50)]
 
 
+def test_words_between_rows_that_name_one_column_are_no_head():
+    table = rows("{t} {e} {k}").splitlines(keepends=True)
+    table[45:45] = ["the time passed\n"]
+    (series,) = tables("t E K\n" + "".join(table))
+    assert len(series.times) == 90
+
+
 def test_thousands_may_have_points_before_a_decimal_comma():
     (series,) = tables("t;E\n" + rows("{n};4.450,{n:02}"))
     assert series.energies[:2].tolist() == [4450.0, 4450.01]

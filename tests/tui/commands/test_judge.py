@@ -63,7 +63,11 @@ FILES = {
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
     "cold.csv": "t,E,K\n" + lines("{t},{e},5") + "30,100,nan\n",
     "odd.csv": TABLE + "x,1\n1,\n,1\n2\nnan,1\n29,1\n32,100.5\ninf,1\n",
-    "coarse.csv": "t,E\n" + lines("{t},{e}", [(n, 100 + 4 * math.cos(3 * n)) for n in range(300)]),
+    **{
+        name: "t,E\n"
+        + lines("{t},{e}", [(n, 100 + 4 * math.cos(3 * n) + rise * n) for n in range(300)])
+        for name, rise in (("coarse.csv", 0.0), ("rising.csv", 0.01), ("rises.csv", 0.02))
+    },
 }
 PER_ATOM = "--step 2fs --units energy=eV --atoms 10 --temperature 300"
 PRINTED = f"""\
@@ -104,6 +108,7 @@ table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'
 coarse.csv table.csv --steps 1,2 --energy E
 table.csv failed.csv --steps 1,2
+rising.csv rises.csv --steps 1,2
 """
 
 

@@ -178,10 +178,13 @@ def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_comm
         shown(ZeroDivisionError())
 
 
-def test_a_file_of_one_scene_is_a_lesson_if_it_asks_something(asking, tmp_path):
+def test_a_file_of_several_scenes_is_a_lesson_and_one_of_one_if_it_asks_something(asking, tmp_path):
     plain = tmp_path / "plain.toml"
     plain.write_text("theta = 1\n", encoding="utf-8")
     assert lesson_of(plain) is None
+    several = tmp_path / "several.toml"
+    several.write_text("[[scene]]\nname = 'one'\n[[scene]]\nname = 'two'\n", encoding="utf-8")
+    assert [page.name for page in lesson_of(several).pages] == ["one", "two"]
     assert lesson_of(asking).page.shot.question == "Why?"
 
 

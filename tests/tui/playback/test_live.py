@@ -20,7 +20,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.events import Event
 from pendu_tui.tui.playback import live
 from pendu_tui.tui.playback.source import doubled
-from tests.own_methods import load
+from tests.own_methods import VERLET, load
 from tests.tui.harness import FPS, Lab
 
 
@@ -242,6 +242,16 @@ def mine(force, phase, h):
         theta = theta + h * omega
         yield theta, omega
 """
+
+
+def test_a_users_method_takes_one_step_at_a_time_so_that_a_slow_one_leaves_frames():
+    def steps(method):
+        look = 0.6 * live.FRAME_BUDGET  # s, so that there is time for one look
+        scene = DEFAULT_SCENE.with_cast((method,))
+        return Bench(scene, speed=64.0, second_per_look=look).run(0.2).step
+
+    assert steps(load(VERLET)) <= 0.2 * FPS + 1
+    assert steps(DEFAULT_SCENE.cast[2]) > 100
 
 
 @pytest.mark.parametrize(

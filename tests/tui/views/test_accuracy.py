@@ -5,10 +5,10 @@ from functools import partial
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, nearest
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -37,6 +37,21 @@ async def complete(pilot, pane: AccuracyPane) -> None:
 def test_a_point_is_found_within_six_columns_or_three_rows():
     cells = (16, 5), (17, 5), (10, 2), (10, 1)
     assert [nearest([(10, 5, "here")], *cell) for cell in cells] == ["here", None] * 2
+
+
+def test_the_slope_of_an_order_lies_below_its_first_method():
+    scene = SCENES["drift"].with_cast((method_of("velocity_verlet"), method_of("heun")))
+    points = [*measured(scene, 5.0, RUNGS)]
+
+    def dotted(some):
+        return [
+            [*line.x, *line.y]
+            for line in accuracy_series(some, "theta", "evaluations", scene.cast)
+            if line.dotted
+        ]
+
+    assert dotted(points) == dotted([each for each in points if each.method == scene.cast[0]])
+    assert len(dotted(points)) == 1
 
 
 accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)
