@@ -20,18 +20,18 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 849_000,
-    "characters_of_engine": 255_900,
-    "characters_of_recordings": 68_100,
-    "characters_of_tui": 525_100,
-    "characters_of_tests": 730_600,
+    "characters": 851_600,
+    "characters_of_engine": 257_500,
+    "characters_of_recordings": 68_400,
+    "characters_of_tui": 525_800,
+    "characters_of_tests": 736_600,
     "characters_of_bench": 60_000,
     "files": 127,
     "parallel_assignments": 9,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
     "long_lines": 0,
-    "numeric_constants": 216,
+    "numeric_constants": 219,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 
