@@ -55,7 +55,7 @@ def start_angle(text: str) -> float:
     value = angle(text)
     if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
         turns = abs(value) / math.tau
-        raise ValueError(f"{text} is {turns:.3g} turns; write {text}deg or {text}rad")
+        raise ValueError(f"{text} is {turns:.1f} turns; write {text}deg or {text}rad")
     return value
 
 

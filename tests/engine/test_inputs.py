@@ -44,7 +44,7 @@ def test_a_number_is_read_in_its_unit(read, text, value):
     [
         *((number, text, "a number; use") for text in ("", "2s", "1,5")),
         *((angle, text, "an angle; use") for text in ("2m", "pi/0", "deg")),
-        *((start_angle, text, r"is 1 turns") for text in ("6.29", "-6.29")),
+        *((start_angle, text, r"is 1\.0 turns") for text in ("6.29", "-6.29")),
         (start_angle, "115", r"115 is 18\.3 turns; write 115deg or 115rad"),
         *((seconds, text, "a time; use") for text in ("2deg", "s", "1 2")),
     ],

@@ -15,7 +15,7 @@ COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "second
 def length(seconds: float) -> str:
     """Write a computing time with its unit."""
     for unit, size in (("µs", 1e-6), ("ms", 1e-3)):
-        if seconds < 1000 * size:
+        if seconds < 999.5 * size:
             return f"{few(seconds / size)} {unit}"
     return f"{few(seconds)} s"
 

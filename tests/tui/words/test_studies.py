@@ -17,6 +17,7 @@ LOST = replace(REGULAR, rotation=None, fraction=None)
 HALF = replace(ISLAND, rotation=-0.5, fraction=Fraction(1, 2), spins=True)
 TEXTS = {
     (length, 9.994e-4): "999 µs",
+    (length, 9.996e-4): "1 ms",
     (length, 1e-3): "1 ms",
     (length, 0.9994): "999 ms",
     (length, 1.0): "1 s",
