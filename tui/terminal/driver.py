@@ -18,8 +18,8 @@ from pendu_tui.tui.terminal.options import CharacterSet
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:
     """Return a replacement for each braille character, by its upper and lower dots."""
-    upper = 0x01 | 0x08 | 0x02 | 0x10  # in Unicode's order
-    lower = 0x04 | 0x20 | 0x40 | 0x80
+    upper = 0x1B  # in Unicode's order
+    lower = 0xE4
     return {
         0x2800 + dots: blank_upper_lower_both[bool(dots & upper) + 2 * bool(dots & lower)]
         for dots in range(256)

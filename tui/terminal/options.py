@@ -1,6 +1,7 @@
 """What the lab looks like and how it is controlled, from the command line or the terminal."""
 
 import argparse
+import codecs
 import os
 import re
 import select
@@ -58,7 +59,7 @@ def terminal_options_of(
 
 
 def is_utf8(encoding: str) -> bool:
-    return encoding.lower().replace("-", "").replace("_", "") == "utf8"
+    return codecs.lookup(encoding).name == "utf-8"
 
 
 def fitting_theme(environment: Mapping[str, str]) -> str:
@@ -106,9 +107,10 @@ def background() -> Literal["light", "dark"] | None:
     reply = b""
     end = time.monotonic() + 1.0  # s; some terminals never answer
     with key_by_key(keyboard) as can_wait:
-        if can_wait:
-            os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")
-        while can_wait and not re.search(rb"\x1b\[\?[\d;]*c", reply):
+        if not can_wait:
+            return None
+        os.write(sys.__stderr__.fileno(), b"\x1b]11;?\x1b\\\x1b[c")
+        while not re.search(rb"\x1b\[\?[\d;]*c", reply):
             left = max(0.0, end - time.monotonic())
             if not select.select([keyboard], [], [], left)[0]:
                 break

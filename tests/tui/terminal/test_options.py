@@ -1,3 +1,4 @@
+import itertools
 import sys
 from contextlib import nullcontext
 from types import SimpleNamespace
@@ -52,46 +53,59 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 
 @pytest.mark.parametrize(
     ("term", "number"),
-    [("xterm-256color", 256), ("xterm-kitty", 256), ("screen", 16), ("", 0), ("unknown", 0)],
+    [("xterm-256color", 256), ("xterm-Kitty", 256), ("screen", 16), ("", 0), ("unknown", 0)],
 )
 def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     assert colours({"TERM": term}) == number
-    for value in ("truecolor", "24bit"):
+    for value in ("truecolor", " 24Bit"):
         assert colours({"TERM": term, "COLORTERM": value}) == 1 << 24
+
+
+@pytest.fixture
+def ask(monkeypatch):
+    """Ask a terminal for its background; return that, what was sent, and how long was waited."""
+
+    def ask(*answers: bytes, can_wait=True):
+        sent, waits = [], []
+        parts = iter(answers)
+
+        def select(*asked):
+            waits.append(asked[-1])
+            return [0] * (asked[-1] > 0), [], []
+
+        clock = SimpleNamespace(monotonic=itertools.count(0.0, 0.375).__next__)
+        files = SimpleNamespace(
+            write=lambda _, text: sent.append(text), read=lambda *_: next(parts)
+        )
+        monkeypatch.setattr(options, "os", files)
+        monkeypatch.setattr(options, "time", clock)
+        monkeypatch.setattr(options, "select", SimpleNamespace(select=select))
+        monkeypatch.setattr(options, "key_by_key", lambda _: nullcontext(can_wait))
+        return options.background(), sent, waits
+
+    return ask
 
 
 @pytest.mark.parametrize(
     ("colour", "ground"),
     [
-        ("rgb:ffff/ffff/ffff", "light"),
-        ("rgb:f/7/0", "light"),  # green is the brightest
-        ("rgb:0/9/f", "light"),
-        ("rgb:f/0/0", "dark"),
-        ("rgba:0000/8888/ffff", "dark"),
-        ("", None),
+        (b"rgb:ffff/ffff/ffff", "light"),
+        (b"rgb:f/7/0", "light"),  # green is the brightest
+        (b"rgb:0/9/f", "light"),
+        (b"rgb:f/0/0", "dark"),
+        (b"rgba:0000/8888/ffff", "dark"),
+        (b"", None),
     ],
 )
-def test_the_background_is_what_the_terminal_answers(colour, ground, monkeypatch):
-    answer = f"\x1b]11;{colour}\x1b\\\x1b[?6c".encode()
-    asked = SimpleNamespace(write=lambda *_: None, read=lambda *_: answer)
-    monkeypatch.setattr(options, "os", asked)
-    monkeypatch.setattr(options, "select", SimpleNamespace(select=lambda *_: ([0], [], [])))
-    monkeypatch.setattr(options, "key_by_key", lambda _: nullcontext(True))
-    assert options.background() == ground
+def test_the_background_is_what_the_terminal_answers(colour, ground, ask):
+    answer = b"\x1b]11;" + colour + b"\x1b\\\x1b[?6c"
+    assert ask(answer[:9], answer[9:]) == (ground, [b"\x1b]11;?\x1b\\\x1b[c"], [0.625, 0.25])
 
 
-def test_a_terminal_that_does_not_answer_is_awaited_for_a_second(monkeypatch):
-    waits = []
-
-    def select(*asked):
-        waits.append(asked[-1])
-        return [], [], []
-
-    monkeypatch.setattr(options, "os", SimpleNamespace(write=lambda *_: None))
-    monkeypatch.setattr(options, "select", SimpleNamespace(select=select))
-    monkeypatch.setattr(options, "key_by_key", lambda _: nullcontext(True))
-    assert options.background() is None
-    assert waits == [pytest.approx(1.0, abs=0.2)]
+def test_a_terminal_that_does_not_answer_is_awaited_for_a_second(ask):
+    _, _, waits = ask(b"\x1b", b"]")
+    assert waits == [0.625, 0.25, 0.0]
+    assert ask(can_wait=False) == (None, [], [])
 
 
 def test_the_screen_has_the_frames_that_were_asked_for():
@@ -101,7 +115,7 @@ def test_the_screen_has_the_frames_that_were_asked_for():
 
 
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
-    assert chosen(encoding="utf8") == TerminalOptions("dark", "braille", mouse=True, fps=30)
+    assert chosen(encoding="UTF_8") == TerminalOptions("dark", "braille", mouse=True, fps=30)
     assert chosen("--fps 60").fps == 60
     assert chosen(encoding="latin-1").character_set == "ascii"
     assert chosen(TEXTUAL_ANIMATIONS="None").fps == CALM_FPS == 10
