@@ -17,6 +17,7 @@ import operator
 import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -26,6 +27,7 @@ from pendu_tui.engine.methods import USUAL_CAST, Cast, named
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import LARGEST, QUANTITIES
 from pendu_tui.engine.run.verdicts import UNDECIDED, VERDICTS, not_within
+from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli.errors import Exit, warn
 from pendu_tui.tui.cli.options import given_by
 
@@ -133,16 +135,11 @@ class _Grammar:
         return partial(_joined, found, key == "all")
 
     def no_comparison(self, text: str) -> InputError:
-        number = f"any.{LARGEST.name}"
-        if self.fields:
-            number = self.fields[0]
         word, (right, *_) = next(iter(self.words.items()))
-        if not self.fields:
-            word = f"any.{word}"
-        return InputError(
-            f"{_quoted(text)} is not understood; use for example "
-            f"'{number} > 1e-2 or {word} != {right}'."
-        )
+        example = f"any.{LARGEST.name} > 1e-2 or any.{word} != {right}"
+        if self.fields:
+            example = f"{self.fields[0]} > 1e-2 or {word} != {right}"
+        return InputError(f"{_quoted(text)} is not understood; use for example '{example}'.")
 
 
 def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> str:
@@ -154,13 +151,11 @@ def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> 
 
 
 def _number(node: ast.expr) -> float:
-    try:
-        value = ast.literal_eval(node)
-        if type(value) in (int, float) and math.isfinite(value):
-            return float(value)
-    except (ArithmeticError, ValueError):
-        pass
-    raise InputError(f"{_quoted(ast.unparse(node))} is not a finite number; use for example 1e-2.")
+    text = ast.unparse(node)
+    with suppress(ValueError):
+        if math.isfinite(value := float(text)):
+            return value
+    raise InputError(f"{_quoted(text)} is not a finite number; use for example 1e-2.")
 
 
 def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:
@@ -178,18 +173,18 @@ def _found(
     ours = reading.get(field)
     diverged_at = reading.get("diverged_at")
     name = f"{method}.{field}".removeprefix(".")
+    whose = method or "the energy"
     if field == "diverged_at":
         if ours is None or not compare(ours, limit):
             return ""
         return f"{name} is {ours:g}"
     if diverged_at is not None:
-        return f"{method or 'the energy'} failed at {diverged_at:g}"
+        return f"{whose} failed at {diverged_at:g}"
     if reading.get("verdict") == UNDECIDED and reading.get("slope", 0) is None:
-        why = reading.get("reason") or "it is too short"
-        return f"cannot tell: {method or 'the energy'} cannot be judged: {why}"
+        return f"cannot tell: {whose} cannot be judged: {reading['reason']}"
     if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
         return reading.get("unknown", {}).get(field) or f"{name} is not known"
-    if field in BOUNDS and compare in (operator.gt, operator.ge, operator.lt, operator.le):
+    if field in BOUNDS and compare not in (operator.eq, operator.ne):
         bound = reading.get(BOUNDS[field])
         sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
         if bound is None or bound > abs(ours):
@@ -204,7 +199,7 @@ def _found(
 
 def _quoted(text: str) -> str:
     """Return a text in quotes, shortened and without control characters."""
-    return repr(text if len(text) <= 60 else text[:57] + "...")
+    return repr(printable(text, 60))
 
 
 class Check(NamedTuple):

@@ -1,7 +1,6 @@
 """--fail-if: what trips a gate, and what is none."""
 
 import math
-import operator
 
 import pytest
 from hypothesis import given
@@ -12,18 +11,12 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.tui.cli.checks import FIELDS, parse
 
-SIGNS = {
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "==": operator.eq,
-    "!=": operator.ne,
-}
+SIGNS = ["<", "<=", ">", ">=", "==", "!="]
 KEYS = [method.key for method in USUAL_CAST]
 PLAIN = [field for field in FIELDS if field != "diverged_at"]
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
+words = st.sampled_from([*KEYS, "energy", "verdict", *SIGNS, "'", ".", "and", "or", "1", "(", " "])
 
 
 def reading(**values: float | str | None) -> dict[str, dict[str, float | str | None]]:
@@ -31,11 +24,9 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
     return {key: {**dict.fromkeys(PLAIN, 0.0), "diverged_at": None, **values} for key in KEYS}
 
 
-@given(
-    st.sampled_from(KEYS), st.sampled_from(PLAIN), st.sampled_from(sorted(SIGNS)), numbers, numbers
-)
+@given(st.sampled_from(KEYS), st.sampled_from(PLAIN), st.sampled_from(SIGNS), numbers, numbers)
 def test_a_comparison_is_that_of_python(key, field, sign, value, number):
-    found = f"{key}.{field} is {value:.3g}" if SIGNS[sign](value, number) else ""
+    found = f"{key}.{field} is {value:.3g}" if eval(f"{value!r} {sign} {number!r}") else ""
     assert parse(f"{key}.{field}{sign}{number!r}")(reading(**{field: value})) == found
 
 
@@ -50,11 +41,11 @@ def test_parentheses_join_as_in_python():
         "not rk4.energy > 1",  # it would pass what cannot be checked
         "0 < rk4.energy < 1",
         "rk4.energy > 1 # or rk4.energy < 0",
-        "rk4.energy > 1 +",
+        "rk4.energy in 1",
         "rk4.energy > 1 or print()",
-        "(" * 1000,
         "-" * 9_000,
-        "\0",
+        "-" * 900 + "1",
+        "\ud800",
         "",
     ],
 )
@@ -91,6 +82,7 @@ def test_a_verdict_is_compared_with_one_of_its_words(word):
         assert bool(parse(f"rk4.energy > 1 or rk4.verdict!='{word}'")(values)) is (verdict != word)
     assert parse(f"rk4.verdict == {word}")(reading(verdict=None))
     assert parse(f"rk4.verdict == {word}")(reading(verdict="bounded", diverged_at=1.0))
+    assert parse(None)(reading(verdict=word)) == ""
 
 
 @pytest.mark.parametrize(
@@ -103,9 +95,9 @@ def test_a_verdict_is_compared_with_one_of_its_words(word):
             "verdict != bounded",
             "for example 'any.max_energy_error > 1e-2 or any.verdict != bounded'",
         ),
-        ("rk4.energy > 1e999", "is not a finite number"),
-        ("x" * 60, f"{'x' * 60}' is not understood"),
-        ("x" * 61, f"{'x' * 57}...' is not understood"),
+        ("rk4.energy > 1e999", "'1e309' is not a finite number"),
+        ("x" * 60, f"'{'x' * 60}' is not understood"),
+        ("x" * 61, f"'{'x' * 59}…' is not understood"),
         ("velocity_verlt.energy > 1", "no method 'velocity_verlt': did you mean velocity_verlet?"),
         ("heun.energy > 1", "choose from explicit_euler, symplectic_euler, velocity_verlet, rk4."),
         ("rk4.max_enrgy_error > 1", "'max_enrgy_error': did you mean max_energy_error?"),
@@ -116,9 +108,6 @@ def test_an_error_is_one_sentence_that_helps(text, sentence):
         parse(text)
     assert str(error.value).startswith("--fail-if: ")
     assert sentence in str(error.value)
-
-
-words = st.sampled_from([*KEYS, "energy", "verdict", *SIGNS, "'", ".", "and", "or", "1", "(", " "])
 
 
 @given(st.text() | st.lists(words).map("".join))
@@ -159,15 +148,16 @@ def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast():
     ("expression", "slope", "bound", "outcome"),
     [
         ("trend > 1e-5", 1e-6, 1e-5, ""),
-        ("trend > 1e-5", 1e-6, 1.1e-5, "cannot tell"),
-        ("trend > 1e-5", 2e-5, 2.9e-5, "trend is 2e-05"),
-        ("trend > 1e-5", 2e-5, 3.1e-5, "cannot tell"),
+        ("trend > 1e-5", 1e-6, 1.1e-5, "cannot tell: trend is 1e-06 ± 1e-05 at 99 %"),
+        ("trend > 1e-5", 2e-5, 2e-5, "trend is 2e-05"),
+        ("trend > 1e-5", 2e-5, 2.9e-5, "trend is 2e-05, above 1e-05"),
+        ("trend > 1e-5", 2e-5, 3.1e-5, "cannot tell: trend is 2e-05 ± 1e-05 at 99 %"),
         ("trend > 1e-5", -2e-5, 3e-5, ""),
         ("trend < -1e-5", -1e-6, 1e-5, ""),
-        ("trend >= 1e-5", 1e-6, 1e-5, ""),
-        ("trend <= -1e-5", -1e-6, 1e-5, ""),
-        ("trend < -1e-5", -1e-6, 1.1e-5, "cannot tell"),
-        ("trend < -1e-5", -2e-5, 2.9e-5, "trend is -2e-05"),
+        ("trend >= 1e-5", 1e-6, 1.1e-5, "cannot tell: trend is 1e-06 ± 1e-05 at 99 %"),
+        ("trend <= -1e-5", -1e-6, 1.1e-5, "cannot tell: trend is -1e-06 ± 1e-05 at 99 %"),
+        ("trend < -1e-5", -2e-5, 2e-5, "trend is -2e-05"),
+        ("trend < -1e-5", -2e-5, 2.9e-5, "trend is -2e-05, below -1e-05"),
         ("trend > 1e-5", 1e-6, None, "cannot tell: trend is not known"),
         ("trend == 1e-5", 1e-6, 1.0, ""),
     ],
@@ -177,16 +167,27 @@ def test_a_limit_on_a_slope_is_compared_with_its_bound(
 ):
     gate = parse(expression.replace("trend", field), [field])
     row = {"bound": 9.0, "absolute_bound": 9.0, field: slope, place: bound}
-    failure = gate({"": row})
-    assert failure.startswith(outcome.replace("trend", field))
-    assert bool(failure) == bool(outcome)
+    assert gate({"": row}).partition(";")[0] == outcome.replace("trend", field)
 
 
 def test_what_cannot_be_judged_does_not_pass_and_says_what_would_help():
     gate = parse("max_energy_error > 1", ["max_energy_error"])
     row = {"max_energy_error": 0.1, "verdict": "undecided", "reason": "short"}
-    assert "short" in gate({"": row | {"slope": None}})
+    assert gate({"": row | {"slope": None}}) == "cannot tell: the energy cannot be judged: short"
     assert gate({"": row | {"slope": 0.0}}) == ""
     assert gate({"": row | {"slope": None, "verdict": "bounded"}}) == ""
     gate = parse("trend > 1e-5", ["trend"])
     assert "4 times as long" in gate({"": {"trend": 0.0, "bound": 8e-5}})
+    values = reading(verdict="undecided", reason="short")
+    assert parse("rk4.verdict == grows")(values) == "rk4.verdict is undecided: short"
+    values["rk4"]["slope"] = None
+    assert parse("rk4.energy > 1")(values) == "cannot tell: rk4 cannot be judged: short"
+
+
+def test_a_record_has_no_method_and_says_of_an_order_what_it_knows():
+    with pytest.raises(InputError, match="example 'order > 1e-2 or verdict != bounded'"):
+        parse("any.order > 1", ["order"])
+    gate = parse("order < 2", ["order"])
+    assert gate({"": {"order": 1.0, "diverged_at": 3.0}}) == "the energy failed at 3"
+    assert gate({"": {"order": None, "unknown": {"order": "too short"}}}) == "too short"
+    assert gate({"": {"order": 1.9, "shown": {"order": "1.9 ± 0.2"}}}) == "order is 1.9 ± 0.2"
