@@ -229,8 +229,8 @@ def repeat_swallowed_interrupts() -> None:
 def keep_results_apart() -> None:
     """Point the descriptor of stdout to stderr from now on, for a user's code; sys.stdout stays."""
     stdout = sys.stdout
-    if stdout is sys.__stdout__ and isinstance(stdout, io.TextIOWrapper):  # no test's
-        results = os.dup(1)
-        os.dup2(2, 1)
-        sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")
-        sys.stdout.reconfigure(line_buffering=stdout.line_buffering)
+    if sys.stdout is not sys.__stdout__:  # a test's
+        return
+    results = os.dup(1)
+    os.dup2(2, 1)
+    sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")

@@ -107,8 +107,7 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
 
     def show(done: float, total: float) -> None:
         nonlocal bar
-        is_long = monotonic() > began + 1 and 0 < done < total
-        if bar is None and is_long and sys.stderr.isatty():
+        if bar is None and monotonic() > began + 1 and sys.stderr.isatty():
             from rich.console import Console
             from rich.markup import escape
             from rich.progress import Progress

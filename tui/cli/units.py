@@ -142,9 +142,9 @@ def _unit_of_time(unit: str) -> str:
 
 def assignments(text: str) -> dict[str, str]:
     """Return the units of `time=ps,energy=kJ/mol`."""
-    pairs = [part.partition("=") for part in text.split(",") if part]
+    pairs = [part.partition("=") for part in text.split(",")]
     found = {kind.strip(): unit.strip() for kind, _, unit in pairs}
-    if not found or not set(found) <= {"time", "energy"} or not all(found.values()):
+    if not set(found) <= {"time", "energy"} or not all(found.values()):
         raise ValueError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
     if "time" in found:
         _unit_of_time(found["time"])

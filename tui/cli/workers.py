@@ -144,7 +144,7 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
             except (InputError, OwnMethodError):
                 raise
             except Exception as error:
-                why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
+                why = printable(f"{type(error).__name__}: {error}").rstrip(".: ")
                 raise unreadable(f"the workers are lost ({why}).") from error
 
         try:
