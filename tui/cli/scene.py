@@ -133,10 +133,8 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     """
     text, given = _read(path)
     tables = given.pop("scene", [given])
-    if not (
-        isinstance(tables, list)
-        and all(isinstance(each, dict) and (each or given) for each in tables)
-    ):
+    is_list = isinstance(tables, list) and any(tables)
+    if not is_list or not all(isinstance(each, dict) for each in tables):
         raise unreadable(
             f"{path} describes no scene; use [[scene]], then fields as in scenes --json."
         )
@@ -168,7 +166,7 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
     except OSError as error:
         why = f"cannot read {path}: {error.strerror}."
     except (ValueError, RecursionError) as error:  # binary data, or an integer of 5,000 digits
-        why = f"{path} is not TOML: {printable(str(error), 200)}."
+        why = f"{path} is not TOML: {printable(str(error))}."
     raise unreadable(why)
 
 

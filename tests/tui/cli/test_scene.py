@@ -60,7 +60,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("h = 0.1\nmethods = []", "line 2: no method is given"),
         ("[shot]\nlog = true\nfront = ['rk5']", "line 3: there is no method 'rk5'"),
         (f"theta = {5000 * '['}", "is not TOML"),
-        ("# nothing", "describes no scene"),
+        *((text, "no scene") for text in ("# nothing", "scene = []", "scene = 1", "scene = [1]")),
         (
             "[shot]\nseconds = 9\nlog = 1",
             "line 3: log: Expected `bool`, got `int`; use for example log = ",
@@ -76,6 +76,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
         ("[shot]\nreturns = true", "line 2: returns needs a moment; use for example"),
+        ("[shot]\nquestion = 'Why?'", "line 2: question needs a moment; use for example"),
         *(
             (
                 f"[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = {answers}\nright = {right}",
