@@ -7,7 +7,21 @@ method that lags is seen off the ray of the others.
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
-from math import asin, atan2, ceil, copysign, cos, hypot, isfinite, nan, pi, remainder, sin, tau
+from math import (
+    asin,
+    atan2,
+    ceil,
+    copysign,
+    cos,
+    hypot,
+    inf,
+    isfinite,
+    nan,
+    pi,
+    remainder,
+    sin,
+    tau,
+)
 from typing import NamedTuple, TypeVar
 
 from textual import events
@@ -364,18 +378,14 @@ class Stage(Pane):
 
     def _place_at(self, event: events.MouseUp) -> int | None:
         """Return the place in the cast whose lane, or bob on a spring, was clicked."""
-        offset = event.get_content_offset(self)
-        if offset is None or not self.places:
-            return None
         bobs, look = self._drawn
         found = lanes(*self.room, len(bobs), look.widest, look.rigid)
-        x = 2 * offset.x + 1.0
-        y = 4 * offset.y + 2.0
+        column, row = event.get_content_offset_capture(self)
+        x = 2 * column + 1.0
+        y = 4 * row + 2.0
         far = [hypot(x - right, y - down) for right, down in map(found.place, bobs, found.radii)]
         if look.rigid:
             out = hypot(x - found.x, y - found.y)
             far = [abs(out - radius) for radius in found.radii]
-        nearest = min(range(len(far)), key=far.__getitem__)
-        if far[nearest] > 2 * found.bob + 2:
-            return None
-        return self.places[nearest]
+        distance, place = min(zip(far, self.places, strict=True), default=(nan, 0))
+        return place if distance <= 2 * found.bob + 2 else None

@@ -112,17 +112,12 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
     async with lab() as theatre:
         await theatre.run(2)
         before = theatre.source.sample
-        stage = theatre.stage.query_one(Stage)
-        for columns, below in ((36, "drag: throw it · dotted: exact"), (35, "drag: throw it")):
-            stage.room = Size(columns, 20)
-            stage.draw()
-            assert stage.border_subtitle == below
-        held, table, below = await grabbed(theatre, (30, 9), (40, 8))
-        assert held == pytest.approx(1.9, abs=0.4)
-        assert table.count(f"{held:+.3f}") == 4
+        # two dots right of the pivot and two below
+        held, table, below = await grabbed(theatre, (30, 9), (23, 12))
+        assert table.count("+0.785") == 4
         assert below == "let go or throw"
         scene = theatre.source.scene
-        assert (scene.theta, scene.omega) == (held, 0.0)
+        assert (scene.theta, scene.omega) == (held, 0.0) == (0.785, 0.0)
         assert [event.kind for event in theatre.source.events] == ["start", "start"]
         assert theatre.stage.shown.held is None
         await theatre.press("u")
@@ -136,6 +131,11 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         ):
             held, *_ = await grabbed(theatre, move, wait=0)
             assert (held is not None) == is_drag
+        stage = theatre.stage.query_one(Stage)
+        for columns, below in ((36, "drag: throw it · dotted: exact"), (35, "drag: throw it")):
+            stage.room = Size(columns, 20)
+            stage.draw()
+            assert stage.border_subtitle == below
 
 
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
@@ -171,3 +171,6 @@ async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_al
             await theatre.click(stage, *on_lane(theatre, 0)[1])
             await theatre.run(0.1)
             assert not theatre.stage.shown.hidden
+        await theatre.press("1", "2", "3", "4")
+        await theatre.click(Stage)
+        assert stage.places == []
