@@ -197,7 +197,7 @@ class AccuracyPane(Chooser[Point]):
     def settled(self) -> bool:
         if self.source.scene.why_not_mapped:
             return True
-        return bool(self.steps) and not self.is_computing and self._chart.arguments == self._state
+        return not self.is_computing and self._chart.arguments == self._state
 
     @property
     def placed(self) -> Placed:

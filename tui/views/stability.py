@@ -234,7 +234,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         theta = (np.arange(48) + 0.5) * math.pi / 48
         self.grid = Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
         self.cells: Cells = self.grid.unknown()
-        self._is_begun = False
         self._title = "Stability (F5)"
         self._state = ""
         self.cursor = self.pointer = None
@@ -243,7 +242,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def settled(self) -> bool:
         if self.source.scene.why_not_mapped:
             return True
-        return self._is_begun and not self.is_computing
+        return self.cast == self.grid.methods and not self.is_computing
 
     def forget(self) -> None:
         self._begin(())
@@ -251,7 +250,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def add(self, result: Piece) -> None:
         part = result.part
         self.cells[part.z, part.method] = result.cells
-        self._is_begun = True
         self._title = f"Stability (F5), {part.grid.steps} steps: h [s], amplitude [°]"
         self._state = (
             f"Computing {100 * result.done:.0f} %. "  # as a title it would repaint the pane

@@ -14,7 +14,7 @@ from textual.content import Content
 from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
-from textual.worker import Worker, WorkerState
+from textual.worker import Worker
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import Cast
@@ -195,7 +195,7 @@ class Pane(CellWidget):
         """Return texts on rows, the last of which ends with an ellipsis if there are more."""
         width = max(self.room.width, 1)
         lines = [line for text in texts for line in wrap(text, width)]
-        if 0 < rows < len(lines):
+        if rows < len(lines):
             lines[rows - 1] = f"{lines[rows - 1][: width - 2]} …"
         return [[(line, TEXT)] for line in lines[:rows]]
 
@@ -218,11 +218,14 @@ class Pane(CellWidget):
 
         async def work() -> None:
             await asyncio.sleep(0.1)  # until the wheel stops turning
-            async for result in computed(function, *arguments):
-                self.add(result)
+            try:
+                async for result in computed(function, *arguments):
+                    self.add(result)
+            except Exception as error:  # the lab goes on
+                self.failure = f"{computing_failed(error)} Open this view again to retry."
 
         self.failure = ""
-        _: Worker[None] = self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
+        _: Worker[None] = self.run_worker(work, group=group, exclusive=True)
 
     def add(self, result: Any) -> None:
         """Keep a result of `compute`, to be drawn with one of the next samples."""
@@ -230,13 +233,7 @@ class Pane(CellWidget):
 
     @property
     def is_computing(self) -> bool:
-        return any(worker.node is self and not worker.is_finished for worker in self.workers)
-
-    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Show why a computation failed; the lab goes on."""
-        error = event.worker.error
-        if error is not None and event.state is WorkerState.ERROR:
-            self.failure = f"{computing_failed(error)} Open this view again to retry."
+        return not all(worker.is_finished for worker in self.workers)
 
     def retry(self) -> None:
         """Compute again what failed."""
@@ -248,10 +245,10 @@ class Pane(CellWidget):
         """Forget what has been computed, and what has been asked for."""
 
 
-def computing_failed(error: BaseException) -> str:
+def computing_failed(error: Exception) -> str:
     try:
         return str(explained(error))
-    except BaseException:
+    except Exception:
         return f"This view cannot be computed: {type(error).__name__}: {error}."
 
 

@@ -17,28 +17,48 @@ def os_pid():
         yield os.getpid()
 
 
+real = background.computed
+
+
+async def killed():
+    async for process in real(os_pid):
+        kill(process, 9)
+
+
+async def faulty():
+    raise ZeroDivisionError("why")
+
+
 @pytest.mark.other_process
-async def test_a_view_whose_process_is_killed_says_so_and_computes_when_it_is_shown_again(
-    monkeypatch,
+@pytest.mark.parametrize(
+    ("fails", "words", "keys"),
+    [
+        (killed, "was ended.", ("f2", key_of(VIEW))),
+        (faulty, "This view cannot be computed: ZeroDivisionError: why.", ("asterisk",)),
+    ],
+)
+async def test_a_view_whose_process_fails_says_so_and_computes_when_asked_again(
+    fails, words, keys, monkeypatch
 ):
-    real = background.computed
+    asked = []
 
-    async def killed_once(function, *arguments):
-        monkeypatch.setattr("pendu_tui.tui.views.background.computed", real)
-        async for process in real(os_pid):
-            kill(process, 9)
-        yield  # never reached, but it makes this a generator
+    async def once(function, *arguments):
+        asked.append(function)
+        if len(asked) == 1:
+            await fails()
+        for nothing in ():
+            yield nothing
 
-    monkeypatch.setattr("pendu_tui.tui.views.background.computed", killed_once)
+    monkeypatch.setattr("pendu_tui.tui.views.background.computed", once)
     async with lab() as theatre:
         await theatre.press(key_of(VIEW))
         pane = theatre.stage.query_one(f"#{VIEW}").pane
-        await until(theatre.pilot, lambda: pane.failure)
+        await until(theatre.pilot, lambda: pane.failure and len(asked) == 2)  # also for its own h
         await theatre.run(1)
-        assert "was ended. Open this view again" in pane.text
+        assert f"{words} Open this view again to retry." in pane.text
         assert theatre.source.sample.t > 0.9
-        await theatre.press("f2", key_of(VIEW))
-        await until(theatre.pilot, lambda: pane.is_computing)
+        await theatre.press(*keys)
+        await until(theatre.pilot, lambda: len(asked) == 4)
         assert not pane.failure
 
 
