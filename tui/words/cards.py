@@ -106,6 +106,6 @@ def scene_card(scene: Scene) -> str:
 
 
 def _card(title: str, lines: Mapping[str, str | None]) -> str:
-    wrapper = textwrap.TextWrapper(WIDTH, subsequent_indent=" " * 16, break_on_hyphens=False)
+    wrapper = textwrap.TextWrapper(WIDTH, subsequent_indent=" " * 16)
     texts = [wrapper.fill(f"  {head:<13} {text}") for head, text in lines.items() if text]
     return "\n".join([title, *texts])

@@ -12,7 +12,6 @@ from pendu_tui.engine.run.verdicts import (
     CHAOTIC,
     FAILED,
     GROWS,
-    LEAVES,
     LOSES,
     Judgement,
     Milestone,
@@ -22,9 +21,8 @@ from pendu_tui.tui.drawing.picture import Row, ink_of
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.numbers import about, seconds, two_digits
 
-WATCH = 8.0  # s of the clock for the scene's own sentence, at the beginning of a run
 FRESH = 6.0  # s of the clock during which a milestone is news
-TURN = 8.0  # s of the clock for each of the lasting insights
+TURN = 8.0  # s for each of the lasting insights, and for the return to t = 0
 UNCHANGED = 0.05  # a smaller change of the energy is not worth mentioning
 MAX_BAND = 0.2  # of the energy; larger losses change the rate of loss
 MAX_PERIOD = 2.0  # small swings; near the separatrix the rate of loss depends on the energy
@@ -52,19 +50,18 @@ def short_name(method: Method) -> str:
 def painted(text: str, cast: Cast, ink: int) -> Row:
     """Return a text in pieces: the names of a cast in the methods' inks, all else in `ink`."""
     names = {name: method for method in cast for name in (method.label, short_name(method))}
-    longest_first = sorted(map(re.escape, names), key=len, reverse=True)
-    pieces = re.split(rf"\b({'|'.join(longest_first)})\b", text, flags=re.IGNORECASE)
+    longer_first = sorted(map(re.escape, names), reverse=True)
+    pieces = re.split(rf"\b({'|'.join(longer_first)})\b", text, flags=re.IGNORECASE)
     inks = {name.lower(): ink_of(method, cast) for name, method in names.items()}
     return [(piece, inks.get(piece.lower(), ink)) for piece in pieces if piece]
 
 
 def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
-    """Choose equilibrium, the return to t = 0, news, the scene's own, or a lasting insight.
+    """Choose equilibrium, the scene's moment, the return to t = 0, news, or a lasting insight.
 
     Methods with `hidden` keys are not mentioned.
     """
     step = source.sample.step
-    t = abs(source.sample.t)
     h = abs(source.stepping.h)
     pace = abs(source.playhead.speed)
     shot = source.scene.shot
@@ -73,12 +70,10 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     is_moment = shot.moment is not None and step == round(shot.moment / h)
     if is_moment and shot.sentence and source.stepping.h == source.scene.h:
         return Insight("watch", shot.sentence)
-    if source.history.returned is not None and t < WATCH:
+    if source.history.returned is not None and abs(source.sample.t) < TURN:
         return _returned(source.scene, source.history.returned, hidden)
     if found := _news(source, step - FRESH * pace / h, hidden):
         return found
-    if t < WATCH * pace and (watch := watched(source, hidden)):
-        return Insight("watch", watch)
     known = lasting(source, hidden) or [Insight("nothing")]
     return known[int(step * h / (TURN * pace)) % len(known)]
 
@@ -154,7 +149,7 @@ def energy_ratio(milestone: Milestone, conserved: bool) -> float | None:
     return None
 
 
-def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
+def milestone_insight(milestone: Milestone, conserved: bool) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
     name = short_name(milestone.method)
     at = seconds(milestone.t)
@@ -212,15 +207,15 @@ def drift(source: Source, index: int) -> Insight | None:
     conserved = source.scene.equations.conserves_energy
     if verdict == LOSES and conserved and error < -0.5:  # more telling than the rate
         return Insight("lost", f"{name} has lost {_share(-error)} of its energy.")
-    rate = judgement.slope or 0.0
-    if verdict not in LEAVES or rate == 0.0 or (rate > 0) != (verdict == GROWS):
+    rate = (judgement.slope or 0.0) * {GROWS: 1, LOSES: -1}.get(verdict, 0)
+    if rate <= 0:
         return None
     if judgement.growth:
         tenfold = about(math.log(10) / judgement.growth)
         return Insight("multiplies", f"{name}'s energy grows tenfold every {tenfold}.")
     unit = "E0" if conserved else "the true energy"
     verb = "gains" if verdict == GROWS else "loses"
-    text = f"{name} {verb} {_share(abs(rate))} of {unit} per s"
+    text = f"{name} {verb} {_share(rate)} of {unit} per s"
     if ahead := forecast(source, index):
         wait, other = ahead
         passing = f"its error will pass {short_name(other)}'s in {about(wait)}"

@@ -108,7 +108,7 @@ def regime(model: Model, theta: float, omega: float) -> str:
 def energy_share(model: Model, theta: float, omega: float) -> str:
     """Write E/Es; near 1 as the difference: "1 - 2.5e-13"."""
     level = model.level(theta, omega)
-    if level != 0 and abs(level) < 1e-3:
+    if 0 < abs(level) < 1e-3:
         return f"1 {'-' if level > 0 else '+'} {abs(level):.1e}"
     return f"{1 - level:.4g}"
 

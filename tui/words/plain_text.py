@@ -91,7 +91,6 @@ def tell(
         lesson.begin(source, 0)
     for text in description(source):
         emit(text)
-    source.tick(clock())
     known = set(event_lines(source))
     told: tuple[str, ...] = ()
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):

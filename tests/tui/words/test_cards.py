@@ -15,7 +15,7 @@ def words(card: str) -> str:
 
 
 def test_cards_as_they_are_stored(snapshot):
-    keys = ("explicit_euler", "rk4", "backward_euler", "halving_verlet")
+    keys = ("explicit_euler", "velocity_verlet", "backward_euler", "halving_verlet")
     cards = [method_card(each) for each in METHODS if each.key in keys]
     scene = SCENES["damped"].altered(gravity=5.0)
     cards += [scene_card(scene), scene_card(SCENES["halving"]), glossary()]

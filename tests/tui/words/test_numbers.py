@@ -33,7 +33,9 @@ TEXTS = {
     (seconds, 59.996): "1 min 00 s",
     (seconds, 12.345): "12.35 s",
     (seconds, -185): "-3 min 05 s",
+    (seconds, 3599): "59 min 59 s",
     (seconds, 3599.6): "1 h 00 min",
+    (seconds, 86340): "23 h 59 min",
     (seconds, 86399): "1 d 00 h",
     (seconds, 3 * 86400 + 4 * 3600): "3 d 04 h",
     (seconds, 9.9e8): "11458 d 08 h",
@@ -63,6 +65,7 @@ TEXTS = {
     (two_digits, 99_999.5): "1.0e+05",
     # near the separatrix, the distance from it
     (energy_share, MODEL, 0.0, 4 * W0): "4",
+    (energy_share, MODEL, 0.0, 2 * W0): "1",
     (energy_share, MODEL, NEAR_THE_TOP, 0.0): "1 - 2.5e-13",
     (energy_share, MODEL, math.pi, 2e-6 * W0): "1 + 1.0e-12",
     (energy_share, MODEL, math.acos(2 * 0.9e-3 - 1), 0.0): "1 - 9.0e-04",
