@@ -54,8 +54,8 @@ class Part:
         line = self.slope.mean * (bins.times - bins.times.mean()) + values.mean()
         variances = bins.spreads**2 + (bins.means - line) ** 2
         self.fluctuation = max(math.sqrt(variances.mean()), bins.rounding)
-        width = float((bins.highs - line).max() - (bins.lows - line).min())
-        self.width = max(width, bins.rounding)
+        width = (bins.highs - line).max() - (bins.lows - line).min()
+        self.width = max(float(width), bins.rounding)
 
     def last(self, share: float) -> "Part":
         """Return the last bins, at least 4."""
@@ -68,7 +68,6 @@ class Part:
 
     def described(self, verdict: str, **known: Any) -> Judgement:
         """Return a judgement with this verdict, the slope of this part, and what else is known."""
-        spread = max(self.slope.uncertainty * self.length, 1e-300)
         return Judgement(
             verdict,
             slope=self.slope.mean,
@@ -76,7 +75,7 @@ class Part:
             bound=self.slope.bound,
             share=self.move / self.width,
             is_evident=self.slope.chance < levels.EVIDENT,
-            independent=12 * (self.fluctuation / spread) ** 2,
+            independent=12 * (self.fluctuation / self.slope.uncertainty / self.length) ** 2,
             fluctuation=self.fluctuation,
             **known,
         )
@@ -105,7 +104,7 @@ class Part:
     def _widens(self) -> bool:
         """Whether the band is wider from quarter to quarter, and far wider at the end."""
         widths = self.bins.highs - self.bins.lows
-        quarters = [float(part.mean()) for part in np.array_split(widths, 4)]
+        quarters = [part.mean() for part in np.array_split(widths, 4)]
         start = quarters[0] + self.bins.rounding
         return quarters == sorted(quarters) and quarters[3] > levels.WIDENING * start
 
@@ -113,9 +112,10 @@ class Part:
     def _ends_alike(self) -> bool:
         """Whether the last parts are like others of their size, or hardly differ."""
         for count in levels.ENDS:
-            *others, end = blocks_of(self.values, max(1, len(self.values) // count))
-            differs = self.exceeds(levels.MATERIAL, end - float(np.mean(others)))
-            if differs and not is_like(end, np.array(others), levels.UNLIKE):
+            blocks = blocks_of(self.values, max(1, len(self.values) // count))
+            others = blocks[:-1]
+            differs = self.exceeds(levels.MATERIAL, blocks[-1] - others.mean())
+            if differs and not is_like(blocks[-1], others, levels.UNLIKE):
                 return False
         return True
 
@@ -150,7 +150,7 @@ def whole_of(bins: Bins) -> tuple[float, Part]:
     A sampled oscillation moves the means of bins slowly, but not the middles of their bands; noise
     moves the middles more.  A wave is no trend.
     """
-    unit = max(float(np.abs(bins.lows).max()), float(np.abs(bins.highs).max())) or 1.0
+    unit = float(np.abs((bins.lows, bins.highs)).max()) or 1.0
     bins = bins.scaled(1 / unit)
     known = bins._replace(white=0.0)
     parts = (Part(bins, bins.means), Part(known, (bins.lows + bins.highs) / 2))

@@ -155,12 +155,13 @@ class Judge:
 
     def _add_evidence(self, point: LookPoint) -> None:
         """Complete the judgement by what is known at each look point."""
-        found = self.judgement._replace(periods=self._swings, progress=None, lyapunov=None)
+        found = self.judgement._replace(periods=self._swings, progress=None)
         if self._orbit:
             verdict = self._orbit.verdict(found.verdict, self.peak, self._swings)
             found = found._replace(verdict=verdict)
             if verdict == CHAOTIC:
-                found = found._replace(lyapunov=self._orbit.lyapunov)
+                lyapunov = self._orbit.log / self._orbit.steps / self._h  # of the neighbour so far
+                found = found._replace(lyapunov=lyapunov)
         elif not self._model.turns and point.error > levels.ESCAPED_ERROR:
             found = found._replace(verdict=GROWS)
         if found.verdict != UNDECIDED:
@@ -253,28 +254,21 @@ class _Orbit(Stretching):
         bottom = at_bottom(method, h * model.w0)
         # |trace| < 2: small swings move on ellipses
         self._stable = abs(bottom.theta_theta + bottom.omega_omega) < 2
-        self._min_omega = math.inf  # rad/s
-        self._max_omega = -math.inf
+        self._fastest = 0.0  # rad/s, of its look points
 
     def look(self, previous: LookPoint, point: LookPoint) -> None:
         """Take in a look point: follow a neighbour from the previous one."""
-        self._min_omega = min(self._min_omega, point.omega)
-        self._max_omega = max(self._max_omega, point.omega)
+        self._fastest = max(self._fastest, abs(point.omega))
         needed = self._z > levels.REGULAR_Z and not self._linear
         if needed and self.steps < levels.LYAPUNOV_STEPS:
             self.carry((previous.theta, previous.omega), point.step - previous.step)
-
-    @property
-    def lyapunov(self) -> float | None:
-        """1/s, of the neighbour so far."""
-        return self.log / self.steps / abs(self._h) if self.steps else None
 
     @property
     def is_regular(self) -> bool:
         """Whether a theorem keeps the orbit from chaos."""
         if self._linear:
             return self._stable
-        turn_a_step = max(-self._min_omega, self._max_omega) * abs(self._h)  # rad
+        turn_a_step = self._fastest * abs(self._h)  # rad
         if not self._periodic_in_omega and turn_a_step >= math.pi:
             return False
         fenced = self._z <= levels.FENCED_Z and self._swing < levels.NEAR_TOP

@@ -47,8 +47,8 @@ def _models(count: int) -> _Models:
     shapes = [1 + 0 * j, *(1 / (1 + (j / knee) ** 2) for knee in _KNEES), 1 / j, 1 / j**2]
     weights = [1.0] * (1 + len(_KNEES)) + [_PINK_PRIOR, 1.0]
     rows = []
-    for edge in sorted({min(edge, count - 1) for edge in (*_EDGES, count - 1)}):
-        octaves = (digits == np.arange(4, 8)[:, None]) & (j > edge)
+    for edge in dict.fromkeys(min(edge, count - 1) for edge in (*_EDGES, count - 1)):
+        octaves = (digits == np.arange(4, 7)[:, None]) & (j > edge)
         prior = math.lgamma((edge - 1) / 2) + math.log((edge + 1) / 2)
         prior -= (edge - 1) / 2 * math.log(math.pi)
         for size in filter(None, octaves.sum(axis=1).tolist()):
@@ -123,7 +123,7 @@ class Slope:
     def bound(self) -> float:
         """|slope| is below it with a probability of levels.CERTAIN."""
         high = abs(self.mean) + self.uncertainty
-        while not self._is_within(high) and 0 < high < math.inf:
+        while not self._is_within(high) and high < math.inf:
             high *= 2
         low = 0.0
         for _ in range(_HALVINGS):
@@ -147,6 +147,6 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     if deviation == 0:
         return 0.5 + math.copysign(0.5, distance) * (distance != 0)
     t = distance / deviation
-    size = math.sqrt(freedom * math.log1p(min(t * t, 1e300) / freedom))
+    size = math.sqrt(freedom * math.log1p(t * t / freedom))
     normal = math.copysign((8 * freedom + 1) / (8 * freedom + 3) * size, t)
     return math.erfc(-normal / math.sqrt(2)) / 2

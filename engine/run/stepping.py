@@ -71,8 +71,8 @@ class Stepping(NamedTuple):
 
 @cache
 def _parts(cast: Cast) -> tuple[int, ...]:
-    dearest = max((method.force_evaluations for method in cast), default=1)
-    return tuple(max(1, round(dearest / method.force_evaluations)) for method in cast)
+    dearest = max(method.force_evaluations for method in cast)
+    return tuple(round(dearest / method.force_evaluations) for method in cast)
 
 
 class SteppingChange(NamedTuple):
