@@ -184,8 +184,8 @@ def _rested(whole: Part) -> Judgement | None:
     gone = None
     for share in levels.RESTS:
         part = whole.last(share)
-        low = float(part.bins.lows.min())
-        high = float(part.bins.highs.max())
+        low = part.bins.lows.min()
+        high = part.bins.highs.max()
         is_gone = max(low, -high) > levels.GONE * max(high - low, part.bins.rounding)
         way = low + high if is_gone else _way_from_start(whole, part)
         if not way:
@@ -206,18 +206,18 @@ def _way_from_start(whole: Part, part: Part) -> float:
     """
     size = max(1, len(whole.values) // 16)
     first = whole.values[:size]
-    start = float(np.median(first))
-    level = float(part.values.mean())
+    start = np.median(first)
+    level: float = part.values.mean()
     belongs = is_like(start, blocks_of(part.values, size), levels.UNLIKE_START)
     if belongs or not part.exceeds(levels.MATERIAL, level - start):
         return 0.0
     margin = part.width / 2
     between = whole.values[: len(whole.values) - len(part.values)]
-    lowest = min(float(first.min()), level) - margin
-    highest = max(float(first.max()), level) + margin
+    lowest = min(first.min(), level) - margin
+    highest = max(first.max(), level) + margin
     if between.min() < lowest or highest < between.max():
         return 0.0
-    return level - start
+    return level - float(start)
 
 
 def growth_of(bins: Bins) -> float | None:
@@ -244,8 +244,8 @@ def blocks_of(values: Any, size: int) -> Any:
 def is_like(value: float, others: Any, level: float) -> bool:
     """Return whether a value may come from the distribution of the others: Student's t."""
     count = len(others)
-    deviation = float(others.std()) * math.sqrt((count + 1) / (count - 1))
-    below = student(value - float(others.mean()), deviation, count - 1)
+    deviation = others.std() * math.sqrt((count + 1) / (count - 1))
+    below = student(value - others.mean(), deviation, count - 1)
     return 2 * min(below, 1 - below) > level
 
 
@@ -254,7 +254,7 @@ def is_new(values: Any, last: Any, move: float) -> bool:
     size = max(1, len(last) // 8)
     way = math.copysign(1.0, move)
     past = way * values[: len(values) - len(last) // 2]
-    beyond = way * float(last[-size:].mean()) - float(blocks_of(past, size).max())
+    beyond: float = way * last[-size:].mean() - blocks_of(past, size).max()
     return beyond >= levels.NEW * abs(move)
 
 
@@ -283,7 +283,7 @@ def without_wave(times: Any, values: Any) -> Any:
         a = (sine_squares * along - both * across) / area
         b = (cosine_squares * across - both * along) / area
         explained = a * along + b * across
-        best = int(np.argmax(explained))
+        best = np.argmax(explained)
         cycles = cycles[best] + steps
     if explained[best] < levels.WAVE * _dot(rest, rest):
         return values

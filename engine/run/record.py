@@ -54,10 +54,10 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
 
 def resolution(energies: Any) -> float:
     """Return the smallest difference of energies that repeat, as printed ones do; or rounding."""
-    rounding = 8 * float(np.finfo(float).eps)
+    rounding = 8 * math.ulp(1.0)
     differences = np.diff(np.unique(energies))
     differences = differences[differences > rounding]
-    jumps = int((np.abs(np.diff(energies)) > rounding).sum())
+    jumps = (np.abs(np.diff(energies)) > rounding).sum()
     repeat = 0 < len(differences) < len(energies) / 2 and jumps >= levels.MIN_JUMPS
     return float(differences.min()) if repeat else rounding
 
@@ -110,9 +110,8 @@ def fluctuation(times: Any, energies: Any) -> Fluctuation:
     e = e - e.mean()
     e = e - t * (t @ e) / (t @ t)
     squares = np.array([batch.mean() for batch in np.array_split(e * e, BATCHES)])
-    variance = float(squares.mean())
     error = float(squares.std(ddof=1)) / math.sqrt(BATCHES)
-    size = math.sqrt(variance)
+    size = math.sqrt(squares.mean())
     return Fluctuation(largest * size, largest * error / (2 * size) if size else 0.0)
 
 

@@ -55,16 +55,16 @@ def _models(count: int) -> _Models:
             prior += math.lgamma(size / 2) - size / 2 * math.log(math.pi) - _OCTAVE
         for shape, weight in zip(shapes, weights, strict=True):
             inverse = np.where(j <= edge, 1 / shape, 0.0)
-            total = prior - float(np.log(shape[:edge]).sum()) / 2 + math.log(weight)
+            total = prior - np.log(shape[:edge]).sum() / 2 + math.log(weight)
             rows.append((inverse, edge - 1, total, octaves, shape is shapes[-1]))
     return _Models(cosines, *map(np.array, zip(*rows, strict=True)))
 
 
 def _white_model(v: Any, x: Any, white: float) -> tuple[Any, ...]:
     """Return the slope's distribution if the noise is white, with a known standard deviation."""
-    square = float((v * v).sum())
-    centre = float((v * x).sum()) / square
-    misfit = float(((x - centre * v) ** 2).sum()) / white**2
+    square = (v * v).sum()
+    centre = (v * x).sum() / square
+    misfit = ((x - centre * v) ** 2).sum() / white**2
     log = _OCTAVE + math.log((len(x) + 1) / 2) - math.log(square) / 2
     log -= ((len(x) - 1) * math.log(math.tau * white**2) + misfit) / 2
     return centre, white / math.sqrt(square), _KNOWN, False, log
@@ -101,7 +101,7 @@ class Slope:
         weights = weights / weights.sum()
         self.mean = float((weights * centres).sum())
         self.uncertainty = float((weights * deviations).sum())  # 68 % lie within
-        self.walk = float(weights[walks].sum())  # probability of an endless variance
+        self.walk = weights[walks].sum()  # probability of an endless variance
         some = weights > _NEGLIGIBLE
         columns = (centres, deviations, freedoms, weights)
         self._parts = list(zip(*(column[some].tolist() for column in columns), strict=True))
