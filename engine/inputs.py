@@ -13,7 +13,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that is most like this one, "" if none is."""
     from difflib import get_close_matches  # slow to load, and few words are wrong
 
-    return next(iter(get_close_matches(word[:200], known, n=1)), "")  # longer ones take seconds
+    return next(iter(get_close_matches(word[:200], known)), "")  # longer ones take seconds
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

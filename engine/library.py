@@ -205,7 +205,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     from pendu_tui.engine.run.verdicts import TOO_LARGE
 
     t, e = _series(times, energies)
-    finite = int((np.abs(e) < TOO_LARGE).cumprod().sum())
+    finite = (np.abs(e) < TOO_LARGE).cumprod().sum()
     diverged_at = None
     if finite < len(e):
         diverged_at = float(t[finite])
@@ -213,7 +213,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
     scaled = judgement.scaled(1 / size)
-    if not math.isfinite(abs(scaled.slope or 0) + (scaled.bound or 0)):  # beyond doubles
+    if not math.isfinite(scaled.bound or 0):  # beyond doubles
         scaled = scaled._replace(slope=None, uncertainty=None, bound=None)
     return Judged(
         verdict=judgement.verdict,
@@ -379,7 +379,7 @@ def _number(name: str, value: Any) -> float:
     try:
         if not isinstance(value, str | bool) and math.isfinite(value):
             return float(value)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, OverflowError):
         pass
     raise InputError(f"{name} = {value!r:.60} is not a finite number.")
 
@@ -413,7 +413,7 @@ def _finite(name: str, array: "Floats") -> "Floats":
     import numpy as np
 
     if not np.isfinite(array).all():
-        place = int(np.argmin(np.isfinite(array)))
+        place = np.argmin(np.isfinite(array))
         raise InputError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
     return array
 
@@ -430,11 +430,11 @@ def _series(
         raise InputError(f"{len(t)} times and {len(e)} energies do not belong together.")
     later = np.diff(t) > 0
     if not later.all():
-        place = int(np.argmin(later)) + 1
+        place = np.argmin(later) + 1
         raise InputError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    span = float(t[-1] - t[0])
+    span = t[-1] - t[0]
     if len(t) > 1 and not 1e-100 < span < 1e100:  # else squares are beyond doubles
         raise InputError(f"times span {span:.3g}; give them in a unit nearer to that.")
     return t, e

@@ -144,8 +144,6 @@ def student(distance: float, deviation: float, freedom: float) -> float:
     Wallace, Ann. Math. Statist. 30 (1959) 1121, converts t to a normal deviate, to 2 % from 6
     degrees of freedom on; with fewer, chances come out too large.
     """
-    if deviation == 0:
-        return 0.5 + math.copysign(0.5, distance) * (distance != 0)
     t = distance / deviation
     size = math.sqrt(freedom * math.log1p(t * t / freedom))
     normal = math.copysign((8 * freedom + 1) / (8 * freedom + 3) * size, t)

@@ -160,7 +160,7 @@ def not_within(
 
     With `sign` -1: below it.  The uncertainty of a slope in white noise falls like length**-1.5.
     """
-    if slope is None or bound is None or not (math.isfinite(slope) and math.isfinite(bound)):
+    if slope is None or bound is None or not math.isfinite(slope + bound):
         return f"cannot tell: {name} is not known"
     margin = max(0.0, bound - abs(slope))
     excess = sign * (slope - limit)

@@ -46,6 +46,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     coarse = simulate("drift", theta=2.0, h=0.05, time=60, methods="verlet", every=500)
     assert coarse.t.tolist() == run.t[[0, 500, 1000, 1200]].tolist()
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
+    assert type(simulate(h=np.float32(0.1), time=1).scene.h) is float
 
 
 def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
@@ -91,11 +92,14 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
     assert found.error == pytest.approx((RISING[-1] - RISING[0]) / found.scale)
     assert judge(TIMES, WAVE).max_error == pytest.approx(2 / 11, rel=1e-3)  # downwards
+    assert judge([1, 2], np.array([200, 199], dtype=np.uint8)).error == -1 / 200
 
 
 def test_a_trend_is_never_beyond_doubles():
     found = judge(TIMES, 1e290 * (WAVE + TIMES), scale=1e-300)
-    assert (found.slope, found.bound) == (None, None)
+    assert (found.slope, found.uncertainty, found.bound) == (None, None, None)
+    largest = judge(TIMES, 1e290 * WAVE, scale="std").scale
+    assert largest == pytest.approx(1e290 * np.std(WAVE))
     assert found.lines()[-1] == "energy error  too large for a number"
 
 
@@ -119,11 +123,12 @@ def test_a_judged_series_prints_as_the_command_does():
     failed = judge(TIMES, [*WAVE[:-1], math.nan])
     assert failed.lines("fs")[0] == "verdict       failed: its numbers end at 1999 fs"
     assert "nan" not in str(failed)
+    assert "± 2e-06 per unit of time, absolute" in str(found)
 
 
 def test_an_energy_that_never_changes_is_bounded_on_every_scale():
-    for scale in ("std", "first"):
-        found = judge(range(100), [3.0] * 100, scale=scale)
+    for energy, scale in ((3.0, "std"), (3.0, "first"), (0.0, "std")):
+        found = judge(range(100), [energy] * 100, scale=scale)
         assert (found.verdict, found.slope, found.max_error) == ("bounded", 0, 0)
 
 
@@ -158,8 +163,9 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: simulate(time=math.nan), "time = nan"),
         (lambda: simulate(time=0.01), "shorter than one step"),
         (lambda: simulate(time=True), "time = True"),
+        (lambda: simulate(time=None), "time = None"),
         (lambda: simulate(time=126_000), r"use every=252\."),  # ten million readings
-        (lambda: simulate(time=1, every=0.5), "every = 0.5"),
+        (lambda: simulate(time=1, every=1.5), "every = 1.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, tetha=2.0), "no number 'tetha': did you mean theta"),
         (lambda: recommend(1e-20, time=1, methods="rk4"), "1e-20 over 1 s; RK4: rounding"),
@@ -168,6 +174,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
         (lambda: limits("linear"), "a pendulum that swings"),
+        (lambda: limits("damped", methods="rk4"), "no friction"),
         (lambda: limits(steps=0), "steps = 0"),
         (lambda: measure(lambda force, phase, h: phase), "is not a generator function"),
         (lambda: fluctuation_order([(math.nan, TIMES, WAVE)]), "h = nan"),

@@ -284,8 +284,13 @@ def test_noise_models_are_weighted_by_their_likelihoods():
                 likelihood *= octave.sum() * 0.05 / (2 * math.log(1000))
             likelihoods[name, edge] = likelihood * (0.3 if name == "pink" else 1)
     walks = sum(likelihoods["walk", edge] for edge in (7, 15, 31, 39))
-    expected = walks / sum(likelihoods.values())
-    assert Slope(np.arange(n), values, 0.0).walk == pytest.approx(expected, rel=0.02)
+    found = Slope(np.arange(n), values, 0.0).walk
+    assert found == pytest.approx(walks / sum(likelihoods.values()), rel=0.02)
+    rests = ((x - slopes[:, None] * v) ** 2).sum(axis=1)
+    known = math.tau**-19.5 * np.exp(-rests / 2).sum() * 20
+    likelihoods["known"] = known * 2 * math.log(1000) / 0.05
+    found = Slope(np.arange(n), values, 0.0, white=1.0).walk
+    assert found == pytest.approx(walks / sum(likelihoods.values()), rel=0.02)
 
 
 def test_the_bound_holds_the_slope_at_99_percent():
@@ -383,7 +388,8 @@ def test_64_samples_are_needed():
         (-5.0, 6.0, -4.0, ""),
         (0.0, 0.0, 0.0, ""),
         (2.0, 1.0, 1.5, "it is 2, above 1.5"),
-        (None, None, 1.0, "cannot tell: it is not known"),
+        (None, 0.1, 1.0, "cannot tell: it is not known"),
+        (0.1, None, 1.0, "cannot tell: it is not known"),
         (math.nan, 0.1, 1.0, "cannot tell: it is not known"),
         (0.0, math.inf, 1.0, "cannot tell: it is not known"),
         # the length at which white noise would tell
@@ -406,11 +412,14 @@ def test_a_verdict_has_a_sign_and_an_ink_and_perhaps_no_numbers():
     moves = [("+", "text"), ("-", "text"), ("!", "text")]
     assert shown == [("=", "good"), *moves, ("!", "warn"), ("", "quiet")]
     assert Judgement(FAILED).scaled(2.0) == Judgement(FAILED)
+    level = {word for word in VERDICTS if not Judgement(word, slope=1.0, is_evident=True).trend}
+    assert level == {"bounded", "chaotic"}
 
 
 def test_the_fluctuation_is_that_about_a_line_in_the_unit_of_the_energies():
-    assert fluctuation(T, 50 + 0.1 * T + 3 * NOISE).size == pytest.approx(3.0, rel=0.05)
-    assert fluctuation(T, np.full(2000, 7.0)) == (0.0, 0.0)
+    noisy = fluctuation(T, 1e250 * (50 + 0.1 * T + 3 * NOISE))
+    assert noisy.size == pytest.approx(3e250, rel=0.05)
+    assert fluctuation(T, 7 + 0 * T) == fluctuation(T, 0 * T) == (0.0, 0.0)
     squares = np.repeat([1.0, 3.0] * 8, 100)  # of a sixteenth of a record each
     found = fluctuation(np.arange(1600.0), np.sqrt(squares) * (-1.0) ** np.arange(1600))
     error = math.sqrt(16 / 15) / 4  # of their mean, 2

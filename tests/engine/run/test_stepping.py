@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST
+from pendu_tui.engine.methods.splitting import FOREST_RUTH
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import DEFAULT_SCENE
@@ -47,6 +48,7 @@ def test_the_next_step_size_up_or_down_keeps_its_sign_and_is_undone(
 def test_switching_equal_cost_or_the_direction_keeps_the_smallest_step(stepping):
     assert stepping.toggled().smallest == stepping.reversed().smallest == stepping.smallest
     assert stepping.toggled().toggled() == stepping.reversed().reversed() == stepping
+    assert stepping.toggled().equal_cost != stepping.equal_cost
 
 
 def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
@@ -54,6 +56,7 @@ def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
     assert Stepping(0.05, True).with_smallest(0.05) == EQUAL
     assert Stepping(-0.1).with_own(USUAL_CAST[0], 0.3) == Stepping(-0.3)
     assert EQUAL.reversed().with_own(USUAL_CAST[0], 0.5) == Stepping(-2.0, equal_cost=True)
+    assert EQUAL.with_own(FOREST_RUTH, 0.5) == Stepping(0.5, equal_cost=True)  # not in the cast
 
 
 def test_costs_that_do_not_divide_are_rounded_to_whole_parts():
