@@ -79,8 +79,8 @@ class Lesson:
         """Return whether the user has changed the run before its moment."""
         at_start = change_before(live.changes, 1).stepping
         later = [(each.step, each.stepping) for each in live.changes if each.step > 0]
-        turn = [(self._turn, self._stepping.reversed())] if self.shot.returns else []
-        is_page = (live.scene, at_start) == (self.page, self._stepping) and later in ([], turn)
+        turn = (self._turn, self._stepping.reversed())
+        is_page = (live.scene, at_start) == (self.page, self._stepping) and later in ([], [turn])
         return self.stage == "watching" and self.shot.moment is not None and not is_page
 
     def begin(self, live: Live, index: int) -> None:
@@ -101,8 +101,7 @@ class Lesson:
         """Pause if the moment has come since a sample; return whether it has."""
         if self.stage == "told" and live.sample.step < self._turn:
             self.stage = "watching"  # the user went back
-        shot = self.shot
-        if self.stage != "watching" or shot.moment is None or self.is_astray(live):
+        if self.stage != "watching" or self.is_astray(live):
             return False
         is_turned = live.stepping.h < 0
         end = (1 + is_turned) * self._turn
