@@ -260,8 +260,7 @@ class Live(Source):
 
     def close(self) -> None:
         if self.recorder is not None:
-            if not self._run.in_past:
-                self.recorder.add(self.sample, self._recorded)
+            self.recorder.add(self.sample, self._recorded)
             self.recorder.close()
 
     def _take_sample(self, is_row: bool = True) -> Sample:
@@ -271,7 +270,7 @@ class Live(Source):
         self.judgements = run.lockstep.judgements
         self.milestones = run.lockstep.milestones
         self.history.add(sample, is_row)
-        if is_row and self.recorder is not None and sample.step >= run.furthest:
+        if is_row and self.recorder is not None:
             self.recorder.add(sample, self._recorded)
         self._note_milestones()
         return sample
@@ -332,7 +331,7 @@ def _ready(method: Method, model: Model) -> Loops | None:
 def _compiling(method: Method, model: Model) -> Future[Loops]:
     def compile_now() -> Loops:
         loops = compiled(method, model)
-        loops.advance((0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
+        loops.advance((0.0, 0.0), 1.0, 1, math.inf)  # Numba compiles at the first call
         return loops
 
     return _COMPILER.submit(compile_now)
