@@ -171,9 +171,9 @@ class Source(ABC):
         self.pause(True)
         position = self.playhead.position
         if direction > 0:
-            self.seek(min((at for at in self.ticks if at > position + 1e-6), default=self.length))
+            self.seek(min((at for at in self.ticks if at > position), default=self.length))
         else:
-            self.seek(max((at for at in self.ticks if at < position - 1e-6), default=0.0))
+            self.seek(max((at for at in self.ticks if at < position), default=0.0))
 
     @abstractmethod
     def close(self) -> None: ...
