@@ -126,7 +126,7 @@ def _read_index(data: bytes) -> Contents:
     """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
     chunk_index = int(Opcode.CHUNK_INDEX)
-    events: set[int] = set()  # the lowest bytes of their channels
+    events: set[int] = set()  # their channels, the first of a file, whose numbers are a byte
     chunks_end = 0  # chunks that overlap could take for ever
     at = 0
     while at < len(data):
@@ -145,7 +145,7 @@ def _read_index(data: bytes) -> Contents:
             channel = _channel(data[begin:at])
             contents.add(channel)
             if channel.topic == EVENTS:
-                events.add(channel.id % 256)
+                events.add(channel.id)
     return contents
 
 
