@@ -100,6 +100,7 @@ def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_ref
     with Recording.open(record(tmp_path / "b.mcap", [*two_runs()[:4], *starts])) as recording:
         runs = [(run.steps, run.begin, run.end) for run in recording.runs]
     assert runs == [(6, 0.0, 1.0), (0, 1.0, 1.0), (0, 1.0, 1.0)]
+    assert recording._stream.closed
 
 
 def test_a_file_of_another_program_is_called_so(tmp_path):

@@ -96,9 +96,10 @@ class Shown(NamedTuple):
 
     @property
     def has_log_time(self) -> bool:
+        log_time = self.log_time and self.seconds is None
         if self.stretch is not None:
-            return self.log and self.stretch.log_time
-        return self.log and self.log_time and self.seconds is None
+            log_time = self.stretch.log_time
+        return self.log and log_time
 
     def next_axes(self) -> "Shown":
         """Return logarithmic axes, those with logarithmic time, or linear ones, in turn."""

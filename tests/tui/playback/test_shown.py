@@ -12,7 +12,10 @@ CAST = DEFAULT_SCENE.cast
 
 @pytest.mark.parametrize(("speed", "is_log"), [(3.9, False), (4.0, True)])
 def test_fast_scenes_are_charted_over_logarithmic_time(speed, is_log):
-    assert Shown().through(replace(DEFAULT_SCENE, speed=speed)).has_log_time == is_log
+    scene = replace(DEFAULT_SCENE, speed=speed)
+    assert Shown().through(scene).has_log_time == is_log
+    for shot in (Shot(log=False), Shot(seconds=7.0)):
+        assert not Shown().through(scene, shot).has_log_time
 
 
 def test_a_shot_sets_what_is_seen_and_is_found_in_it_again():
@@ -21,6 +24,10 @@ def test_a_shot_sets_what_is_seen_and_is_found_in_it_again():
     shown = Shown(overview=True, stretch=Stretch(1, 0.0, 1.0, False)).through(DEFAULT_SCENE, shot)
     assert (shown.places(CAST), shown.overview, shown.stretch) == ([1, 3], False, None)
     assert shown._asdict().items() >= seen.items()
+    altered = replace(DEFAULT_SCENE, theta=0.5, shot=shot)
+    assert Shown().through(altered) == Shown().through(altered, shot)
+    recorded = replace(SCENES["spin"], shot=Shot())  # a recording has no shot
+    assert Shown().through(recorded) == Shown().through(SCENES["spin"])
     again = shown.shot(replace(DEFAULT_SCENE, shot=shot), "phase", equal_cost=True)
     assert again == replace(shot, view="phase", equal_cost=True)
 
@@ -38,7 +45,10 @@ def test_windows_axes_and_quantities_come_in_turn():
     assert quantities(DEFAULT_SCENE) == ("energy_error", "theta_error", "shadow_error", "energy")
     assert shown.quantity_ahead(1, DEFAULT_SCENE) == "theta_error"
     assert shown.quantity_ahead(-1, DEFAULT_SCENE) == "energy"
-    assert "shadow_error" not in quantities(SCENES["spin"].with_cast(CAST[3:]))
+    other = Shown(quantity="of another model")
+    assert other.quantity_ahead(1, DEFAULT_SCENE) == "theta_error"
+    for scene in (SCENES["spin"].with_cast(CAST[3:]), SCENES["stiff-slow"]):
+        assert "shadow_error" not in quantities(scene)
 
 
 def test_methods_are_hidden_shown_and_left_alone():
@@ -55,7 +65,9 @@ def test_a_zoom_belongs_to_its_run_and_the_window_key_ends_it():
     stretch = Stretch(run=2, begin=1.0, end=2.0, log_time=True)
     zoomed = Shown(seconds=20.0).zoomed(stretch)
     assert zoomed.of(2) == zoomed
-    assert zoomed.of(1).stretch is zoomed.of(3).stretch is None
+    assert zoomed.of(1) == zoomed.of(3) == Shown(seconds=20.0).of(2) == Shown(seconds=20.0)
     assert zoomed.has_log_time
+    assert not zoomed._replace(log=False).has_log_time
+    assert not zoomed.zoomed(stretch._replace(log_time=False)).has_log_time
     assert zoomed.next_window() == Shown(seconds=20.0)
     assert zoomed.zoomed(None).seconds is None
