@@ -81,7 +81,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     if key in [method.key for method in taken]:
         raise InputError(f"there is a method {key} already; give your function another name.")
     letters = {method.letter for method in taken}
-    wishes = (*key.lower(), *key.upper(), *string.ascii_uppercase)
+    wishes = (*key.upper(), *string.ascii_uppercase)
     letter = next(each for each in wishes if each.isalpha() and each not in letters)
     try:
         with Path(path).open(encoding="utf-8-sig") as file:

@@ -109,7 +109,7 @@ def _dispatch(arguments: list[str]) -> int:
             return Exit.FINE
     try:
         if arguments and arguments[0].startswith("--print-completion"):
-            completion_parser().parse_args(arguments)
+            completion_parser().parse_known_args(arguments)
         name, arguments = split(arguments)
         refuse_dropped(name, arguments)
         options = parser_of(name).parse_args(arguments)
@@ -187,7 +187,7 @@ def completion_parser() -> "Parser":
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(parser_class=ArgumentParser)
     for name, each in COMMANDS.items():
-        subparser = commands.add_parser(name, help=each.about, description=each.about)
+        subparser = commands.add_parser(name, help=each.about)
         import_module(f"{ROOM}.options").add_options(subparser, name)
     return parser
 
@@ -208,7 +208,7 @@ def refuse_to_replace_inputs(options: Namespace) -> None:
 
 def _is_same(path: Path, other: str) -> bool:
     try:
-        return path.is_file() and path.samefile(other)
+        return path.samefile(other)
     except (OSError, ValueError):  # an argument may be no name of a file
         return False
 

@@ -50,13 +50,12 @@ class Parser(argparse.ArgumentParser):
     def parse_args(  # type: ignore[override]
         self, arguments: Sequence[str], namespace: Any = None
     ) -> Any:
-        """Parse the arguments; optional words, such as SCENE, may also come after options."""
+        """Parse the arguments; words, such as SCENE, may also come between options."""
         if any(each.endswith("=--") for each in arguments):  # of which Python 3.11 makes a list
             self.error("-- is not a value")
-        is_mixed = any(each.nargs == "?" and not each.option_strings for each in self._actions)
-        if is_mixed and not {"-h", "--help"} & {*arguments}:  # it would change the help's text
-            return self.parse_intermixed_args(arguments, namespace)
-        return super().parse_args(arguments, namespace)
+        if {"-h", "--help"} & {*arguments}:  # the next would change the help's text
+            return super().parse_args(arguments, namespace)
+        return self.parse_intermixed_args(arguments, namespace)
 
 
 class Suggestions(list[str]):

@@ -1,5 +1,6 @@
 """From the first word of a command line to its exit code."""
 
+import errno
 import os
 import re
 import shlex
@@ -8,12 +9,14 @@ import subprocess
 import sys
 from importlib.metadata import version
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.recordings.files import GOLDEN
+from pendu_tui.tui.cli import dispatch
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
 from tests.tui.command_line import PENDU, pendu
@@ -29,14 +32,15 @@ def folder(tmp_path, monkeypatch):
         Path(name).write_bytes((GOLDEN / "drift.mcap").read_bytes())
 
 
-@pytest.mark.parametrize("word", ["crossover", "swing.toml", "swing.mcap", "killed.mcap.part"])
-def test_a_scene_or_a_file_opens_the_lab_which_needs_a_terminal(word):
-    assert pendu(word).refused(4, "not a terminal")
+@pytest.mark.parametrize("line", ["", "crossover", "swing.toml", "swing.mcap", "killed.mcap.part"])
+def test_nothing_a_scene_or_a_file_opens_the_lab_which_needs_a_terminal(line):
+    assert pendu(*line.split()).refused(4, "not a terminal")
 
 
 @pytest.mark.parametrize("words", ["spin --time 1", "--time 1 spin", "--time 1 --scene spin"])
 def test_a_scene_may_stand_before_or_after_the_options(words):
     assert pendu("run", *words.split(), "--json").json["scene"]["name"] == "spin"
+    assert pendu("recordings", "show", "--json", "swing.mcap").json["seconds"] == 15
 
 
 @pytest.mark.parametrize(
@@ -47,6 +51,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("swing.csv", 2, "pendu-tui judge swing.csv"),
         ("swing.py", 2, "pendu-tui --method swing.py"),
         ("crosover", 2, "did you mean crossover?"),
+        ("zzz", 2, "there is no command or scene 'zzz'; pendu-tui --help lists them."),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),
         ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),
@@ -87,6 +92,14 @@ def process(command: str, **options: object) -> subprocess.CompletedProcess[str]
     return subprocess.run([*PENDU, command], check=False, **streams)
 
 
+@pytest.mark.parametrize(("file", "code"), [(None, 141), ("a?.csv", 5)])
+def test_windows_tells_of_a_closed_pipe_by_an_error_without_a_file(monkeypatch, file, code):
+    error = OSError(errno.EINVAL, "Invalid argument", file)
+    monkeypatch.setattr("pendu_tui.tui.commands.lists.scenes", Mock(side_effect=error))
+    monkeypatch.setattr(dispatch, "_drop_output", lambda: 141)
+    assert pendu("scenes").code == code
+
+
 def test_a_closed_pipe_prints_nothing_and_exits_with_141():
     reading, writing = os.pipe()
     os.close(reading)
@@ -119,6 +132,8 @@ def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
 
 def test_help_and_version():
     assert "what to do (list)" in pendu("recordings", "--help").out
+    assert "\n  pendu-tui recordings show latest\n" in pendu("recordings", "--help").out
+    assert pendu("--help").out.endswith("\n  pendu-tui run crossover --time 100\n")
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
 
 
