@@ -337,7 +337,7 @@ def recommend(
         seconds = _positive("time", time)
     wanted = _positive("target", target)
     attempts = least_cost(Study(chosen, seconds, TieredLoops), error, wanted)
-    successes = [attempt for attempt in attempts if attempt.succeeded]
+    successes = [attempt for attempt in attempts if attempt.reached]
     if not successes:
         raise InputError(
             f"no method keeps its {error} error within {wanted:g} over {seconds:g} s; "

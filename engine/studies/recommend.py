@@ -33,15 +33,16 @@ class Attempt:
     times: float | None = None  # its cost over the cheapest method's
 
     @property
-    def succeeded(self) -> bool:
-        return self.why_not is None
+    def reached(self) -> Point | None:
+        """The run that reaches the target; None if none does."""
+        return None if self.why_not else self.point
 
     @property
     def cost(self) -> float:
         """Seconds if measured, else force evaluations; inf if the target is not reached."""
-        if self.point is None or not self.succeeded:
+        if self.reached is None:
             return math.inf
-        return self.point.seconds or self.point.force_evaluations
+        return self.reached.seconds or self.reached.force_evaluations
 
 
 def least_cost(
@@ -64,13 +65,13 @@ def least_cost(
         )
     attempts: list[Attempt] = []
     for attempt in reach(study, kind, target):
-        if clock and attempt.point and attempt.succeeded:
-            attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
+        if clock and attempt.reached:
+            attempt = replace(attempt, point=timed(attempt.reached, study.scene, clock, loops))
         attempts.append(attempt)
         show(len(attempts) / len(study.scene.cast))
     attempts.sort(key=lambda attempt: attempt.cost)
     least = attempts[0].cost
-    reached = [replace(each, times=each.cost / least) for each in attempts if each.succeeded]
+    reached = [replace(each, times=each.cost / least) for each in attempts if each.reached]
     return reached + attempts[len(reached) :]
 
 
@@ -83,8 +84,8 @@ def reach(
     """
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
-        if attempt.point and attempt.succeeded:
-            most = min(most, MAX_TIMES * attempt.point.steps * _work(method))
+        if attempt.reached:
+            most = min(most, MAX_TIMES * attempt.reached.steps * _work(method))
         yield attempt
 
 

@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
     results = Results(searched if options.all else scene, seconds, options)
     work = measure(results, rungs, searched)
     publish(results.report(interrupted=work.ended is not None), options)
-    if results.attempts and not results.attempts[0].succeeded:
+    if results.attempts and not results.attempts[0].reached:
         warn(f"no method reaches the target over {results.time:g} s.")
         return Exit.CHECK_FAILED
     return work.conclude()
@@ -208,7 +208,7 @@ class Results:
     def _advice_fields(self) -> Row:
         attempts = list(map(self._attempt_fields, self.attempts))
         best = attempts[0]
-        if not self.attempts[0].succeeded:
+        if not self.attempts[0].reached:
             best = dict.fromkeys(best) | {"why_not": "no method gets there"}
         return {"time": self.time, "target": self.options.target, **best, "attempts": attempts}
 

@@ -7,33 +7,14 @@ from itertools import count
 import pytest
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods import USUAL_CAST, method_of
-from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.methods import TAYLOR_20, USUAL_CAST
 from pendu_tui.engine.run.loops import compiled
-from pendu_tui.engine.scenes import SCENES, Z_LIMITS
-from pendu_tui.engine.studies.accuracy import Study
+from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.studies.accuracy import Point, Study
 from pendu_tui.engine.studies.recommend import least_cost, reach
 
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
-
-
-def recommended(scene, time, kind, target):
-    best = least_cost(Study(scene, time, compiled), kind, target)[0]
-    assert best.succeeded
-    return best.point
-
-
-def largest_error(scene, point, kind):
-    """Of every step, by the lockstep and the exact swing alone."""
-    lockstep = Lockstep(scene.altered(h=point.h, cast=(point.method,)))
-    errors = []
-    for _ in range(point.steps):
-        lockstep.advance(1)
-        (reading,) = lockstep.sample().readings
-        off = reading.theta - scene.exact().at(lockstep.t).theta
-        errors.append(abs(reading.energy_error if kind == "energy" else off))
-    return errors[-1] if kind == "final" else max(errors)
 
 
 @pytest.mark.parametrize(
@@ -44,15 +25,16 @@ def largest_error(scene, point, kind):
         ("spin", 3.0, 1e-2, "energy"),
     ],
 )
-def test_the_recommended_run_reaches_its_target(name, time, kind, target):
-    point = recommended(SCENES[name], time, kind, target)
-    largest = largest_error(SCENES[name], point, kind)
-    # 10,000 comparisons are every step of these runs, so not even rounding differs
-    assert largest == pytest.approx(point.errors[kind], rel=1e-9)
-    finer = Study(SCENES[name], time).run(point.method, math.ceil(1.1 * point.steps))
-    assert max(largest, finer.errors[kind]) <= target  # no chance crossing of zero
-    coarser = Study(SCENES[name], time).run(point.method, math.floor(point.steps / 1.03))
-    assert coarser.errors[kind] > target
+def test_the_recommended_run_reaches_its_target_and_a_coarser_one_does_not(
+    name, time, kind, target
+):
+    study = Study(SCENES[name], time, compiled)
+    best, *_ = least_cost(study, kind, target)
+    steps = best.reached.steps
+    runs = steps, math.ceil(1.1 * steps), math.floor(steps / 1.03)
+    here, finer, coarser = (study.run(best.method, n, n).errors[kind] for n in runs)
+    assert here == best.reached.errors[kind]  # 10,000 comparisons are every step of these runs
+    assert max(here, finer) <= target < coarser
 
 
 def test_a_target_as_large_as_the_swing_is_refused():
@@ -62,19 +44,18 @@ def test_a_target_as_large_as_the_swing_is_refused():
 
 
 def test_a_target_near_the_rounding_floor_is_reached():
-    point = recommended(DRIFT, 20.0, "theta", 2e-13)
-    assert point.method is R
-    assert point.errors["theta"] <= 2e-13
+    best, *_ = least_cost(Study(DRIFT, 20.0, compiled), "theta", 2e-13)
+    assert best.method is R
+    assert best.reached.errors["theta"] <= 2e-13
 
 
 def test_a_method_far_dearer_than_another_is_given_up():
-    attempts = list(reach(Study(replace(DRIFT, cast=(E, R)), 10.0, compiled), "theta", 3e-4))
-    assert [attempt.method for attempt in attempts] == [R, E]  # the higher order first
-    cheapest, dear = attempts
-    assert cheapest.succeeded
-    assert not dear.succeeded
-    assert (cheapest.cost, dear.cost) == (cheapest.point.force_evaluations, math.inf)
-    budget = 300 * cheapest.point.force_evaluations
+    study = Study(replace(DRIFT, cast=(E, R)), 10.0, compiled)
+    seconds = count()  # each measurement takes one
+    cheapest, dear = least_cost(study, "theta", 3e-4, clock=lambda: next(seconds))
+    assert (cheapest.method, cheapest.cost, cheapest.times) == (R, cheapest.reached.seconds, 1)
+    assert (dear.method, dear.cost, dear.times, dear.reached) == (E, math.inf, None, None)
+    budget = 300 * cheapest.reached.force_evaluations
     assert dear.why_not == f"not within {budget} evaluations"
     assert dear.point.force_evaluations <= budget
 
@@ -89,25 +70,6 @@ def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
     seconds = count()  # each measurement takes one
     best, other = least_cost(study, "energy", 1e-2, clock=lambda: next(seconds))
     assert best.method is R  # of the longer step, which 20 000 steps measure in more runs
-
-
-def test_if_no_method_reaches_the_target_each_has_its_reason():
-    study = Study(replace(DRIFT, cast=(V, R)), 2.0, compiled)
-    reasons = {each.method: each.why_not for each in reach(study, "theta", 1e-17, 400_000)}
-    assert reasons[R].startswith("rounding stops it at ")
-    assert reasons[V] == "not within 400000 evaluations"
-    (euler,) = reach(Study(replace(DRIFT, cast=(E,)), 10.0, compiled), "theta", 1e-9)
-    assert euler.why_not == "not within 20000000 evaluations"
-
-
-def test_a_method_is_given_up_only_if_its_order_predicts_twice_the_limit():
-    scene = replace(DRIFT, cast=(V,))
-    needed = recommended(scene, 2.0, "theta", 1e-9).force_evaluations
-    for share, reached in ((0.7, False), (0.45, False), (1.05, True)):
-        (attempt,) = reach(Study(scene, 2.0, compiled), "theta", 1e-9, round(share * needed))
-        assert attempt.succeeded == reached
-        tried = attempt.point.force_evaluations / needed
-        assert tried == pytest.approx(share, rel=0.1) if share > 0.5 else tried < 0.1
 
 
 @pytest.mark.parametrize(
@@ -125,33 +87,93 @@ def test_an_error_falls_if_both_halvings_of_h_reduce_it_by_half_of_what_the_orde
     assert set(Scripted(DRIFT, 20.0).run(V, 400).flaws.values()) == {flaw}
 
 
-def test_steps_are_doubled_where_rounding_hides_the_order():
-    tried = []
-
-    class Watched(Study):
-        def run(self, method, steps, comparisons=400):
-            tried.append(steps)
-            return super().run(method, steps, comparisons)
-
-    study = Watched(replace(DRIFT, cast=(R,)), 2.0, compiled)
-    (attempt,) = reach(study, "theta", 1e-17)
-    assert attempt.why_not.startswith("rounding")
-    assert tried[-2:] == [2 * attempt.point.steps, 4 * attempt.point.steps]
+def confirmed(*steps):
+    return [(each, 10_000) for each in steps]
 
 
-@pytest.mark.parametrize(("time", "most"), [(1e-6, 10_000), (1e6, 10)])
-def test_an_h_that_no_lab_would_take_is_not_tried(time, most):
-    for attempt in reach(Study(DRIFT, time), "theta", 1e-30, most):
-        assert attempt.point is None or Z_LIMITS[0] <= attempt.point.z <= Z_LIMITS[1]
+# the error after n steps, what is asked, the steps tried, those kept, the budget or why they fail
+SEARCHES = {
+    "the order predicts steps, bisected to 2 %; 10 % more do, so not by chance": (
+        lambda n: 1e-3 if n == 111 else n**-2, {},
+        [10, 40, 100, 63, 79, 88, 93, 96, 97, 98, *confirmed(100, 111, 102, 113)], 102, None,
+    ),
+    "where all is lost, four times the steps are tried": (
+        lambda n: 2 if n < 100 else n**-2, {},
+        [10, 40, 160, 80, 113, 95, 103, 98, 100, *confirmed(100, 111)], 100, None,
+    ),
+    "an error that falls more slowly is reached by 10 % more": (
+        lambda n: 1e-2 / n, {},
+        [10, 32, 57, 76, 88, 97, 107, 101, 98, 99, *confirmed(101, 112)], 101, None,
+    ),
+    "no step is longer than half a turn, as 9 would be": (
+        lambda n: 1e-5, {"omega": -6.0}, [30, 16, 12, 10, *confirmed(10, 11)], 10, None,
+    ),
+    "1000 are predicted, more than twice the budget": (
+        lambda n: n**-2, {"target": 1e-6, "most": 450}, [10], 10, 450,
+    ),
+    "1000 are predicted, less than twice the budget": (
+        lambda n: n**-2, {"target": 1e-6, "most": 550}, [10, 40, 160, 549], 549,
+        550,
+    ),
+    "a series has as many terms as its order": (
+        lambda n: n**-2, {"method": TAYLOR_20, "most": 270}, [10, 13], 13, 270,
+    ),
+    "an error of 0.2 predicts nothing": (
+        lambda n: 20 * n**-2, {"target": 1e-6, "most": 450}, [10, 40], 40, 450,
+    ),
+    "an error of 0.06 predicts the steps": (
+        lambda n: 100 * n**-2, {"target": 1e-6, "most": 450}, [10, 40], 40, 450,
+    ),
+    "rounding keeps the error from falling twice": (
+        lambda n: {10: 1e-7, 40: 4e-9}.get(n, 1e-9 if n < 640 else 9e-10), {"target": 1e-12},
+        [10, 40, 160, 320, 640, 1280, 2560], 640, "rounding stops it at 9.0e-10",
+    ),
+    "rounding stops the last run of the budget": (
+        lambda n: 1e-9, {"target": 1e-12, "most": 21}, [10, 20], 10, "rounding stops it at 1.0e-09",
+    ),
+    "a lost swing of 0.02 predicts nothing": (
+        lambda n: 0.05 if n < 70 else 1e-4, {"size": 0.02, "most": 71},
+        [10, 40, 70, 52, 60, 64, 66, 67, 68, 69, *confirmed(70, 77)], 70, None,
+    ),
+    "20 runs are not confirmed": (
+        lambda n: n**-2 if n <= 100 else 2e-4, {}, confirmed(157, 173), 157,
+        20_000_000,
+    ),
+    "the last run of the budget is not confirmed": (
+        lambda n: n**-2 if n <= 100 else 2e-4, {"most": 105}, confirmed(102, 113, 104, 115), 104,
+        105,
+    ),
+    "no shorter h is tried than a lab takes": (
+        lambda n: 1e-5 / n, {"time": 1e-6, "target": 1e-9}, [1818], 1818,
+        20_000_000,
+    ),
+    "the longest h leaves 2000 steps": (
+        lambda n: 2, {"time": 1e6, "most": 2001}, [2000], 2000, 2001,
+    ),
+    "no h is short enough": (
+        lambda n: 2, {"time": 1e6, "most": 2000}, [], None, 2000,
+    ),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("theta", "omega", "kind", "target"),
-    [(0.02, 0.0, "theta", 1e-2), (0.02, 0.0, "energy", 1e-2), (0.0, 30.0, "energy", 0.1)],
-)
-def test_no_recommended_step_is_longer_than_half_a_swing_or_turn(theta, omega, kind, target):
-    cast = (V, R, method_of("implicit_midpoint"))
-    scene = replace(DRIFT, theta=theta, omega=omega, cast=cast)
-    for attempt in least_cost(Study(scene, 20.0, compiled), kind, target):
-        assert attempt.succeeded
-        assert attempt.point.h * max(scene.w0, omega) <= math.pi
+@pytest.mark.parametrize("name", SEARCHES)
+def test_a_search_multiplies_the_steps_then_bisects_then_confirms(name):
+    """Its errors follow a law; those up to 1e-9 are rounding."""
+    law, asked, tried, kept, why_not = SEARCHES[name]
+    most = [value for option, value in asked.items() if option == "most"]
+    asked = {"omega": 0.0, "method": V, "time": 5.0, "target": 1e-4, "size": 1, **asked}
+    scene = DRIFT.altered(gravity=4.0, omega=asked["omega"], cast=(asked["method"],))  # w0 = 2
+    study, found = Study(scene, asked["time"]), []
+
+    def run(method, steps, comparisons=400):
+        found.append(steps if comparisons == 400 else (steps, comparisons))
+        error = law(steps)
+        flaw = "lost" if error > asked["size"] else "rounding" if error <= 1e-9 else None
+        return Point(method, study.time, 2.0, steps, {"theta": error}, {"theta": flaw}, 0)
+
+    study.run = run
+    (attempt,) = reach(study, "theta", asked["target"], *most)
+    assert found[-len(tried) :] == tried
+    assert (attempt.point and attempt.point.steps) == kept
+    too_dear = f"not within {why_not} evaluations"
+    assert attempt.why_not == (too_dear if isinstance(why_not, int) else why_not)
