@@ -47,7 +47,7 @@ LAYOUTS = (
     Layout(
         programs="LAMMPS, all thermo styles",
         line=r"^(?P<part>Loop time of)|^-+ Step +(?P<value>\d+) -"
-        r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[(?P<row>.*)\]",
+        r"|^keywords: *\[(?P<names>.*)\]|^ *- *\[ *(?P<row>.*)\]",
     ),
     Layout(
         programs="LAMMPS, units metal",

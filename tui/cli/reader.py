@@ -387,7 +387,7 @@ class _Text:
         """Return the rows of the last table in these lines."""
         sheet = self._tables[-1]
         delimiter, width, opening = self._form
-        if self._heads or self._begins or width < 0:
+        if self._heads or self._begins:
             return Found(sheet, [])
         if opening:
             lines = {at: line for at, line in lines.items() if line.startswith(opening)}
@@ -404,8 +404,7 @@ class _Text:
         if len(fields) != len(rows) * width:  # a quotation mark is left open
             return Found(sheet, [])
         columns = [_numbers(fields[place::width]) for place in sheet.kept]
-        needed = 1 if delimiter else None  # others may have blanks
-        return Found(sheet, [*rows], sheet.kept, columns, needed)
+        return Found(sheet, [*rows], sheet.kept, columns, needed=1)
 
     def _prints_in(self, lines: dict[int, str]) -> Iterator[Found]:
         """Yield what lines of known shapes hold, and None for the first of another shape."""
@@ -492,9 +491,8 @@ class _Text:
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
-                if len(self._above) < MAX_HEADS:
-                    self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
-                self._over = line if line in self._above else ""
+                self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
+                self._over = line
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
                 self._row(fields, delimiter, fields[0] * (number(fields[0]) is None))
@@ -568,7 +566,7 @@ class _Text:
         divided = _GLUED.sub(r" \g<0>", text).split()
         if is_row or len(divided) == width or re.search(r"\d\*{2,}$", text):
             return divided, None
-        return _split(text, None) or [""], None
+        return _split(text, None), None
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to the last table, or to one that begins here.  Return whether it is a row."""
@@ -592,9 +590,7 @@ class _Text:
         """Return whether a row belongs to the last table, or to one that begins here."""
         last = self._tables[-1]
         is_like = form[1:] == self._form[1:]
-        names = None
-        if self._heads or not is_like or self._begins:
-            names = self._head(fields, numbers)
+        names = self._head(fields, numbers)
         goes_on = names == last.names and not self._begins
         if names is None:
             bare = [""] * len(fields)
@@ -627,10 +623,7 @@ class _Text:
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        last = self._tables[-1]
-        labels = [self._labelled(width)]
-        if len(last.names) > width and last.puts > 1:
-            labels.clear()  # a row that was cut
+        labels = [] if any(self._tables[-1].names) else [self._labelled(width)]
         for names in chain(labels, *reversed(self._heads.values())):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]

@@ -68,19 +68,19 @@ def choose(
 
     `samples` are the first values of each column; a column without a name is called "".
     """
-    groups = [find(names, text) for text in (wanted.time, wanted.energy, wanted.kinetic)]
+    groups: Any = [find(names, text) for text in (wanted.time, wanted.energy, wanted.kinetic)]
     if None in groups:
         return None
     time, energy, kinetic = groups
     if not wanted.time:
-        time = _time(names, samples, excluded=energy or ())
+        time = _time(names, samples, excluded=energy)
         if time is None and wanted.step:  # of rows
             time = ()
     if not wanted.energy:
         energy = _energy(names, units, samples, excluded=time or ())
     guessed = {"the time": time, "the total energy": energy}
     doubt = " and ".join(what for what, group in guessed.items() if group is None)
-    return Choice(time or (), energy or (), kinetic or (), doubt)
+    return Choice(time or (), energy or (), kinetic, doubt)
 
 
 def find(names: Sequence[str], text: str | None) -> Group | None:
@@ -308,8 +308,7 @@ class Sheet:
             place = self.places[name]
             self.put([line], (place,), [[value]])
             own = self.units[place]
-            kind = "time" if role(name)[0] == "time" else "energy"
-            if unit and shown(kind, unit) != shown(kind, own or unit):
+            if len({unit, own, ""}) > 2:
                 why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
                 self.mixed.setdefault(place, why)
         elif len(self._once) < MAX_NAMES:
@@ -323,7 +322,7 @@ class Sheet:
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
         samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
-        if len(self.names) > 1 and not self.names[0] and any(self.names) and not _counts(samples):
+        if self.names[:1] == [""] and not _counts(samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
         if self.puts >= SAMPLE:
