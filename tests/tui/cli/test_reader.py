@@ -11,7 +11,7 @@ import pytest
 
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.reader import read_sheets
-from pendu_tui.tui.cli.tables import Series, Wanted, find
+from pendu_tui.tui.cli.tables import Series, Wanted, choose, find
 from pendu_tui.tui.cli.units import BOLTZMANN, NANOSECONDS, assignments, quantity
 
 SAMPLES = [(n, n / 2, -345 + math.sin(n) / 100, 20 + math.cos(n)) for n in range(90)]
@@ -20,9 +20,12 @@ ENERGIES = [e for _, _, e, _ in SAMPLES]
 
 
 def rows(form: str, first: int = 0, last: int = 90) -> str:
-    """Return lines with step s = 50 n, time t, energy e, kinetic energy k, potential energy p."""
+    """Return lines with step s = 50 n, time t, energy e, kinetic energy k, potential energy p.
+
+    Body b counts from 0 to 19 again and again, flag f is 1 in one row of nine.
+    """
     return "".join(
-        form.format(n=n, s=50 * n, t=t, e=e, k=k, p=e - k) + "\n"
+        form.format(n=n, s=50 * n, t=t, e=e, k=k, p=e - k, b=n % 20, f=n % 9 // 8) + "\n"
         for n, t, e, k in SAMPLES[first:last]
     )
 
@@ -69,9 +72,18 @@ def columns(series: Series) -> str | None:
         ("Step Time (ps) E (eV)", "{s} {t} {e}", "Time ps, E eV"),
         ("Time (ps) Total E (eV)", "{t} {e}", "Time ps, Total E eV"),
         ("x,E", "{t},{e}", "x, E"),  # evenly
+        ("x E\n--- ---", "{t} {e}", "x, E"),
+        ("x,E", "{n}e{n},{e}", None),  # unevenly
+        ("", "{n}e{n} {e}", "column 1, column 2"),
         ("x,E", "{k},{e}", "row, E"),  # no column increases
+        ("x,E", "{b},{e}", None),  # bodies in turn
+        ("x,E", "{f},{e}", "row, E"),
+        ("x,E", "5,{e}", "row, E"),
+        ("KE,E", "{b},{e}", "row, E"),  # an orbit
         ("t,total,Total Energy", "{t},{k},{e}", "t, Total Energy"),
         ("time,t_sim,energy", "{s},{t},{e}", "t_sim, energy"),
+        ("t [Frames],E", "{t},{e}", "t Frames, E"),
+        ("t,KE,Ekin", "{t},{k},{p}", None),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
         ("t,KE (kJ/mol),PE (kJ/mole)", "{t},{k},{p}", "t, KE+PE kJ/mol"),
         ("t,x,KE,PE", "{t},{k},{k},{p}", "t, KE+PE"),
@@ -85,10 +97,12 @@ def columns(series: Series) -> str | None:
         ("t,KE,PE,total", "{t},20,-366.8,{e}", "t, total"),  # 0.5 % from their sum
         ("t,KE,PE,total", "{t},20,-383,{e}", None),  # 5 %
         ("t,KE,energy", "{t},{k},{p}", None),
+        ("t,KE,PE,E,bond energy", "{t},{k},{p},{e},9", "t, E"),
         ("t,strain energy,E", "{t},{k},{e}", None),  # a modulus
         ("t,alive,total", "{t},{k},{e}", None),
         ("t,Hartree [H],Total [H]", "{t},{k},{e}", "t, Total hartree"),
         ("t,e,dE/E", "{t},{k},{e}", None),
+        ("t,e", "{t},{e}", "t, e"),
         ("t,a,e", "{t},1,{e}", None),  # eccentricity
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
@@ -106,7 +120,7 @@ def columns(series: Series) -> str | None:
 )
 def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
     (series,) = tables(f"{head}\n{rows(form)}")
-    assert columns(series) == found
+    assert (columns(series), len(series.times)) == (found, 90)
     assert found is None or list(series.energies) == pytest.approx(ENERGIES)
 
 
@@ -214,6 +228,7 @@ def array(*unnamed: object, **named: object) -> bytes:
         "t E\n" + rows("{t} {e}\nwriting restart\nwrote file {n} at step {s}"),
         "t,E\n" + rows("{t},{e}") + "a note\n45,2 3\n",
         "id t E\n" + rows("{n} {t} {e}\n# {n} 5"),
+        "t,E\n" + rows("{t},{e}\n,7"),
     ],
 )
 def test_documents_arrays_and_compressed_files_are_tables(data):
@@ -288,7 +303,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no numbers
         ("t,E\n" + rows("{t},{e}") + "45.0,10.000-344\n", None, 1),
         ("t,E\n" + rows("{t},{e}") + "a note\n45.0\n45.5\n", None, 2),
-        ("t,E\n" + rows("{t},{e}") + "3600\n4800\n", None, 2),  # a remark
+        ("t,E\n" + rows("{t},{e}") + "3\n50\n", None, 2),  # a remark
         ("t E\n" + rows("{t} {e}") + "energy nan detected\n", None, 0),
         ("t,E\n" + rows("{t},{e}") + "45.0,\n45.5\n", 45.0, 0),
     ],
@@ -454,6 +469,7 @@ def test_runs_are_parted_and_restarts_joined(text, lengths):
     ("head", "asked", "found"),
     [
         ("# t Kin Pot\n# [ps] (eV) (eV)\n", ("t", "kin+pot"), "t ps, Kin+Pot eV"),
+        ("# t Kin Pot\n# [] (eV) (eV)\n", ("t", "kin+pot"), "t, Kin+Pot eV"),
         ("Time[fs]  Kin.[a.u.]  Pot.[a.u.]\n", ("time", "Kin.+Pot."), "Time fs, Kin.+Pot. hartree"),
         ("", ("1", "2+3"), "column 1, column 2+column 3"),
     ],
@@ -472,16 +488,45 @@ def test_fortran_leaves_out_the_e_of_three_digits(head, row):
     assert set(series.energies) == {-4.52e-107}
 
 
-@pytest.mark.parametrize(
-    ("text", "energy", "words"),
-    [
-        ("t,K [J],P [eV]\n" + rows("{t},{k},{p}"), "K+P", r"K\+P differ \(J, eV\)"),
-        (rows("t = {t}, E = {e} J\nE = {e} eV"), "E", "E is in J, but in eV in line 2;"),
-    ],
+TABLE = "t,E\n" + rows("{t},{e}")
+PICKLES = array(t=TIMES, E=np.array([{}, {}, {}], dtype=object))
+BROKEN = (
+    (b"\x1f\x8b\x08\x00rest", "cannot be unpacked"),
+    (b"\x89MCAP0\r\n\0", "not text"),
+    (b"x" * (1 << 21), "longer than 1 MB"),
+    (PICKLES, "arrays cannot be read"),
+    ("t,E\n" + "y\n" * 1002, "1,000 lines without a row"),
+    ("1,1\n" * 20_001, "more than 20,000 lines"),
+    ("1 2\n1\n" * 5, "more than 9 tables"),
+    ('{"t": 1}\n' * 9000, "more than 80,000 characters"),
+    ("t,E\n" + rows("{t},1", 0, 30) + rows("{t},1,1"), "the number of columns"),
+    ("t,E\n" + rows("-{t},1"), "name the column of times"),
+    ("t,E\n0,1\n9e9,1\n" + rows("{t},1", 1), "name the column of times"),
+    ("t,E\n" + rows("{t},{e}\n{t},{k}"), "grep"),
+    ("t,E\n" + rows("{t},{e}", 0, 70) + rows("3.0,{e}", 0, 8), "its last 8 rows .* thousands"),
+    ("t,E\n" + rows("-0.1,inf\n{t},{e}"), "at -0.1 .* --from"),
+    (rows("t = {t}, E = {e} J\nE = {e} eV"), "E is in J, but in eV in line 2;"),
 )
-def test_energies_of_different_units_are_not_added_or_judged(text, energy, words):
-    with pytest.raises(UserError, match=words):
-        tables(text, energy=energy)
+MISUSED = (
+    (TABLE, {"energy": "E+t"}, "t is both the time and an energy"),
+    ("t,K [J],P [eV]\n" + rows("{t},{k},{p}"), {"energy": "K+P"}, r"K\+P differ \(J, eV\)"),
+    ("t,E [J]\n" + rows("{t},{e}"), {"units": {"energy": "eV"}}, "E is in J, not in eV"),
+    (TABLE, {"step": (0.5, "fs"), "time": "t"}, "t is a time already"),
+    ("T (ps),E\n" + rows("{t},{e}"), {"step": (0.5, "fs")}, "T is a time already"),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted", "words"),
+    [*((text, {}, words) for text, words in BROKEN), *MISUSED],
+)
+def test_what_cannot_be_read_or_judged_is_one_sentence(text, wanted, words, monkeypatch):
+    limits = {"LINES_BEFORE": 1000, "LINES": 20_000, "DOCUMENT": 80_000, "TABLES": 9}
+    for name, value in limits.items():
+        monkeypatch.setattr(f"pendu_tui.tui.cli.reader.MAX_{name}", value)
+    with pytest.raises(UserError, match=words) as error:
+        tables(text, **wanted)
+    assert error.value.code == (2 if wanted else 3)
 
 
 @pytest.mark.parametrize("legends", [("Total Energy", "Potential"), ("Potential", "Total Energy")])
@@ -507,8 +552,6 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
 def test_steps_and_units_of_the_owner_are_applied():
     (series,) = tables(rows("{e}"), step=(2.0, "ps"))
     assert (series.times[1], series.units) == (2.0, ("ps", ""))
-    with pytest.raises(UserError, match="is a time already"):
-        tables("Time (ps),E\n" + rows("{t},{e}"), step=(0.5, "fs"))
 
 
 @pytest.mark.timeout(30)
@@ -517,7 +560,9 @@ def test_long_lines_take_no_longer_than_short_ones(part):
     assert tables(part * 50_000 + "\n") == []
 
 
-@pytest.mark.parametrize("text", ["{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null"])
+@pytest.mark.parametrize(
+    "text", ["{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null", "- [ ]\n", "t,E\n1,\n2,\n"]
+)
 def test_documents_without_a_table_hold_none(text):
     assert [len(series.times) for series in tables(text)] == []
 
@@ -526,3 +571,10 @@ def test_a_name_may_have_a_plus_and_its_unit_counts_before_its_case_does_not():
     assert find(("t", "KE+PE"), "KE+PE") == (1,)
     assert find(("E (eV)", "E (J)", "e"), "e (j)") == (1,)
     assert find(("E (eV)", "E (J)", "e"), "E") == (2,)
+    assert find(("", "E"), "2+") is None
+
+
+def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
+    table = (("a", "b"), ("", ""), [(0, 1, 2), (3, 4, 5)])
+    assert choose(*table, Wanted(energy="1"))[:2] == ((1,), (0,))
+    assert choose(*table, Wanted(step=(1.0, "")))[:2] == ((), ())
