@@ -319,7 +319,6 @@ class _Text:
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
         self._labels = dict(enumerate(next(named, ())))  # names of columns by place
         self._passed = 0  # columns of earlier sets
-        self._shared = ""  # the only unit of xmgrace's y axis
         self._above: dict[str, list[str]] = {}  # the names in lines above one line of numbers
         self._over = ""  # such a line
         self._is_over = False  # the data have ended
@@ -504,7 +503,6 @@ class _Text:
                 shared = re.findall(r"\(([^()]*)\)", units)
                 energies = [unit for unit in shared if plain("energy", unit) and unit != "K"]
                 self._units = ("", energies[0] if len(energies) == 1 else "")
-                self._shared = shared[0] if len(shared) == 1 else ""
             case _:
                 return False
         return True
@@ -674,8 +672,6 @@ class _Text:
                 units[place] = "s"
             if match:
                 units[place] = match[2]
-            if place:
-                units[place] = units[place] or self._shared
         return units
 
 

@@ -302,7 +302,7 @@ class Sheet:
         if name not in self.places and name in self._once:
             self.places[name] = len(self.names)
             first = self._once[name]
-            self.add_column(name, first[0] or unit)
+            self.add_column(name, first[0])
             self.print(name, *first)
         if name in self.places:
             place = self.places[name]
@@ -322,7 +322,7 @@ class Sheet:
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
         samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
-        if self.names[:1] == [""] and not _counts(samples):
+        if self.names[:1] == [""] and (samples[0] % 1).any():
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
         if self.puts >= SAMPLE:
@@ -381,7 +381,7 @@ class Sheet:
         for place in group:
             own, values = self._column(place)
             record = np.searchsorted(lines, own, side="right") - 1
-            if self._is_printed and np.array_equal(record + 1, np.arange(len(lines))):
+            if np.array_equal(record + 1, np.arange(len(lines))):
                 record += 1
             fits = record >= 0
             if not self._is_printed:
@@ -390,12 +390,6 @@ class Sheet:
             column[record[fits]] = values[fits]
             total = total + column
         return total
-
-
-def _counts(samples: Sequence[Any]) -> bool:
-    """Return whether the first column counts rows or steps."""
-    steps = np.diff(samples[0])
-    return bool((samples[0] % 1 == 0).all() and (len(steps) == 0 or np.median(steps) > 0))
 
 
 def _runs(times: Any, is_again: Any) -> Iterator[slice]:
