@@ -15,14 +15,11 @@ from textual.reactive import var
 from textual.screen import ModalScreen
 from textual.widget import Widget
 
-from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings import files
-from pendu_tui.recordings.files import RecordingError
-from pendu_tui.tui.cli.errors import UserError, explained
+from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.playback.lesson import Lesson, LessonState, tour
 from pendu_tui.tui.playback.live import Live, has_own
 from pendu_tui.tui.playback.replay import Replay
@@ -152,7 +149,6 @@ class LabScreen(SizedScreen[None]):
     async def begin(self) -> None:
         if isinstance(self.source, Live):
             self.record(self.source)  # an error ends the lab
-        gc.collect()
         gc.freeze()  # never collect what exists now, which would cost frames
         gc.enable()
         self.frame_timer.resume()
@@ -260,7 +256,7 @@ class LabScreen(SizedScreen[None]):
                 change(live)
                 if live is not self.source:
                     self.record(live)
-            except (InputError, OwnMethodError, RecordingError, UserError, OSError) as error:
+            except Exception as error:  # `explained` raises a bug again
                 self.warn(str(explained(error)))
                 return False
             self._undo.append(before)
@@ -407,7 +403,7 @@ class LabScreen(SizedScreen[None]):
 
         In a lesson the keys of the answers hide no method.
         """
-        if not self.is_guided or number >= len(self.lesson.shot.answers):
+        if number >= len(self.lesson.shot.answers):
             self.change_shown(self.shown.toggled(number, self.source.scene.cast))
         elif self.lesson.stage == "asked":
             self.lesson.answer(number + 1)

@@ -1,11 +1,14 @@
 """Every key of the lab does what the help says."""
 
+import asyncio
+import gc
+from collections import Counter
 from itertools import pairwise
 
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
@@ -13,11 +16,12 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import COLUMN_WIDTH, bindings_of, help_text, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.lines import StatusLine
+from pendu_tui.tui.screens.lines import InsightLine, StatusLine
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.lab import EventList, TimeChart
 from pendu_tui.tui.views.phase import SectionPane
-from pendu_tui.tui.views.view import Held
+from pendu_tui.tui.views.stage import Stage
+from pendu_tui.tui.views.view import Held, Pane
 from tests.tui.harness import lab, on_stage
 
 
@@ -38,6 +42,39 @@ async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_m
         assert theatre.source.sample.t < -0.3
 
 
+async def test_a_frame_draws_what_is_due_or_nothing_if_the_terminal_is_behind(monkeypatch):
+    gc.disable()
+    async with lab(DEFAULT_SCENE.altered(h=0.01)) as theatre:
+        stage = theatre.stage
+        assert gc.isenabled()
+        theatre.now = 0.1
+        async with asyncio.timeout(10):  # frames come by themselves
+            while not theatre.source.sample.step:
+                await theatre.pilot.pause(0.01)
+        stage.frame_timer.pause()
+        drawn = Counter()
+        monkeypatch.setattr(Pane, "draw", lambda pane: drawn.update([type(pane)]))
+
+        def frames(number=60):
+            drawn.clear()
+            for _ in range(number):
+                theatre.now += 1 / 30
+                stage.frame()
+            return drawn[Stage], drawn[StatusLine], drawn[InsightLine]
+
+        frames(-stage._beat % 60 // 2)  # until all text has had its turn
+        assert frames() == (60, 10, 4)
+        theatre.source.pause(True)
+        assert frames() == (10, 10, 4)  # what is computed meanwhile
+        monkeypatch.setattr("pendu_tui.tui.screens.lab.is_writing", lambda app: True)
+        drawn.clear()
+        stage.action_pause()
+        assert not drawn
+        before = theatre.source.sample.t
+        assert frames() == (0, 0, 0)
+        assert theatre.source.sample.t > before + 1.9
+
+
 async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_speed():
     async with lab() as theatre:
         await theatre.run(1)
@@ -47,7 +84,7 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
             return source.stepping.h, source.playhead.speed, source.scene, theatre.stage.shown
 
         before = [settings()]
-        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "p", "y"):
+        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "p", ("y", "escape")):
             await theatre.press(*keys)
             before.append(settings())
         assert before[3][2] == SCENES["gentle"]
