@@ -282,7 +282,7 @@ class StartForm(Form[Scene]):
                 row = NUMBERS[name]
                 with Horizontal():
                     yield Label(name)
-                    yield Input(f"{value!r}", id=name, compact=True, select_on_focus=True)
+                    yield Input(f"{value!r}", id=name, compact=True)
                     hint = row.hint or f", {row.min:g} to {row.max:g}"
                     yield Label(row.unit + hint, classes="unit")
             yield Label(id="verdict", markup=False)

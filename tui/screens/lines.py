@@ -181,7 +181,7 @@ def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = 
     """
     whole = "|".join([r"\d: ", *(method.label for method in cast)])
     glued = re.sub(whole, lambda found: found[0].replace(" ", "\xa0"), text)
-    lines = textwrap.wrap(glued, max(width - 2, 2), max_lines=height, placeholder=" …")
+    lines = textwrap.wrap(glued, width - 2, max_lines=height, placeholder=" …")
     return [[(" ", ink), *painted(line.replace("\xa0", " "), cast, ink)] for line in lines]
 
 
@@ -225,7 +225,7 @@ class SeekBar(Pane):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         text = facts(source, self.room.width - 28)  # leaves 24 columns for the bar
-        self._columns = max(self.room.width - len(text) - 4, 1)
+        self._columns = self.room.width - len(text) - 4
         row = bar(source.playhead.position, source.length, source.ticks, self._columns)
         return Picture([[(" ", TEXT), *row, (f"  {text} ", TEXT)]])
 
@@ -242,8 +242,7 @@ class SeekBar(Pane):
 
     async def _seek(self, event: events.MouseEvent) -> None:
         column = event.screen_x - self.content_region.x - 1  # a drag may leave the bar
-        share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
-        position = share * self.source.length
+        position = (column + 0.5) / self._columns * self.source.length
         await self.run_action(f"screen.seek({position - self.source.playhead.position})")
 
 

@@ -1,11 +1,12 @@
 """The forms take what is typed and chosen, and say what is wrong."""
 
 import math
+from dataclasses import replace
 
 from textual.widgets import Label
 
-from pendu_tui.engine.methods import METHODS
-from pendu_tui.engine.scenes import MAX_METHODS, SCENES
+from pendu_tui.engine.methods import METHODS, USUAL_CAST
+from pendu_tui.engine.scenes import DEFAULT_SCENE, MAX_METHODS, SCENES
 from tests.tui.harness import lab
 
 
@@ -38,18 +39,21 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
             before = form.query_one(f"#{name}").value
             await enter(name, value)
             assert theatre.app.screen is form
-            assert form.query_one("#verdict").has_class("-wrong")
+            verdict = form.query_one("#verdict", Label)
+            assert verdict.has_class("-wrong")
+            assert name in str(verdict.content)
             form.query_one(f"#{name}").value = before
         await enter("stiffness", "400")
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
 async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen():
-    async with lab(size=(100, 40)) as theatre:
+    own = replace(USUAL_CAST[3], key="own")
+    async with lab(DEFAULT_SCENE.with_cast((*USUAL_CAST, own)), (100, 40)) as theatre:
         await theatre.press("plus", "M")
         form = theatre.app.screen
         known = [*METHODS]
-        assert form._methods == [each for each in known if "pendulum" in each.models]
+        assert form._methods == [*(each for each in known if "pendulum" in each.models), own]
 
         async def click(row):
             await theatre.click("#cast", 10, row + 1)
@@ -60,6 +64,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         for row in range(10):
             if known[row] in form.cast:
                 await click(row)
+        await theatre.press("end", "space")
         assert not form.cast
         await theatre.press("enter")
         assert theatre.app.screen is form  # not without a method

@@ -1,13 +1,14 @@
 """The lab's lines, as pictures made of text."""
 
 from itertools import product
+from types import SimpleNamespace
 
 import pytest
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.tui.drawing.picture import TEXT, WARN, Picture
+from pendu_tui.tui.drawing.picture import FRAME, TEXT, WARN, Picture
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
@@ -35,8 +36,13 @@ class Taped(Live):
     recording_status = RecordingStatus("2026-11-20T10-14-03.mcap", 72.4)
 
 
-def taped(**changes) -> Taped:
-    live = Taped(DEFAULT_SCENE, clock=lambda: 0.0)
+class Played(Taped):
+    kind = "REPLAY"
+    next_step = None
+
+
+def taped(kind=Taped, **changes) -> Taped:
+    live = kind(DEFAULT_SCENE, clock=lambda: 0.0)
     for name, value in changes.items():
         setattr(live, name, value)
     return live
@@ -62,6 +68,7 @@ LIVES = [
     taped(failure="mine fails."),
     *(slow(h) for h in (0.99, 1.0, 1.99, 2.01, 2.82, 2.84)),
     slow(2.0, playhead=Playhead(paused=True)),
+    slow(2.0, kind=Played),
 ]
 
 
@@ -82,7 +89,8 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
 
 
 def test_the_bar_shows_what_was_played_and_what_was_done():
-    assert text(bar(5.0, 10.0, [0.0, 2.5, 7.5], 20)) == "┿━━━━┿━━━━█────┼────"
+    row = bar(5.0, 10.0, [0.0, 2.5, 5.0, 7.5], 20)
+    assert row == [("┿━━━━┿━━━━", TEXT), ("█", TEXT), ("────┼────", FRAME)]
     assert text(bar(10.0, 10.0, [], 10)) == "━━━━━━━━━█"
     assert text(bar(0.0, 0.0, [], 4)) == "█───"
 
@@ -101,6 +109,9 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
     replay.seek(12.0)
     assert len(facts(replay, 40)) == len(f"{here}  loop  run 2/3")  # the bar stays where it is
     replay.close()
+    for length, told in ((3.0, " 3.00 s of 3.00 s"), (4000.0, "    3.00 s of 1 h 07 min")):
+        played = SimpleNamespace(playhead=Playhead(3.0), length=length, counts={}, looping=False)
+        assert facts(played, 0) == told
 
 
 def test_no_line_of_a_sentence_ends_within_a_name_or_after_an_answers_number():
