@@ -295,7 +295,7 @@ class KeyLine(CellWidget):
         self.screen.bindings_updated_signal.subscribe(self, lambda _: self.draw())
 
     def draw(self) -> None:
-        if self.drawable and self.screen.is_current:
+        if self.screen.is_current:
             self.show(Picture([self._row()]))
 
     def _needed(self) -> list[Binding]:

@@ -21,6 +21,7 @@ async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
     async with lab() as theatre:
         await theatre.press("question_mark")
         help_screen = theatre.app.screen
+        assert "\n\n\n" not in help_screen.text  # panes without keys are not in it
         above = TextScreen("Above", "it")
         await theatre.app.push_screen(above)
         help_screen.dismiss()

@@ -77,6 +77,8 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert (theatre.source.playhead.speed, theatre.source.playhead.paused) == (2, False)
         await theatre.press("u")
         assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
+        await theatre.press("p")
+        assert theatre.source.scene in SCENES.values()
         await theatre.press("T")
         assert words(STEPS[1].watch) in panel(theatre)
 
