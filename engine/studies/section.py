@@ -85,19 +85,17 @@ class OrbitKind:
 def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
     """Return the kind of an orbit; `points` are those of `orbit`."""
     theta, omega = points
-    steps = len(theta) - 1
-    start = (float(theta[0]), float(omega[0]))
+    path = np.transpose(points).tolist()
+    steps = len(path) - 1
     moves = bool(np.ptp(theta) or np.ptp(omega))
     lap = model.turns * np.floor(theta / math.tau + 0.5)
     spins = bool(np.ptp(lap))
     neighbours = Stretching(method, model, h)
-    for at in range(0, steps - _CHUNK + 1, _CHUNK):
-        neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
+    for phase in path[:-_CHUNK:_CHUNK]:
+        neighbours.carry(phase, _CHUNK)
     # neighbours on regular orbits separate in proportion to the steps, and fast near upright
-    slack = 0.0
-    if model.turns:
-        slack = max(-math.log(max(abs(model.level(*start)), 1e-16)), 0.0)
-    separated = neighbours.log > CHAOTIC_SEPARATION + math.log(max(steps, 1)) + slack
+    from_upright = min(max(abs(model.level(*path[0])), 1e-16), 1.0)
+    separated = neighbours.log > CHAOTIC_SEPARATION + math.log(max(steps, 1) / from_upright)
     chaotic = method.symplectic and separated  # neighbours on spirals separate, too
     rotation = None
     fraction = None
@@ -107,8 +105,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     if rotation is not None:
         fraction = nearest_fraction(abs(rotation))
         island = _is_island(points, rotation, fraction, spins)
-    energy = model.energy()((float(theta[-1]), float(omega[-1])))
-    (drift,) = model.reference(*start).errors(0.0, energy)
+    (drift,) = model.reference(*path[0]).errors(0.0, model.energy()(path[-1]))
     return OrbitKind(
         steps=steps,
         moves=moves,

@@ -93,17 +93,26 @@ def test_a_curve_beside_a_resonance_is_no_island():
         assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
 
 
-@pytest.mark.parametrize(("off", "island"), [(0.09, True), (0.11, False), (-0.11, False)])
-def test_an_island_leaves_its_fraction_by_less_than_a_tenth_of_a_turn_in_all(off, island):
-    points = orbit(VERLET, UNIT, 1.09, (1.25, 0.0), 4000)
-    rotation = 1 / 6 + off / 4000
-    assert section._is_island(points, rotation, Fraction(1, 6), False) == island
+@pytest.mark.parametrize(
+    ("radius", "turned", "q", "off", "island"),
+    [
+        *((2e-9, 6.8, 1, 0, True), (2e-9, 5.8, 1, 0, False), (5e-10, 6.8, 1, 0, False)),
+        *((2e-9, 6.8, 12, 0.09, True), (2e-9, 6.8, 13, 0.09, False)),
+        *((2e-9, 6.8, 6, 0.11, False), (2e-9, 6.8, 6, -0.11, False)),
+    ],
+)
+def test_in_an_island_every_qth_point_winds_around_a_centre_and_is_a_tenth_of_a_turn_off_in_all(
+    radius, turned, q, off, island
+):
+    angle = np.linspace(1, 1 + turned, 4000)
+    points = 2 + radius * np.cos(angle), radius * np.sin(angle)
+    assert section._is_island(points, 1 / q + off / 4000, Fraction(1, q), False) == island
 
 
-def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
-    for omega in (math.pi / 0.5, -math.pi / 0.5):  # omega h = pi
-        spun = kind(SYMPLECTIC, 0.1, 0.5, omega=omega)
-        assert (spun.spins, spun.fraction, spun.island) == (True, Fraction(1, 2), True)
+@pytest.mark.parametrize("turns", [Fraction(1, 2), -Fraction(1, 2), Fraction(2)])
+def test_orbits_caught_by_a_step_of_half_a_turn_or_two_are_an_island(turns):
+    spun = kind(SYMPLECTIC, 0.1, 0.5, omega=turns * math.tau / 0.5)
+    assert (spun.spins, spun.fraction, spun.island) == (True, abs(turns), True)
 
 
 @pytest.mark.parametrize(
@@ -112,20 +121,31 @@ def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island():
 def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(method, theta, z):
     found = kind(method, theta, z)
     assert (found.chaotic, found.rotation) == (True, None)
-    # far above the threshold as Chirikov's, Phys. Rep. 52 (1979) 263
-    assert kind(method, theta, math.sqrt(20)).lyapunov == pytest.approx(math.log(10), rel=0.02)
-
-
-@pytest.mark.parametrize(("steps", "chaotic"), [(160, False), (200, True)])
-def test_chaos_separates_neighbours_by_e15_times_the_steps(steps, chaotic):
-    assert kind(VERLET, 2.3, 1.1, steps).chaotic == chaotic  # by e^18.0 and e^25.5
 
 
 @pytest.mark.parametrize(
-    ("theta", "z", "steps"), [(3.0, 0.5, 4000), (math.pi - 1e-10, 0.1, 240), (math.pi, 0.5, 240)]
+    ("theta", "omega", "steps", "chaotic"),
+    [
+        *((2.3, 0, 160, False), (2.3, 0, 200, True)),  # by e^18.0 and e^25.5
+        *((2.3, 2.5, 200, True), (math.pi, 0, 4000, True)),  # over the top, and from there
+    ],
 )
-def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, z, steps):
-    assert not kind(VERLET, theta, z, steps).chaotic  # up there neighbours part by e^23.5
+def test_chaos_separates_neighbours_by_e15_times_the_steps(theta, omega, steps, chaotic):
+    assert kind(VERLET, theta, 1.1, steps, omega).chaotic == chaotic
+    model = LinearOscillator(1.0)
+    grown = kind_of(VERLET, model, 2.1, orbit(VERLET, model, 2.1, (1.0, 0.1), steps))
+    assert (grown.chaotic, grown.rotation) == (True, None)  # beyond its limit
+
+
+@pytest.mark.parametrize(
+    ("theta", "omega", "z", "steps"),
+    [
+        *((3.0, 0, 0.5, 4000), (math.pi - 1e-10, 0, 0.1, 240), (math.pi, 0, 0.5, 240)),
+        *((0.0, 2, 0.5, 240), (1.0, 1e6, 1e-7, 240)),  # there to rounding, and far above
+    ],
+)
+def test_regular_orbits_near_the_top_are_not_called_chaotic(theta, omega, z, steps):
+    assert not kind(VERLET, theta, z, steps, omega).chaotic  # up there neighbours part by e^23.5
 
 
 def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
@@ -141,7 +161,8 @@ def test_at_rest_and_in_few_steps_nothing_turns():
     rest = kind(VERLET, 0.0, 0.5)
     assert (rest.moves, rest.rotation, rest.fraction, rest.chaotic) == (False, None, None, False)
     assert kind(EXPLICIT, 1.0, 0.3, steps=1).moves  # only omega, at first
-    for steps in (1, 2, 5):
+    assert kind(EXPLICIT, 0.0, 0.3, steps=1, omega=1.0).moves  # only theta
+    for steps in (0, 1, 2, 5):
         found = kind(VERLET, 1.0, 0.3, steps)
         assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
     angle = 0.13 * math.tau * np.arange(5)  # two steps in each half
@@ -155,8 +176,10 @@ def test_an_orbit_ends_where_numbers_stop_being_finite():
     assert 500 < len(theta) < 1000
     assert np.isfinite(theta).all()
     assert np.isfinite(omega).all()
-    found = kind_of(EXPLICIT, LinearOscillator(1.0), 3.0, (theta, omega))
-    assert found.steps == len(theta) - 1
+    for steps in (8, len(theta) - 1):
+        start = theta[: steps + 1], omega[: steps + 1]
+        found = kind_of(EXPLICIT, LinearOscillator(1.0), 3.0, start)
+        assert (found.steps, found.lyapunov) == (steps, pytest.approx(math.log(10) / 2))
 
 
 def test_the_nearest_fraction_is_a_small_one():
@@ -175,8 +198,9 @@ def test_a_rotation_that_changes_by_more_than_a_ten_thousandth_is_none(change, i
         assert found == pytest.approx(0.13, rel=change)
 
 
-def test_starts_are_spread_evenly_over_their_rectangle():
+def test_starts_follow_the_sequence_of_roberts_over_their_rectangle():
     theta, omega = spread(400, (-1.0, 3.0), (2.0, 5.0))
-    counts, *_ = np.histogram2d(theta, omega, bins=(4, 2), range=((-1, 3), (2, 5)))
-    assert counts.sum() == 400
-    assert np.ptp(counts) <= 4  # of 50 in each; random starts differ by some 19
+    p = 1.324717957244746  # p³ = p + 1
+    n = np.arange(1, 401)
+    assert theta == pytest.approx(4 * (n / p % 1) - 1)
+    assert omega == pytest.approx(3 * (n / p**2 % 1) + 2)
