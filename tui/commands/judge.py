@@ -83,7 +83,7 @@ def _check(options: argparse.Namespace) -> None:
         raise UserError(
             "several files need --steps, one for each and not all the same, such as --steps 1,2."
         )
-    if "time" in options.units and (options.step or ("", ""))[1]:
+    if "time" in options.units and options.step and options.step[1]:
         raise UserError("--step already gives the unit of time; leave time= out of --units.")
     if options.temperature is not None and options.atoms is None:
         raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
@@ -129,7 +129,7 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
         with open(source, "rb", closefd=source != 0) as stream:
             found = [each for sheet in read_sheets(stream, wanted, name) for each in sheet.series()]
     except OSError as error:
-        why = f"{error.strerror or error}; give a log or a table, or - for stdin."
+        why = f"{error.strerror}; give a log or a table, or - for stdin."
         raise unreadable(why) from None
     if not found:
         raise unreadable("it has no row of numbers.")
@@ -153,7 +153,7 @@ def _missing(series: Series) -> UserError:
     names = series.sheet.names
     wanted = series.sheet.wanted
     asked = (wanted.time, wanted.energy, wanted.kinetic)
-    lost = next(text for text in asked if text and not find(names, text))
+    lost = next(text for text in filter(None, asked) if not find(names, text))
     part = next(part.strip() for part in lost.split("+") if not find(names, part))
     present = [printable(name, 40) or str(n) for n, name in enumerate(names[:20], 1)]
     advice = did_you_mean(part, present) or f"; choose from {', '.join(present)}."
@@ -250,8 +250,7 @@ def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | N
     """
     left = [each.fields for each in answers if each.judged.verdict in LEAVES]
     drifts = [
-        Fluctuation(abs(each["absolute_trend"] or 0.0), each["absolute_uncertainty"])
-        for each in left
+        Fluctuation(abs(each["absolute_trend"]), each["absolute_uncertainty"]) for each in left
     ]
     orders: list[Order | None] = [None, None]
     with suppress(ValueError):
@@ -301,7 +300,7 @@ def lines_of(answer: Answer) -> list[str]:
     if is_of_first and is_around_zero:
         hint = "the energies lie around zero; --scale std compares errors with their spread"
     distances = np.abs(answer.series.energies - np.median(answer.series.energies))
-    far = int((distances > FAR * np.quantile(distances, 0.98)).sum())
+    far = (distances > FAR * np.quantile(distances, 0.98)).sum()
     if far and fields["verdict"] in LEAVES and not fields["rests"]:
         hint = f"{counted(far, 'value')} far from all others may blur the trend"
     return [*lines, _line("hint", hint)] if hint else lines
@@ -347,7 +346,7 @@ def _listed(fields: Mapping[str, Any]) -> list[str]:
 
 def _column(place: int, column: Mapping[str, str]) -> str:
     name = column["name"] or f"column {place}"
-    return f"{name} [{column['unit']}]" if column["unit"] and column["unit"] not in name else name
+    return name if column["unit"] in name else f"{name} [{column['unit']}]"
 
 
 def _title(fields: dict[str, Any]) -> str:

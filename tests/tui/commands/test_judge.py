@@ -2,10 +2,8 @@
 
 import io
 import math
+import os
 import shlex
-import shutil
-import subprocess
-import sys
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -55,7 +53,8 @@ FILES = {
     "zero.csv": "t,E\n" + lines("{n},{e}", [(n, (n * 7919) % 13 - 6.5) for n in range(300)]),
     "spike.csv": "t,E\n"
     + lines("{n},{e}", [(n, {0: 16, 9: 6}.get(n, n / 99)) for n in range(300)]),
-    "settled.csv": "t,E\n" + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
+    "settled.csv": "t,E\nps,eV\n"
+    + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "large.csv": "-0.1,1e305\n" + lines("{t},{e}") + "30,-1.79769e+308\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
@@ -74,7 +73,8 @@ md.log --table 1 --time Step --energy TotEng --json
 lost.log --fail-if 'max_energy_error > 0.001 and (trend < -1 or verdict == bounded)'
 again.log --table 3
 table.csv --time 1 --energy E --from 5 --to 20 --fail-if 'skipped > 0 or samples < 151'
-table.csv --time t --from 5 --to 20 --fail-if 'samples > 150'
+table.csv --table 1 --time t --from 5 --to 20 --fail-if 'samples > 150'
+table.csv --energy E+Energy --units time=ps
 printed.txt
 printed.txt --json
 printed.txt --energy E2
@@ -123,13 +123,14 @@ def test_answers_as_they_are_stored(snapshot, monkeypatch):
 
 UNITS = "t,E [kJ/mol],K [kcal/mol]\n" + lines("{t},{e},5")
 UNIT_GIVEN = "t E --scale kinetic:K --units energy=kJ/mol"
+WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
 
 
 @pytest.mark.parametrize(
     ("data", "names", "code", "words"),
     [
         ("", "t E", 3, "no row of numbers"),
-        (TABLE, "t E+Energy", 2, "there is no column 'Energy'; choose from t, E"),
+        (WIDE, f"t {50 * 'x'}", 2, f"{39 * 'x'}…'; choose from t, {39 * 'E'}…{18 * ', n'}."),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
         ("1 2\n", "1 2+", 2, "there is no column ''"),
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
@@ -172,14 +173,18 @@ def test_options_that_make_no_sense_are_refused_before_a_file_is_read(options, w
     assert pendu("judge", "absent.csv", *shlex.split(options)).refused(2, words)
 
 
-@pytest.mark.skipif(not shutil.which("bash"), reason="needs bash")
-def test_stdin_is_read_where_it_is_open(monkeypatch):
+def test_stdin_is_read_where_it_is_open():
     Path("energies.csv").write_text(TABLE)
-    program = Path(sys.executable).with_name("pendu-tui")
-    line = f"{program} judge - <&-; {program} judge - < energies.csv"
-    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
-    assert done.stderr.startswith("pendu-tui: stdin: Bad file descriptor; give ")
-    assert "stdin: 300 samples from 0 to 29.9" in done.stdout
+    stdin = os.dup(0)
+    try:
+        with Path("energies.csv").open() as file:
+            os.dup2(file.fileno(), 0)
+        assert pendu("judge", "-").out.startswith("stdin: 300 samples from 0 to 29.9")
+        os.close(0)
+        assert pendu("judge", "-").refused(3, "stdin: Bad file descriptor; give ")
+    finally:
+        os.dup2(stdin, 0)
+        os.close(stdin)
 
 
 def test_a_terminal_shows_a_chart_above_the_answer(snapshot, monkeypatch):
