@@ -2,7 +2,6 @@ import asyncio
 import os
 import signal
 import subprocess
-import sys
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pyte
 import pytest
 
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import PENDU, own_method, pendu
+from tests.tui.command_line import PENDU, own_method
 
 pytestmark = pytest.mark.slow
 
@@ -115,18 +114,6 @@ async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
-    with serving("--at-most", "1") as server:
-        async with aiohttp.ClientSession() as session:
-            async with server.tab() as tab:
-                await tab.shows("LIVE")
-                async with session.get(server.address) as page:
-                    assert (page.status, "labs are in use" in await page.text()) == (503, True)
-            await server.until_labs(0)
-            async with session.get(server.address) as page:
-                assert page.status == 200
-
-
 async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_flood_of_keys(
     tmp_path,
 ):
@@ -142,15 +129,6 @@ async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_fl
     results = [verify(path) for path in folder.iterdir()]
     assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
     assert list(tmp_path.iterdir()) == [folder]
-
-
-async def test_no_page_is_framed_or_loads_anything_from_elsewhere(server):
-    async with aiohttp.ClientSession() as session:
-        for path in ("", "/no-such", "/static/js/textual.js"):
-            async with session.get(server.address + path) as page:
-                policy = page.headers["Content-Security-Policy"]
-                assert "frame-ancestors 'none'" in policy
-                assert "http" not in policy
 
 
 async def test_methods_of_ones_own_travel_in_a_folder_that_only_the_user_can_read(tmp_path):
@@ -177,15 +155,3 @@ async def test_a_signal_ends_the_server_and_its_labs(name):
             async with asyncio.timeout(PATIENCE):
                 while status.exists() and "State:\tZ" not in status.read_text():
                     await asyncio.sleep(0.1)
-
-
-def test_what_cannot_be_served_is_one_sentence_and_so_is_what_is_exposed(tmp_path, monkeypatch):
-    with serving("--host", "0.0.0.0") as server:
-        taken = ("--host", "0.0.0.0", "--port", server.address.rpartition(":")[2])
-        assert pendu("serve", *taken).refused(2, "cannot listen", taken[3], "--port")
-        server.process.terminate()
-        assert "without a password" in server.process.communicate(timeout=PATIENCE)[1]
-    assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "No such file")
-    monkeypatch.setitem(sys.modules, "textual_serve.server", None)
-    monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.serve", raising=False)
-    assert pendu("serve").refused(2, "install", "serve needs")

@@ -1,10 +1,19 @@
-"""Which requests `pendu-tui serve` answers."""
+"""`pendu-tui serve` within the process: which requests it answers, and the lab of a tab."""
 
 import argparse
+import asyncio
+import logging
+import os
 import pickle
+import re
+import signal
+import socket
+import sys
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import AsyncMock, Mock
 
+import aiohttp
 import pytest
 from aiohttp import web
 
@@ -14,6 +23,11 @@ from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import pendu
 
 OURS = "127.0.0.1:8000"
+
+
+def server_at(host: str) -> serve.LabServer:
+    options = argparse.Namespace(host=host, port=0, at_most=2)
+    return serve.LabServer(Path("settings"), options)
 
 
 @pytest.mark.parametrize(
@@ -34,8 +48,7 @@ OURS = "127.0.0.1:8000"
 async def test_a_lab_is_for_pages_of_this_computer_while_one_is_free(
     path, labs, host, origin, refusal
 ):
-    options = argparse.Namespace(host="127.0.0.1", port=8000, at_most=2)
-    server = serve.LabServer(Path("settings"), options)
+    server = server_at("127.0.0.1")
     server._labs = labs
     headers = {"Origin": origin} if origin else {}
     request = SimpleNamespace(path=path, host=host, headers=headers, scheme="http")
@@ -48,6 +61,80 @@ async def test_a_lab_is_for_pages_of_this_computer_while_one_is_free(
         return
     with pytest.raises(getattr(web, refusal)):
         await server.check(request, handler)
+
+
+@pytest.fixture
+def signals():
+    before = {number: signal.getsignal(number) for number in serve.ENDING}
+    yield before.values()
+    logging.disable(logging.NOTSET)
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0"])
+async def test_it_says_where_it_is_and_who_can_use_it_and_its_pages_stay_by_themselves(
+    host, capsys, signals
+):
+    server = server_at(host)
+    lab = f"{sys.executable} -P -m pendu_tui.tui.commands.served settings"
+    assert server.command.endswith(lab)
+    running = asyncio.create_task(server.run())
+    told, warned = capsys.readouterr()
+    while not (told or running.done()):
+        await asyncio.sleep(0.01)
+        told, warning = capsys.readouterr()
+        warned += warning
+    assert not {signal.getsignal(number) for number in serve.ENDING} & {*signals}
+    assert logging.root.manager.disable == logging.CRITICAL
+    address, _, limits = told.partition(" ")
+    assert re.fullmatch(rf"http://{host}:\d+", address)
+    assert limits == "serves up to 2 labs; Ctrl+C ends it.\n"
+    assert ("without a password" in warned) == (host == "0.0.0.0")
+    async with aiohttp.ClientSession() as session:
+        for path, status in (("", 200), ("/no-such", 404), ("/static/js/textual.js", 200)):
+            async with session.get(address + path) as page:
+                policy = page.headers["Content-Security-Policy"]
+                assert (page.status, "http" in policy) == (status, False)
+                assert "frame-ancestors 'none'" in policy
+        async with session.get(address) as page:
+            text = await page.text()
+            assert ">pendu-tui<" in text
+            assert f'"{address.replace("http", "ws")}/ws"' in text
+        async with session.get(address, headers={"Host": "elsewhere.example"}) as page:
+            assert page.status == 421
+    signal.raise_signal(signal.SIGTERM)
+    await asyncio.wait_for(running, 50)
+    assert capsys.readouterr() == ("", "")
+
+
+async def test_the_lab_of_a_tab_that_closes_ends_and_is_free_again(monkeypatch):
+    server = server_at("127.0.0.1")
+    labs = []
+
+    async def cut(*_):
+        labs.append(server._labs)
+        raise ConnectionResetError
+
+    monkeypatch.setattr(serve.Server, "handle_websocket", cut)
+    monkeypatch.setattr(serve.Server, "_process_messages", cut)
+    lab = SimpleNamespace(terminate=Mock(side_effect=ProcessLookupError), wait=AsyncMock())
+    with pytest.raises(ConnectionResetError):
+        await server.handle_websocket("request")
+    with pytest.raises(ConnectionResetError):
+        await server._process_messages("socket", SimpleNamespace(_process=lab))
+    assert labs == [1, 0]
+    assert (lab.terminate.call_count, lab.wait.await_count) == (1, 1)
+
+
+def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert pendu("serve", "--port", port).refused(2, "cannot listen", str(port), "--port")
+    assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "No such file")
+    monkeypatch.setitem(sys.modules, "textual_serve.server", None)
+    monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.serve", raising=False)
+    assert pendu("serve").refused(2, "install", "serve needs")
 
 
 def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path, monkeypatch):
@@ -83,3 +170,28 @@ def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(
     for resize in waiting:
         resize()
     assert told == [("focus", {}), ("resize", {"width": 400, "height": 1})]
+
+
+def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_records(tmp_path, monkeypatch):
+    file = tmp_path / "settings"
+    folder = tmp_path / "folder"
+    file.write_bytes(pickle.dumps((SCENES["spin"], TerminalOptions("light"), folder)))
+    monkeypatch.setattr(sys, "argv", ["served", str(file)])
+    monkeypatch.setenv("COLUMNS", "1000")
+    monkeypatch.setenv("ROWS", "24")
+    made = []
+
+    def app(screen, terminal):
+        def run():
+            assert (os.environ["COLUMNS"], os.environ["ROWS"]) == ("400", "24")
+            screen.record(screen.source)
+
+        made.append(SimpleNamespace(run=run, scene=screen.source.scene, terminal=terminal))
+        return made[0]
+
+    monkeypatch.setattr(served, "PenduApp", app)
+    served.main()
+    (lab,) = made
+    assert (lab.scene, lab.terminal) == (SCENES["spin"], TerminalOptions("light"))
+    assert lab.driver_class is served.BoundedDriver
+    assert [path.suffix for path in folder.iterdir()] == [".mcap"]  # and no .part
