@@ -163,7 +163,7 @@ def rows_of(lockstep: Lockstep, sample: Sample, is_whole: bool) -> list[Row]:
                 **fields_of(judgement, "slope", "uncertainty", "bound", "share"),
                 **fields_of(judgement, "verdict", "rests", "reason"),
                 "progress": judgement.progress and judgement.progress._asdict(),
-                "lyapunov_per_second": judgement.lyapunov or None,
+                "lyapunov_per_second": judgement.lyapunov,
                 "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
                 "diverged_at": reading.diverged_at,
             }

@@ -137,7 +137,7 @@ def _cell_fields(cell: Any) -> dict[str, Any] | None:
 def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
     for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
         if fields := _cell_fields(cells[z, m, t]):
-            place = {"z": float(grid.z[z]), "theta": float(grid.theta[t])}
+            place = {"z": grid.z[z], "theta": grid.theta[t]}
             yield {"method": grid.methods[m].key, **place, **fields}
 
 

@@ -88,9 +88,11 @@ def test_on_windows_it_says_which_terminal_to_use(session, fine, monkeypatch):
 def test_a_terminal_may_be_as_small_as_the_lab(size, fine, monkeypatch):
     stdout = SimpleNamespace(isatty=lambda: True, encoding="latin-1")
     monkeypatch.setattr(doctor, "sys", SimpleNamespace(stdout=stdout))
+    monkeypatch.setattr(doctor, "check_terminal", lambda: None)
     for name, value in zip(("COLUMNS", "LINES"), size.split("x"), strict=True):
         monkeypatch.setenv(name, value)
     found = findings()
+    assert found["lab"] == {"what": "lab", "found": "starts here", "advice": ""}
     assert found["size"]["found"] == size
     advice = "" if fine else "the lab needs 60x16; 120x40 shows all panes"
     assert found["size"]["advice"] == advice

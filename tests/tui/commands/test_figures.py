@@ -14,6 +14,7 @@ RUN = ("run", "--time", "5", "--methods", "rk4,verlet,heun", "-o")
 
 STUDIES = """\
 run --theta 3 --time 20 --methods rk4,explicit_euler
+run --time 30 --methods rk4
 accuracy --time 2 --h-values 0.2:0.1:2 --methods rk4 --error energy
 stability --steps 50 --z-values 0.1:1.5:4 --theta-values 0.5,2
 """
@@ -26,8 +27,9 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.report.find_spec", bool)
     listed = pendu("run", "--theta", "1,2", "--time", "1", "-o", tmp_path / "a.svg")
     assert listed.refused(2, "a figure are for one run")
+    monkeypatch.setattr("pendu_tui.tui.commands.run.MAX_PARTS", 9)
     texts = []
-    for line, suffix in zip(STUDIES.splitlines(), ("SVG", "pdf", "png"), strict=True):
+    for line, suffix in zip(STUDIES.splitlines(), ("SVG", "svg", "pdf", "png"), strict=True):
         matplotlib.reset_mock()
         assert pendu(*line.split(), "-o", tmp_path / f"a.{suffix}").code == 0
         texts += ["", f"$ {line}", *map(str, matplotlib.mock_calls)]

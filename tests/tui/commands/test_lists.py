@@ -5,6 +5,7 @@ import pytest
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.loops import available
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.tui.commands.lists import CLAIMS
 from tests.tui.command_line import pendu
 
 
@@ -18,6 +19,8 @@ def test_scenes_as_json_hold_everything_that_determines_a_run():
 def test_methods_that_are_named_are_listed_alone():
     listed = pendu("methods", "rk4", "verlet", "--json").json["methods"]
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
+    six = [method.key for method in METHODS[:6]]
+    assert "\nVerlet " not in pendu("methods", *six).out  # families are told of more
     answer = pendu("methods", "--json").json
     assert [method["key"] for method in answer["methods"]] == [method.key for method in METHODS]
     assert answer["compiled"] == available()
@@ -47,6 +50,9 @@ def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path):
     assert "does not fall with h" in passed.out
     (line,) = (line for line in passed.out.splitlines() if line.startswith("broken "))
     assert line.split() == ["broken", "-", "0.008", "2", "yes", "no", "2.000"]
+    (fields,) = pendu(*own[:-1], "--json").json["methods"]
+    claims = [name for name in CLAIMS if fields[name] is not None]
+    assert claims == ["key", "label", "letter", "other_names"]
 
 
 def test_the_gate_of_a_right_method_passes():

@@ -13,6 +13,7 @@ from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
+from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import TerminalOptions
@@ -73,8 +74,12 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path,
     assert pendu(*picture).refused(5, "--force")
 
 
-async def test_a_picture_shows_its_time():
+async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
+    asked = []
+    done = property(lambda pane: asked.append(pane) or len(asked) not in (1, 4))
+    monkeypatch.setattr(CellWidget, "settled", done, raising=False)
     assert ">1.00" in await lab.still(DEFAULT_SCENE, 1.0, (60, 16))
+    assert len(asked) > 4
 
 
 @pytest.fixture
@@ -199,3 +204,4 @@ def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, ca
     part = tmp_path / "lab.mcap.part"
     assert printed.out == f"saved {part}\nreplay it with: pendu-tui replay {part}\n"
     assert "the recording stopped" in printed.err
+    assert lab.print_sentences(Live(DEFAULT_SCENE)) == 130

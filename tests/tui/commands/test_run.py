@@ -1,11 +1,8 @@
 """`pendu-tui run`: one scene, or every combination of a list."""
 
 import csv
-import os
 import re
 import signal
-import subprocess
-import time
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +16,7 @@ from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.commands import run
 from tests.recordings.examples import record, two_runs
-from tests.tui.command_line import PENDU, needs_signals, own_method, pendu
+from tests.tui.command_line import own_method, pendu
 
 
 @pytest.mark.parametrize(
@@ -38,7 +35,10 @@ def test_the_progress_is_shown_to_the_end(command, count, whole, tmp_path, monke
     shown = []
     show = nullcontext(lambda *done: shown.append(done))
     monkeypatch.setattr(f"pendu_tui.tui.commands.{command.split()[0]}.progress", lambda _: show)
+    kept = []
+    monkeypatch.setattr(run, "_lines", lambda _, samples: kept.extend(samples))
     assert pendu(*command.split()).code == 0
+    assert len(kept) == command.startswith("run")  # one sample, unless a figure needs them all
     assert (len(shown), shown[0], shown[-1]) == (count, (0, whole), (whole, whole))
 
 
@@ -95,15 +95,22 @@ def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
         "Explicit Euler is undecided: it beats.",
         "Verlet is chaotic: nearby starts separate tenfold every 12 s.",
     ]
+    (verlet,) = pendu("run", "chaos-loose", "--time", 300, "--methods", "v", "--json").json[
+        "methods"
+    ]
+    assert verlet["lyapunov_per_second"] == pytest.approx(0.25, abs=0.05)
 
 
-@pytest.mark.parametrize(("options", "steps"), [("--theta 1,2 --h 0.1", 20), ("--length 1,2", 0)])
+@pytest.mark.parametrize(
+    ("options", "steps"),
+    [("--theta 1,2 --omega 0,1 --h 0.1,0.2", 8 * [60]), ("--length 1,2", [0, 0])],
+)
 def test_the_steps_of_all_runs_of_a_list_decide_whether_to_compile(options, steps, monkeypatch):
     asked = []
     made = run.lockstep_of
     monkeypatch.setattr(run, "lockstep_of", lambda scene, n: asked.append(n) or made(scene, n))
     assert pendu("run", "--time", 1, *options.split()).code == 0
-    assert asked == [steps, steps]
+    assert asked == steps
 
 
 def test_a_worker_has_a_watchdog_of_its_own(monkeypatch):
@@ -114,51 +121,23 @@ def test_a_worker_has_a_watchdog_of_its_own(monkeypatch):
 
 
 def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, monkeypatch):
-    def requests():
-        asked = iter([False, False, True])
-        return nullcontext(lambda: next(asked))
+    def show(step, steps):
+        if step == 10:
+            signal.raise_signal(signal.SIGTERM)
 
-    monkeypatch.setattr("pendu_tui.tui.commands.run.stop_requests", requests)
-    run = ("run", "halving", "--time", 4, "--sample-every", 5, "--force")
+    monkeypatch.setattr(run, "progress", lambda _: nullcontext(show))
+    line = ("run", "halving", "--time", 4, "--sample-every", 5, "--force")
     older = tmp_path / "run.mcap"
     older.touch()
-    outcome = pendu(*run, "--record", older)
+    outcome = pendu(*line, "--record", older)
     assert (outcome.code, outcome.out.splitlines()[1][:20]) == (130, "10 steps to t = 2 s ")
     assert re.search(r"Step doubling .* 80$", outcome.out, re.MULTILINE)  # on average
+    recorded = verify(tmp_path / "run-2.mcap")
+    assert (recorded.complete, recorded.identical) == (True, True)
     assert f"wrote {tmp_path / 'run-2.mcap'}\n" in outcome.err
     assert outcome.err.endswith("interrupted at t = 2 s, showing the results up to then.\n")
-    assert pendu(*run, "-o", tmp_path / "new.csv").code == 130
-    assert pendu(*run, "-o", tmp_path / "new.csv").refused(130, "stays as it was")
-
-
-@pytest.mark.slow
-@needs_signals
-@pytest.mark.parametrize("name", ["SIGINT", "SIGHUP"])
-def test_a_signal_stops_a_run_which_finishes_its_recording(tmp_path, name):
-    path = tmp_path / "run.mcap"
-    code, out, err = stopped(path, name)
-    assert code == 130
-    assert "pendu-tui: interrupted at t = " in err
-    assert "RK4" in out  # what was done is told
-    result = verify(path)
-    assert (result.complete, result.identical) == (True, True)
-    assert [path] == list(tmp_path.iterdir())
-
-
-def stopped(path, name: str) -> tuple[int, str, str]:
-    """Send a signal to a run once it has recorded 100 kB."""
-    pipe = subprocess.PIPE
-    line = ["run", "--time", "1e7", "--force", "--record", str(path)]
-    process = subprocess.Popen([*PENDU, *line], stdout=pipe, stderr=pipe, text=True)
-    part = path.with_name("run.mcap.part")
-    deadline = time.monotonic() + 60  # s; a second is usual
-    while not (part.exists() and part.stat().st_size >= 100_000):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    time.sleep(0.5)
-    os.kill(process.pid, getattr(signal, name))
-    out, err = process.communicate(timeout=60)
-    return process.returncode, out, err
+    assert pendu(*line, "-o", tmp_path / "new.csv").code == 130
+    assert pendu(*line, "-o", tmp_path / "new.csv").refused(130, "stays as it was")
 
 
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")

@@ -91,6 +91,7 @@ def test_outputs(snapshot, library):
 
 
 def test_options(snapshot):
+    assert "\n  bounded: " in pendu("run", "--help").out
     texts = []
     for name, each in OPTIONS.items():
         choices = each.get("choices", ())
