@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from itertools import product
 from operator import methodcaller
+from shutil import get_terminal_size
 from typing import Any
 
 from pendu_tui.engine.run import loops
@@ -36,7 +37,6 @@ from pendu_tui.tui.commands.report import (
     Report,
     Table,
     check_output,
-    console,
     fields_of,
     method_column,
     publish,
@@ -171,7 +171,7 @@ class Results:
         yield from (f"{mark} {REASONS[flaw]}" for flaw, mark in MARKS.items() if flaw in flaws)
         yield "n/step: force evaluations"
         yield ""
-        columns = min(console(MAX_COLUMNS).width, MAX_COLUMNS)
+        columns = min(get_terminal_size((MAX_COLUMNS, ROWS)).columns, MAX_COLUMNS)
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
         chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
         yield from lines_of(chart, PALETTES["dark"])

@@ -55,12 +55,6 @@ def scene_line(scene: Scene, *more: str) -> str:
     return f"{scene.name}{model}: {listed} (SI units)"
 
 
-def console(piped_width: int | None = None) -> Console:
-    """Return a console as wide as the terminal, or `piped_width` wide without one."""
-    width = None if sys.stdout.isatty() else piped_width
-    return Console(width=width, markup=False, emoji=False, highlight=False)
-
-
 class Column(NamedTuple):
     """A column of a table: its head, and how to write a row's cell."""
 
@@ -188,7 +182,8 @@ class Report:
             if isinstance(part, str):
                 say(part)
                 continue
-            on = console(240)
+            width = None if sys.stdout.isatty() else 240
+            on = Console(width=width, markup=False, emoji=False, highlight=False)
             with on.capture() as drawn:  # Rich itself would end the process at a closed pipe
                 on.print(part)
             print(drawn.get(), end="")

@@ -2,7 +2,6 @@
 
 import csv
 import re
-from types import SimpleNamespace
 
 import pytest
 
@@ -28,8 +27,7 @@ def test_all_methods_are_tried_for_a_target_and_points_are_the_same_in_every_pro
 
 @pytest.mark.parametrize(("terminal", "chart"), [(60, 60), (200, 100)])
 def test_the_chart_is_as_wide_as_the_terminal_up_to_100_columns(terminal, chart, monkeypatch):
-    width = SimpleNamespace(width=terminal)
-    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.console", lambda _: width)
+    monkeypatch.setenv("COLUMNS", str(terminal))
     axis = next(line for line in pendu(*QUICK).out.splitlines() if "└" in line)
     assert len(axis) == chart
 
