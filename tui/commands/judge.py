@@ -144,7 +144,7 @@ def table_to_judge(seen: Sequence[Series], table: int | None) -> Series | None:
     named = [series for series in some if series.sheet.choice]
     if not named:
         raise _missing(some[-1])
-    certain = [series for series in named if series.choice.energy and not series.choice.doubt]
+    certain = [series for series in named if not series.choice.doubt]
     return certain[-1] if certain else None
 
 

@@ -191,11 +191,10 @@ class Report:
 
 def finite(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return a row for JSON, with None for numbers that are not finite."""
-
-    def is_finite(value: Any) -> bool:
-        return not isinstance(value, float) or math.isfinite(value)
-
-    return {name: value if is_finite(value) else None for name, value in row.items()}
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in row.items()
+    }
 
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:

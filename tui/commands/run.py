@@ -14,7 +14,7 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
-from pendu_tui.engine.run.verdicts import UNDECIDED, Progress
+from pendu_tui.engine.run.verdicts import Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
@@ -220,7 +220,7 @@ def _notes(lockstep: Lockstep) -> Iterator[str]:
         if milestone.kind in ("over the top", "errors cross"):
             yield milestone_insight(milestone, scene.equations.conserves_energy).text
     for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
-        if judgement.verdict == UNDECIDED and not judgement.progress and judgement.reason:
+        if judgement.reason and not judgement.progress:
             yield f"{method.label} is undecided: {judgement.reason}."
         insight = irregular(method, judgement, 0.0)
         if judgement.lyapunov and insight:

@@ -130,7 +130,7 @@ def _cell_fields(cell: Any) -> dict[str, Any] | None:
     return {
         "fate": FATES[cell["fate"]],
         "steps_survived": int(cell["steps"]),
-        "max_energy_error": float(cell["error"]),
+        "max_energy_error": cell["error"],
     }
 
 

@@ -70,7 +70,9 @@ def test_colours_are_read_from_the_environment(environment, fine, monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert bool(findings()["colours"]["advice"]) == (not fine)
+    found = findings()["colours"]
+    assert bool(found["advice"]) == (not fine)
+    assert found["found"].endswith(f", TERM={environment['TERM']}")
 
 
 @pytest.mark.parametrize(("session", "fine"), [("1", True), ("", False)])

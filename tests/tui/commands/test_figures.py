@@ -14,7 +14,7 @@ RUN = ("run", "--time", "5", "--methods", "rk4,verlet,heun", "-o")
 
 STUDIES = """\
 run --theta 3 --time 20 --methods rk4,explicit_euler
-run --time 30 --methods rk4
+run damped --time 30 --methods rk4
 accuracy --time 2 --h-values 0.2:0.1:2 --methods rk4 --error energy
 stability --steps 50 --z-values 0.1:1.5:4 --theta-values 0.5,2
 """

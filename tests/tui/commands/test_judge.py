@@ -101,6 +101,7 @@ failed.csv
 large.csv --from 0
 huge.csv
 cold.csv --scale kinetic:K
+table.csv --to 0.1 --atoms 10 --step 1fs --units energy=eV
 odd.csv --from 10 --json
 table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'

@@ -1,6 +1,7 @@
 """`pendu-tui live` before there is a screen."""
 
 import gc
+import re
 import signal
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,6 +11,7 @@ import pytest
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.files import DiskError, NameTakenError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
+from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
@@ -27,6 +29,7 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     assert pendu("live", "--plain", "--record", path).refused(5, *taken)
     assert path.read_bytes() == b"precious"
     monkeypatch.setattr(lab, "check_terminal", lambda: None)
+    monkeypatch.setattr(lab, "show", None)
     assert pendu("live", "--record", path).refused(5, *taken)  # before the screen
     assert pendu("live", "--record", path, "--no-record").refused(2, "not allowed with")
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
@@ -78,7 +81,9 @@ async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
     asked = []
     done = property(lambda pane: asked.append(pane) or len(asked) not in (1, 4))
     monkeypatch.setattr(CellWidget, "settled", done, raising=False)
-    assert ">1.00" in await lab.still(DEFAULT_SCENE, 1.0, (60, 16))
+    still = await lab.still(DEFAULT_SCENE, 1.0, (60, 16), TerminalOptions("dark", "ascii"))
+    assert ">1.00" in still
+    assert not re.search("[\u2801-\u28ff]", still)
     assert len(asked) > 4
 
 
@@ -135,7 +140,8 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
 ):
     told = []
 
-    def tell(source, *_, lesson):
+    def tell(source, say, _, lesson):
+        assert say.keywords == {"flush": True}
         told.append((source.recorder is not None, lesson is not None))
 
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
@@ -157,7 +163,7 @@ class App(SimpleNamespace):
 
 
 def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_command(monkeypatch):
-    def shown(result: object = None, code: int = 0, **environment: str) -> int:
+    def shown(result: object = None, code: int | None = None, **environment: str) -> int:
         nonlocal app
         monkeypatch.setattr(lab, "environment", lambda: {"TERM": "xterm-256color"} | environment)
         app = App(result=result, return_code=code)
@@ -193,7 +199,9 @@ def test_a_file_of_several_scenes_is_a_lesson_and_one_of_one_if_it_asks_somethin
     assert lesson_of(asking).page.shot.question == "Why?"
 
 
-def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, capsys, monkeypatch):
+def test_the_goodbye_names_the_recording_and_after_a_disk_failure_the_unfinished_file(
+    tmp_path, capsys, monkeypatch
+):
     monkeypatch.setattr(lab, "tell", lambda *_, **__: signal.raise_signal(signal.SIGTERM))
     live = Live(DEFAULT_SCENE)
     live.record(LiveRecorder(tmp_path / "lab.mcap"))
@@ -204,4 +212,9 @@ def test_after_a_disk_failure_the_goodbye_names_the_unfinished_file(tmp_path, ca
     part = tmp_path / "lab.mcap.part"
     assert printed.out == f"saved {part}\nreplay it with: pendu-tui replay {part}\n"
     assert "the recording stopped" in printed.err
-    assert lab.print_sentences(Live(DEFAULT_SCENE)) == 130
+    path = tmp_path / "whole.mcap"
+    live.recorder = None
+    live.record(LiveRecorder(path))
+    assert lab.print_sentences(live) == 130
+    assert f"saved {path}\n" in capsys.readouterr().out
+    assert verify(path).complete

@@ -1,7 +1,6 @@
-"""`--plain` with a pipe instead of a terminal, ended by a signal."""
+"""`--plain` with a pipe instead of a terminal."""
 
 import os
-import signal
 import subprocess
 from pathlib import Path
 
@@ -19,36 +18,15 @@ def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
     return subprocess.Popen([*PENDU, *arguments], env=env, stdout=pipe, stderr=pipe, text=True)
 
 
-def recorded_whole(folder: Path) -> Path:
-    (path,) = folder.iterdir()
-    report = verify(path)
-    assert (report.identical, report.complete) == (True, True)
-    return path
-
-
-@pytest.mark.parametrize(
-    ("number", "arguments", "first"),
-    [
-        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8×"),
-        (signal.SIGTERM, ("tour",), "The lab runs at 1× speed"),
-    ],
-)
-def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first):
-    with started(tmp_path, *arguments, "--plain") as process:
-        assert process.stdout.readline().startswith(first)
-        process.send_signal(number)
-        out, err = process.communicate(timeout=30)
-    assert (process.returncode, err) == (130, "")
-    assert f"saved {recorded_whole(tmp_path)}" in out
-
-
-def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
+def test_when_nobody_reads_any_more_the_recording_is_whole(tmp_path):
     with started(tmp_path, "live", "--plain", "--speed", "20") as process:
         process.stdout.readline()
         process.stdout.close()
         process.wait(timeout=30)
     assert process.returncode == 141
-    recorded_whole(tmp_path)
+    (path,) = tmp_path.iterdir()
+    report = verify(path)
+    assert (report.identical, report.complete) == (True, True)
 
 
 def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):

@@ -24,6 +24,8 @@ from tests.tui.command_line import own_method, pendu
     [
         ("run --time 2 --sample-every 10", 5, 40),
         ("run --time 2 --method mine.py:mine", 4, 40),  # which may be slow
+        ("run --time 2 --h 0.001 --method mine.py:mine --record new.mcap", 126, 2000),
+        ("run --time 2 --h 0.1 --record new.mcap", 21, 20),
         ("export a", 10, 4.0),
     ],
 )
@@ -103,14 +105,19 @@ def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
 
 @pytest.mark.parametrize(
     ("options", "steps"),
-    [("--theta 1,2 --omega 0,1 --h 0.1,0.2", 8 * [60]), ("--length 1,2", [0, 0])],
+    [("--theta 1,2 --omega 0,1 --h 0.1,0.2", 60), ("--length 1,2", 0)],
 )
 def test_the_steps_of_all_runs_of_a_list_decide_whether_to_compile(options, steps, monkeypatch):
     asked = []
-    made = run.lockstep_of
-    monkeypatch.setattr(run, "lockstep_of", lambda scene, n: asked.append(n) or made(scene, n))
+    made = run.loops.TieredLoops
+
+    def loops(*arguments, expected_steps):
+        asked.append(expected_steps)
+        return made(*arguments, expected_steps)
+
+    monkeypatch.setattr(run.loops, "TieredLoops", loops)
     assert pendu("run", "--time", 1, *options.split()).code == 0
-    assert asked == steps
+    assert {*asked} == {steps}
 
 
 def test_a_worker_has_a_watchdog_of_its_own(monkeypatch):
@@ -148,21 +155,3 @@ def test_the_rows_of_a_list_are_those_of_single_runs():
     alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
     (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
     assert single.items() <= rows[-1].items()
-
-
-ENDLESS = """\
-def endless(force, phase, h):
-    for step in range(100_000):
-        phase = phase[0], phase[1] + h * force(phase[0])
-        phase = phase[0] + h * phase[1], phase[1]
-        yield phase
-    while True: pass
-"""
-
-
-@pytest.mark.slow
-def test_a_step_that_does_not_end_ends_a_list_in_other_processes(tmp_path):
-    (tmp_path / "endless.py").write_text(ENDLESS)
-    own = ("--method", tmp_path / "endless.py", "--methods", "endless")
-    outcome = pendu("run", *own, "--h", "0.001,0.002", "--time", 200, "--csv", "--workers", 2)
-    assert outcome.refused(3, "line 6", "takes more than 3 s")

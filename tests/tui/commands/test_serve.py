@@ -10,7 +10,7 @@ import pyte
 import pytest
 
 from pendu_tui.recordings.verification import verify
-from tests.tui.command_line import PENDU, own_method
+from tests.tui.command_line import PENDU
 
 pytestmark = pytest.mark.slow
 
@@ -129,16 +129,6 @@ async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_fl
     results = [verify(path) for path in folder.iterdir()]
     assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
     assert list(tmp_path.iterdir()) == [folder]
-
-
-async def test_methods_of_ones_own_travel_in_a_folder_that_only_the_user_can_read(tmp_path):
-    with serving("--method", own_method(tmp_path), TMPDIR=str(tmp_path)) as server:
-        (settings,) = tmp_path.glob("pendu-*")
-        assert settings.stat().st_mode & 0o777 == 0o700
-        async with server.tab((120, 40)) as tab:
-            await tab.shows("Mine")
-            assert "my methods" not in Path(f"/proc/{server.labs[0]}/cmdline").read_text()
-    assert not list(tmp_path.glob("pendu-*"))
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGKILL"])

@@ -54,6 +54,7 @@ run --theta 1,2 --time 1 --csv
 run damped --time 1 --csv
 accuracy {QUICK} --csv
 stability --steps 50 --z-values 0.1:3:4 --theta-values 0.5,2 --csv
+run mean-field --time 1 --csv
 export cut
 export {FOLDER}/spring.mcap
 """

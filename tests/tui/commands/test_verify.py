@@ -35,20 +35,14 @@ COMMANDS = (
 )
 
 
+@pytest.mark.parametrize("name", ["empty.mcap", "cut.mcap", 300 * "x"], ids=len)
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_name_that_no_file_can_have_is_one_sentence_and_exit_3(command):
-    assert pendu(*command.replace("FILE", 300 * "x").split()).refused(3, "xxx")
-
-
-@pytest.mark.parametrize("content", [b"", b"\x89MCAP0\r\n"], ids=["empty", "cut"])
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_file_that_is_not_a_recording_is_one_sentence_and_exit_3(
-    command, content, tmp_path, monkeypatch
-):
+def test_what_is_not_a_recording_is_one_sentence_and_exit_3(command, name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "file.mcap").write_bytes(content)
-    assert pendu(*command.replace("FILE", "file.mcap").split()).refused(3, "file.mcap")
-    assert [path.name for path in tmp_path.iterdir()] == ["file.mcap"]
+    (tmp_path / "empty.mcap").touch()
+    (tmp_path / "cut.mcap").write_bytes(b"\x89MCAP0\r\n")
+    assert pendu(*command.replace("FILE", name).split()).refused(3, name)
+    assert len([*tmp_path.iterdir()]) == 2
 
 
 def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path, monkeypatch):
@@ -59,23 +53,17 @@ def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path, mo
     assert [method.key for method in known] == ["mine"]
 
 
-def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
-    with monkeypatch.context() as earlier:
-        earlier.setattr("pendu_tui.recordings.events.NUMERICS", 1)
-        path = record(tmp_path / "earlier.mcap", two_runs())
-    assert "made with version 1 of the numerics, this is version" in pendu("verify", path).out
-
-
 def test_other_functions_of_the_machine_and_a_changed_source_are_told(whole):
     first = {"run": 2, "step": 3, "t": 0.25, "field": "t", "method": None}
     told = verify._sentence(
         verify._row(whole, None, None)
-        | {"other_functions": ["sin", "sqrt"], "changed_sources": ["mine"]}
+        | {"other_functions": ["sin", "sqrt"], "changed_sources": ["mine"], "numerics": 1}
         | {"first_difference": first | {"recorded": None, "computed": 0.5}}
     )
     assert told == (
         f"different   {whole}: 10 samples in 2 runs; within tolerance only: this machine computes "
-        "sin() and sqrt() differently; the source of mine is not the recorded one\n"
+        "sin() and sqrt() differently; made with version 1 of the numerics, this is version "
+        f"{verify.NUMERICS}; the source of mine is not the recorded one\n"
         "  first in t at run 2, step 3, t = 0.25 s, all methods:\n"
         "    recorded nothing\n"
         "    computed 0.5 (0x1.0000000000000p-1)"
