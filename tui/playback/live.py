@@ -66,8 +66,6 @@ class Live(Source):
     @property
     def events(self) -> Sequence[Event]:
         run = self._run
-        if not run.in_past:
-            return self._events
         return [event for event in self._events if event.run != run.run or event.step <= run.step]
 
     @property
@@ -112,7 +110,7 @@ class Live(Source):
         spacing = max(1, round(min(steps_a_row, 10_000)))
         with self._standing_still():
             self._run.forward(min(steps, spacing - self._run.step % spacing))
-        if self._run.step % spacing == 0 and not self.failure:
+        if self._run.step % spacing == 0:
             self._take_sample()
 
     @contextmanager
@@ -276,14 +274,13 @@ class Live(Source):
         return sample
 
     def _note_start(self) -> None:
-        """Record the run's start; a branch begins with its parent's changes and milestones."""
+        """Record the run's start; a branch begins with its parent's changes."""
         run = self._run.run
         self._note(Event("start", run, 0, 0.0, scene=self._run.scene))
         for step, t, stepping, _ in self._run.changes[1:]:
             change = Event("set_h", run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
             self._note(change)
         self._noticed_step = -1  # milestones up to here have been recorded
-        self._note_milestones()
 
     def _note_milestones(self) -> None:
         """Record new milestones; those of repeated steps have been recorded before."""
