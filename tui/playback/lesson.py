@@ -103,21 +103,22 @@ class Lesson:
             self.stage = "watching"  # the user went back
         if self.stage != "watching" or self.is_astray(live):
             return False
-        is_turned = live.stepping.h < 0
-        end = (1 + is_turned) * self._turn
-        if before.run == live.sample.run and before.step < end <= live.sample.step:
-            self._reach(live, end)
-            return self.stage != "watching"
-        return False
+        if before.step < self._end(live) <= live.sample.step:
+            self._reach(live)
+        return self.stage != "watching"
 
     @property
     def _turn(self) -> int:
         """The step at the moment."""
         return round((self.shot.moment or 0.0) / self._stepping.h)
 
-    def _reach(self, live: Live, end: int) -> None:
-        """Go to a step, and turn there or tell what there is to tell."""
-        live.step(end - live.sample.step)
+    def _end(self, live: Live) -> int:
+        """The step to stop at: the moment, or where time that turned there is back."""
+        return (1 + (live.stepping.h < 0)) * self._turn
+
+    def _reach(self, live: Live) -> None:
+        """Go to the step to stop at, and turn there or tell what there is to tell."""
+        live.step(self._end(live) - live.sample.step)
         if self.shot.returns and live.stepping.h > 0:
             live.change(live.stepping.reversed())
             live.pause(False)
@@ -135,7 +136,7 @@ class Lesson:
             self.begin(live, self.index)
         elif self.stage == "watching" and self.shot.moment is not None:
             while self.stage == "watching":
-                self._reach(live, (1 + (live.stepping.h < 0)) * self._turn)
+                self._reach(live)
         elif self.stage == "asked":
             self.answer(None)
         elif self.index + 1 < len(self.pages):
