@@ -160,9 +160,8 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
 
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Yield phases of NaN, which every loop stops at."""
-    theta, omega = phase
     while True:
-        yield math.nan * theta, math.nan * omega
+        yield math.nan, math.nan
 
 
 def steps_for(scene: Scene, time: float) -> int:

@@ -167,13 +167,13 @@ def golden_names() -> list[str]:
 
 
 def _is_recording(path: Path) -> bool:
-    """Return whether a file is named, and begins, as an MCAP file of our profile."""
-    if not (path.name.endswith((SUFFIX, SUFFIX + PART)) and path.is_file()):
+    """Return whether a file has the name and the profile of our recordings."""
+    if not path.name.endswith((SUFFIX, SUFFIX + PART)):
         return False
-    with path.open("rb") as file:
-        head = file.read(64)
     profile = len(PROFILE).to_bytes(4, "little") + PROFILE.encode()
-    return head.startswith(MAGIC) and head.startswith(profile, _PROFILE_AT)
+    with path.open("rb") as file:
+        file.seek(_PROFILE_AT)
+        return file.read(len(profile)) == profile
 
 
 def in_use(path: Path) -> bool:

@@ -179,7 +179,7 @@ def decode_readings(messages: Sequence[bytes], model: str = DEFAULT_MODEL) -> Sa
     decode = _decoders[model]
     try:
         decoded: list[Any] = [decode(message) for message in messages]
-    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+    except (RecursionError, ValueError) as error:
         raise _refused(error) from error
     readings = tuple(map(_reading, decoded))
     if extra := EXTRA[model]:
@@ -224,7 +224,7 @@ def decode_event(data: bytes) -> Event:
     """Return the event of a message, its texts printable."""
     try:
         message = msgspec.structs.asdict(_decode_event(data))
-    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+    except (RecursionError, ValueError) as error:
         raise _refused(error) from error
     fields = {name: value for name, value in message.items() if value is not None}
     fields |= {name: printable(fields[name]) for name in _TEXTS if name in fields}
