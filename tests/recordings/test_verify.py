@@ -77,9 +77,13 @@ def test_a_value_that_an_older_version_did_not_record_is_not_compared(verified):
 def test_a_failure_that_was_not_recorded_is_found(verified):
     scene = replace(SCENE, theta=3.0, h=0.7, cast=(method_of("implicit_midpoint"), VELOCITY_VERLET))
     entries = entries_of(scene, 10)
-    assert verified(entries).identical
-    found = verified(altered(entries, 1, 0, diverged_at=None)).first_difference
-    assert (found.field, found.recorded, found.computed) == ("diverged_at", None, 0.7)
+    for arithmetic in (None, arithmetic_here()._replace(sin="another")):
+        entries[0] = Entry(0.0, start(scene=scene)._replace(arithmetic=arithmetic))
+        assert verified(entries).identical
+        found = verified(altered(entries, 1, 0, diverged_at=None)).first_difference
+        assert (found.field, found.recorded, found.computed) == ("diverged_at", None, 0.7)
+        found = verified(altered(entries, 1, 1, diverged_at=0.7)).first_difference
+        assert (found.field, found.recorded, found.computed) == ("diverged_at", 0.7, None)
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live.change(live.stepping.reversed())
     live.restart()
     left = live.run_state
+    last = live.sample
     assert (live.scene.h, live.scene.name) == (0.1, "drift (altered)")
     assert live.ghost.label == "dim: run before, h 0.05, 0.1 s"
     largest = live.ghost.window(3.0).high["energy_error"].max()
@@ -40,5 +41,10 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     live.start(live.scene.altered(theta=2.0))
     assert (live.scene.name, live.ghost) == ("drift (altered)", None)
     live.set_speed(2.0)
+    live.change(live.stepping.reversed())
     live.return_to(left)
-    assert (live.playhead.speed, live.ghost) == (1.0, left.ghost)
+    assert (live.playhead.speed, live.ghost, live.stepping) == (1.0, left.ghost, left.stepping)
+    assert live.sample == last._replace(run=5)
+    live.change(live.stepping.reversed())
+    live.return_to(left)
+    assert (live.sample.run, live.stepping) == (5, left.stepping)

@@ -108,6 +108,10 @@ def test_a_run_that_goes_on_from_the_past_keeps_that_past(count, data):
     assert known[-1] == 1000
     assert np.all(np.diff(known) > 0)
     assert step - max([0, *known[-2:-1]]) <= longest  # samples of the row that is cut
+    for later in range(step + 1, step + 500):
+        history.add(sample(later, 1000 - step + later, run=2))
+    assert errors(history)[-1] == 1499
+    assert np.all(np.diff(history.window().x) > 0)
 
 
 def test_a_sample_between_rows_leaves_with_its_frame():
@@ -115,7 +119,10 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     history.add(sample(10, low=-9, high=10))
     history.add(sample(10))  # again
     history.add(sample(13, 13, low=-99), is_row=False)
-    assert history.window().low["energy_error"][:, 0].tolist() == [0, -9, 13]
+    low = history.window().low
+    assert low["energy_error"][:, 0].tolist() == [0, -9, 13]
+    start = DEFAULT_SCENE.equations.reference(DEFAULT_SCENE.theta, DEFAULT_SCENE.omega).start
+    assert low["energy"][:, 0] == pytest.approx([start, -8 * start, 14 * start])
     assert len(history.trails()) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]
@@ -130,6 +137,7 @@ def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_sample
     history.add(sample(6, -7))
     errors, _ = history.since(SteppingChange(6, 0.6, Stepping(0.1), 0.65))
     assert errors == [7] * 4
+    assert history.since(SteppingChange(0, 0.0, Stepping(0.1), -0.1)) is None
 
 
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
@@ -235,3 +243,4 @@ def test_a_stretch_holds_both_its_ends() -> None:
     assert window.x[[0, -1]] == pytest.approx([15.0 - window.repeats, 16.0], abs=0.4)
     window = filled(20).window()
     assert window.cut(window.x[3], window.x[7]).x.tolist() == window.x[3:8].tolist()
+    assert not window.cut(3.0, 2.0).turned

@@ -1,11 +1,13 @@
 """A replay, driven by a clock that the test moves."""
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE
@@ -15,7 +17,7 @@ from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback.replay import Replay
-from tests.own_methods import load
+from tests.own_methods import VERLET, load
 from tests.recordings.examples import samples_of
 from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
 from tests.tui.playback.test_live import states
@@ -72,11 +74,13 @@ def test_it_shows_the_last_sample_recorded_before_stops_at_the_end_and_begins_ag
 
 def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_frame(sitting):
     table = Table(sitting)
-    table.replay.tick(1.9)
+    table.replay.seek(1.9)
     assert len(table.replay.history.trails()) == 39
+    assert table.replay.knows_past
     replay = Replay(Recording.open(sitting), clock=itertools.count(0, 0.003).__next__)
     replay.seek(replay.length)
     assert not replay.fill()
+    assert not replay.knows_past
 
 
 def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table, replay):
@@ -130,7 +134,7 @@ def assert_same(one, other):
         np.testing.assert_array_equal(one.high[quantity], other.high[quantity])
 
 
-@pytest.mark.parametrize(("seconds", "origin"), [(1.0, 12.0), (11.5, 0.0)])
+@pytest.mark.parametrize(("seconds", "origin"), [(1.0, 12.0), (4.9, 12.0), (11.5, 0.0)])
 def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting, seconds, origin):
     played, jumped = Table(sitting), Table(sitting)
     while played.replay.playhead.position < seconds:
@@ -198,7 +202,7 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(replay, seconds):
     replay.seek(seconds)
     replay.set_speed(-2.0)
     live = replay.live()
-    assert live.playhead.speed == 2.0
+    assert (live.playhead.speed, live.recording_status) == (2.0, None)
     here = replay.sample
     assert (live.sample.step, live.sample.t) == (here.step, here.t)
     assert live.stepping.h == replay.stepping.h
@@ -291,10 +295,11 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
     table.replay.seek(17.5)
     replay.fill()
     live = replay.live()
-    live.change(Stepping(0.1))
-    live.step(5)  # and nothing of what was recorded later
-    t = live.history.window().t
-    assert t[-6:] - replay.sample.t == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
+    live.change(Stepping(-0.1))
+    live.step(3)  # and nothing of what was recorded later
+    window = live.history.window()
+    assert window.t[-4:] - replay.sample.t == pytest.approx([0.0, -0.1, -0.2, -0.3])
+    assert window.x[-4:] - window.x[-4] == pytest.approx([0.0, 0.1, 0.2, 0.3])
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
@@ -314,11 +319,13 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
 
 
 def test_no_lab_goes_on_without_the_users_own_method(tmp_path):
-    own = load("def mine(force, phase, h):\n    while True:\n        yield phase\n")
-    scene = DEFAULT_SCENE.with_cast((own,))
-    replay = Table(recorded(tmp_path / "lab.mcap", 1.0, scene=scene)).replay
+    cast = (load(VERLET), method_of("implicit_midpoint"))
+    scene = replace(DEFAULT_SCENE, theta=3.0, h=0.7, cast=cast)
+    table = Table(recorded(tmp_path / "lab.mcap", 2.0, scene=scene))
+    table.replay.seek(2.0)
+    assert table.verdicts == ["undecided", "failed"]
     with pytest.raises(RecordingError, match="--method"):
-        replay.live()
+        table.replay.live()
 
 
 def test_a_closed_replay_stands_still(table, replay):
@@ -326,3 +333,4 @@ def test_a_closed_replay_stands_still(table, replay):
     replay.close()
     assert table.run(1.0) == here
     assert replay.fill()
+    assert table.recording._stream.closed
