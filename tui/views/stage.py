@@ -7,21 +7,7 @@ method that lags is seen off the ray of the others.
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
-from math import (
-    asin,
-    atan2,
-    ceil,
-    copysign,
-    cos,
-    hypot,
-    inf,
-    isfinite,
-    nan,
-    pi,
-    remainder,
-    sin,
-    tau,
-)
+from math import asin, atan2, ceil, copysign, cos, hypot, isfinite, nan, pi, remainder, sin, tau
 from typing import NamedTuple, TypeVar
 
 from textual import events

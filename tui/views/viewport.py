@@ -150,7 +150,7 @@ class Viewport(NamedTuple):
         return self.at(2 * column + 1, 4 * row + 2)
 
     def _turned(self, theta: float) -> float:
-        if self.wrap and abs(theta) > math.pi:
+        if self.wrap:
             return math.remainder(theta, math.tau)
         return theta
 
