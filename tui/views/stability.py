@@ -281,8 +281,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
             self.compute(pieces, self.grid, PASSES)
         self.write_titles(self._title)
         frame = self._frame
-        if frame.columns <= 0:
-            return Picture()
         panels = [self._panel(index, frame) for index in self.places]
         words = ""
         if self.places and (aim := self.aim(self.index)):
@@ -321,7 +319,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         """The axes of each panel; two panels are side by side."""
         lines = -(-len(self.places) // 2) or 1
         rows = max((self.room.height - 2 - len(self._legend)) // lines - 2, 1)
-        columns = (self.room.width - 2) // 2 - LEFT
+        columns = max((self.room.width - 2) // 2 - LEFT, 1)
         max_h = MAX_Z / self.source.scene.w0
         x_axis = Axis(0.0, max_h, number_ticks(0.0, max_h, max(columns // 9, 2)))
         step = 45 if rows >= 5 else 90

@@ -108,6 +108,9 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         await pilot.click(pane, at)
         await complete(pilot, pane)
         assert (live.stepping.h, pane.index) == (point.h, 3)
+        await pilot.press("up", "e")
+        assert pane.index == 2
+        assert "theta error" in str(pane.border_title)
         await pilot.hover(pane, (70, 2))
         assert pane.pointer is None  # far from any point
 

@@ -47,6 +47,7 @@ async def test_a_view_that_a_scene_cannot_have_says_why_until_there_is_a_pendulu
         await theatre.press(key_of(view))
         await theatre.run(0.2)
         assert " ".join(theatre.text(pane).split()) == STIFF.why_not_mapped
+        assert theatre.stage.query_one(pane).settled
         await theatre.press("right", "enter", "tab")
         await theatre.click(pane, 12, 4)
         assert theatre.source.scene == STIFF

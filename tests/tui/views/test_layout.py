@@ -1,5 +1,6 @@
 """Where the lab's panes go at any size."""
 
+from functools import partial
 from itertools import combinations
 
 import pytest
@@ -7,10 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.geometry import Region, Size
 
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.picture import TEXT
+from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.lab import places
-from pendu_tui.tui.views.view import Pane
+from pendu_tui.tui.views.lab import EventList, places
+from pendu_tui.tui.views.phase import PhasePane
+from pendu_tui.tui.views.view import Pane, View
+from tests.tui.harness import lab
 
 
 @given(st.integers(60, 400), st.integers(4, 150))
@@ -19,6 +24,19 @@ def test_panes_cover_the_view_and_never_each_other(columns, rows):
     assert sum(region.area for region in regions) == columns * rows
     assert not any(one.intersection(other) for one, other in combinations(regions, 2))
     assert all(Region(0, 0, columns, rows).contains_region(region) for region in regions)
+
+
+async def test_a_click_on_an_event_goes_there_and_beside_them_opens_all():
+    async with lab(size=(90, 32)) as theatre:
+        await theatre.run(8)
+        listed = theatre.stage.query_one(EventList)
+        assert listed.text.splitlines()[1] == " 7.15 s Explicit Euler over th…"
+        await theatre.click(listed, 8, 2)
+        assert theatre.source.sample.t == pytest.approx(7.15)
+        for row in (0, 3):  # on the border, and below the last one
+            await theatre.click(listed, 5, row)
+            assert theatre.app.screen.title == "Events"
+            await theatre.press("escape")
 
 
 @pytest.mark.parametrize("fps", [5, 8, 10, 20, 30, 60])
@@ -30,6 +48,16 @@ def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps):
     for frame in range(1, 10 * fps + 1):
         pane.follow(frame, Shown(), frame * passed)
     assert len(drawn) == min(10 * fps, 10 * fps * passed // Pane.EVERY)
+
+
+def test_what_needs_numpy_is_drawn_after_the_first_paint():
+    view = View(Live(Scene()), Shown())
+    drawn = []
+    for pane in (Pane(), PhasePane()):
+        view.with_source(pane).draw = partial(drawn.append, type(pane))
+    view.follow(view.sample, Shown())
+    view._after_first_paint()
+    assert drawn == [Pane, Pane, PhasePane]
 
 
 def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():

@@ -5,7 +5,7 @@ from functools import partial
 import pytest
 from textual import events
 
-from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.scenes import SCENES, Line, Scene
 from pendu_tui.tui.views.phase import SectionPane
 from tests.tui.harness import lab, until
 
@@ -54,6 +54,10 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         assert str(pane.border_title).startswith("Phase space")
         await theatre.press("u", "u", "x")
         assert "E/Es" in pane.text
+        half = pane.viewport.up[1]
+        for quantity, size in (("omega", 3), ("theta_error", 1)):
+            pane.shown = pane.shown._replace(line=Line(quantity, -2 * half, "fence"))
+            assert pane.viewport.up[1] == pytest.approx(size * half, rel=0.2)
 
 
 async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():

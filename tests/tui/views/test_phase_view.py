@@ -93,6 +93,7 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
         assert (plot(pane), theatre.source.scene) == (plain, DRIFT)
         await theatre.press("left", "up")
         expected = tuple(pane.cursor)
+        assert viewport.x(expected[0]) == pytest.approx(viewport.x(1.0) - DOTS, abs=0.5)
         assert viewport.y(expected[1]) == pytest.approx(viewport.y(0.0) - DOTS, abs=0.5)
         await theatre.press("enter")
         assert state(theatre) == expected

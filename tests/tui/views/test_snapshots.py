@@ -74,7 +74,7 @@ async def test_panes_after_keys_and_pointers(snapshot):
         theatre.stage.post_message(Held(None))
         await theatre.pilot.hover(Stage)
         await theatre.press("+", "2", "e", "y", "o", "r")
-        await theatre.run(5)
+        await theatre.run(1)
         await note("ghost")
         await theatre.press("z")
         await note("zoomed ghost")

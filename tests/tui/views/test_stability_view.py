@@ -1,15 +1,17 @@
 """F5: the stability map under mouse and keyboard."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from textual.geometry import Size
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.studies.stability import UNKNOWN
+from pendu_tui.engine.studies.stability import UNKNOWN, pieces
 from pendu_tui.tui.views.stability import StabilityPane
-from tests.tui.harness import view_of
+from tests.tui.harness import until, view_of
 
 VERLET = 2  # in USUAL_CAST
 
@@ -31,15 +33,24 @@ async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen
             assert text in pane.text
         assert pane.here(VERLET) == (live.scene.z, 1.0)
         assert pane.text.count("@") == 4
-        assert "Velocity Verlet at h 0.0539 s, 58.1°: held" in pane.text
+        piece = next(pieces(pane.grid, (20,)))
+        for steps, done, words in (
+            (20, 1, "Computing 100 %. "),
+            (60, 0.5, "Computing 50 %. "),
+            (60, 1, ""),
+        ):
+            part = replace(piece.part, grid=replace(piece.part.grid, steps=steps))
+            pane.add(replace(piece, part=part, done=done))
+            pane.draw()
+            assert f"\n{words}Velocity Verlet at h 0.0539 s, 58.1°: held" in pane.text
 
 
 async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_it():
     async with stability_view() as (pilot, pane, live):
         z, theta = pane.aim(VERLET)
-        for _ in range(50):
-            pane.action_move(-1, -1)
-        assert pane.cursor == (0, 0)  # it stays on the map
+        for step, end in ((-99, (0, 0)), (99, (79, 47))):  # it stays on the map
+            pane.action_move(step, step)
+            assert pane.cursor == end
         await pilot.press("escape", *["right"] * 7, "up", "enter")
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
         assert (live.scene.theta, live.scene.omega) == (pane.grid.theta[theta + 1], 0)
@@ -47,6 +58,10 @@ async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_i
         assert pane.aim(VERLET) == (z + 7, theta + 1)
         await pilot.press("u")
         assert live.scene == SCENES["drift"]
+        live.start(SCENES["spin"])  # which has no amplitude
+        await until(pilot, lambda: pane.aim(VERLET) is None)
+        await pilot.press("right")
+        assert pane.cursor == (1, 0)
 
 
 async def test_a_click_starts_with_what_was_clicked_on():
@@ -58,6 +73,8 @@ async def test_a_click_starts_with_what_was_clicked_on():
         for column in (4, 1 + 38):  # on a label, and beside the map
             await pilot.hover(StabilityPane, offset=(column, 1 + lowest))
             assert pane.pointer is None
+        await pilot.hover(StabilityPane, offset=(1 + 7, 2))
+        assert "Explicit Euler at h 0.0419 s, 159°: over the top" in pane.text
         await pilot.press("right")
         await pilot.click(StabilityPane, offset=(1 + 38 + 2 + 6 + 16, 1 + lowest))
         assert pane.cursor is None
@@ -85,3 +102,5 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
 async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
     async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, _live):
         assert pane.text.startswith("3 v held elsewhere\n")
+        pane.room = Size(9, 5)
+        pane.draw()

@@ -93,10 +93,10 @@ def on_lane(theatre, place):
     return stage, (int(x) // 2 + 1, int(y) // 4 + 1)
 
 
-async def grabbed(theatre, *moves, wait=0.3):
+async def grabbed(theatre, *moves, start=(12, 9), wait=0.3):
     """Drag the stage over these cells of it, wait, and let it go."""
     stage = theatre.stage.query_one(Stage)
-    await theatre.pilot.mouse_down(stage, offset=(12, 9))
+    await theatre.pilot.mouse_down(stage, offset=start)
     for move in moves:
         await theatre.pilot.hover(stage, offset=move)
     await theatre.pilot.pause(wait)
@@ -113,7 +113,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         await theatre.run(2)
         before = theatre.source.sample
         # two dots right of the pivot and two below
-        held, table, below = await grabbed(theatre, (30, 9), (23, 12))
+        held, table, below = await grabbed(theatre, (30, 9), (23, 12), start=(22, 12))
         assert table.count("+0.785") == 4
         assert below == "let go or throw"
         scene = theatre.source.scene
