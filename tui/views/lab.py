@@ -166,8 +166,7 @@ class TimeChart(Pane):
         self.zoom(factor)
 
     def _point(self, event: events.MouseEvent) -> None:
-        offset = event.get_content_offset(self)
-        self.pointer = None if offset is None else offset.x
+        self.pointer = event.get_content_offset_capture(self).x
 
     def zoom(self, factor: float) -> None:
         """Zoom by `factor` about the pointer, down to 8 rows of the history."""

@@ -344,7 +344,7 @@ class Section:
         for each in range(x.shape[1]):
             at = inside[:, each]
             i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
-            if len(i) and self._near[j + GAP, i + GAP].mean() <= most:
+            if self._near[j + GAP, i + GAP].sum() <= most * len(i):
                 self._ground.scatter(i, j, faint(self._ink))
                 for right in range(2 * GAP + 1):
                     for down in range(2 * GAP + 1):

@@ -352,7 +352,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         column = right - frame.left
         row = down - 1
         number = 2 * below + across
-        is_inside = across in (0, 1) and 0 <= column < frame.columns and 0 <= row < frame.rows
+        is_inside = 0 <= column < frame.columns and 0 <= row < frame.rows
         is_mapped = is_inside and self.cast == self.grid.methods
         if not is_mapped or number not in range(len(self.places)):
             return None

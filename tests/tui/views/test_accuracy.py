@@ -41,17 +41,11 @@ def test_a_point_is_found_within_six_columns_or_three_rows():
 
 def test_the_slope_of_an_order_lies_below_its_first_method():
     scene = SCENES["drift"].with_cast((method_of("velocity_verlet"), method_of("heun")))
-    points = [*measured(scene, 5.0, RUNGS)]
-
-    def dotted(some):
-        return [
-            [*line.x, *line.y]
-            for line in accuracy_series(some, "theta", "evaluations", scene.cast)
-            if line.dotted
-        ]
-
-    assert dotted(points) == dotted([each for each in points if each.method == scene.cast[0]])
-    assert len(dotted(points)) == 1
+    lines = accuracy_series([*measured(scene, 5.0, RUNGS)], "theta", "evaluations", cast=scene.cast)
+    (slope,) = (line for line in lines if line.dotted)
+    assert slope.mark == "slope 2"
+    assert [*slope.x] == [RUNGS[0] + 1, RUNGS[-1] + 1]  # Heun's are twice as many
+    assert slope.y[0] / slope.y[1] == pytest.approx((501 / 26) ** 2)
 
 
 accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)

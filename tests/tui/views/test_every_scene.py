@@ -5,13 +5,12 @@ import re
 import pytest
 
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.cli.options import resolve
 from pendu_tui.tui.views import VIEWS
 from pendu_tui.tui.views.accuracy import AccuracyPane
 from pendu_tui.tui.views.phase import SectionPane
 from pendu_tui.tui.views.stability import StabilityPane
 from pendu_tui.tui.views.view import Pane
-from tests.tui.harness import key_of, lab, player
+from tests.tui.harness import key_of, lab
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 STIFF = SCENES["stiff-slow"]
@@ -54,16 +53,3 @@ async def test_a_view_that_a_scene_cannot_have_says_why_until_there_is_a_pendulu
         theatre.source.start(SCENES["gentle"])
         await theatre.run(0.5)
         assert "Maps and studies are for" not in theatre.text(pane)
-
-
-async def test_in_a_replay_a_place_is_chosen_that_a_live_run_goes_on_with_and_u_leads_back():
-    async with player(resolve("drift")) as theatre:
-        await theatre.press("space", "f3")
-        replay = theatre.source
-        await theatre.settled()
-        await theatre.press("right", "right", "enter")
-        live = theatre.source
-        assert live.kind == "LIVE"
-        assert (live.scene.theta, live.scene.h, live.stepping.h) != (1.0, 0.05, 0.05)
-        await theatre.press("u")
-        assert theatre.source is replay

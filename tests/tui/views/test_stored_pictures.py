@@ -12,7 +12,7 @@ from pendu_tui.engine.models.model import State
 from pendu_tui.engine.scenes import SCENES, Line
 from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.engine.studies.section import iterate
-from pendu_tui.tui.drawing.picture import NOBODY, PALETTES, Picture
+from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.shown import Shown, Stretch, quantities
 from pendu_tui.tui.views.error_table import table
 from pendu_tui.tui.views.lab import places, title
@@ -27,7 +27,6 @@ from pendu_tui.tui.views.portrait import (
     phase_picture,
     place_text,
 )
-from pendu_tui.tui.views.stability import legend
 from pendu_tui.tui.views.stage import Bob, Look, stage_picture
 from pendu_tui.tui.views.viewport import Viewport
 from tests.tui.drawn import look
@@ -144,9 +143,3 @@ def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, speed, joined)
     live.playhead.speed = speed
     points = method_points(live, live.sample, Shown(), None)
     assert {point.chords > 0 for point in points} == {joined}
-
-
-def test_the_legend_of_stability(snapshot):
-    words = [piece for row in legend(300, PALETTES["light"]) for piece in row]
-    texts = [f"{text} {ink if ink == NOBODY else ink.bgcolor.name}" for text, ink in words]
-    snapshot("legend.txt", "\n".join(texts) + "\n")
