@@ -163,11 +163,10 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         Scene(gravity=1e-6),
         Scene(omega=1e9, h=100.0),
     ],
-    ids=lambda scene: f"{scene.name} {scene.theta:g} {scene.omega:g} {scene.h:g}",
 )
 async def test_no_start_is_too_much_for_it(scene):
     async with phase_view(scene, "5", (80, 24)) as (theatre, pane):
-        await theatre.run(scene.h * 3 + 1 if scene.h < 10 else 1)
+        await theatre.run(1)
         theatre.source.step(500)
         pane.action_zoom(0.01)
         theatre.stage.show_now()
