@@ -1,29 +1,18 @@
-"""Where the lab's panes go at any size."""
+"""Panes of the lab: when they are drawn, words that fit, and clicks on events."""
 
 from functools import partial
-from itertools import combinations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from textual.geometry import Region, Size
+from textual.geometry import Size
 
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.lab import EventList, places
+from pendu_tui.tui.views.lab import EventList
 from pendu_tui.tui.views.phase import PhasePane
 from pendu_tui.tui.views.view import Pane, View
 from tests.tui.harness import lab
-
-
-@given(st.integers(60, 400), st.integers(4, 150))
-def test_panes_cover_the_view_and_never_each_other(columns, rows):
-    regions = places(columns, rows).values()
-    assert sum(region.area for region in regions) == columns * rows
-    assert not any(one.intersection(other) for one, other in combinations(regions, 2))
-    assert all(Region(0, 0, columns, rows).contains_region(region) for region in regions)
 
 
 async def test_a_click_on_an_event_goes_there_and_beside_them_opens_all():
