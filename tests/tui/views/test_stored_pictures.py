@@ -124,6 +124,8 @@ def test_phase_space(snapshot):
     alone = Shown(exact=True, hidden=frozenset(method.key for method in DRIFT.cast))
     points = method_points(live, live.sample, alone, None)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    for columns in (35, 36, 200):  # as many angles as there is room for, in pi
+        texts.append(look(Picture(framed(Viewport.portrait(columns, 1, DRIFT), Picture()))))
     snapshot("phase.txt", "\n".join(texts) + "\n")
 
 

@@ -8,8 +8,6 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import State
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.drawing.picture import TEXT, Picture
-from pendu_tui.tui.views.portrait import framed
 from pendu_tui.tui.views.viewport import Viewport
 
 DRIFT = SCENES["drift"]
@@ -43,19 +41,6 @@ def test_all_three_regimes_fit_whatever_the_start(scene):
     viewport = Viewport.portrait(40, 12, scene)
     assert 0 <= viewport.y(2 * scene.w0) < viewport.y(0.0) < viewport.y(-2 * scene.w0) < 48
     assert 0 <= viewport.y(scene.omega) < 48
-
-
-@pytest.mark.parametrize(
-    ("columns", "labels"),
-    [
-        (35, ["-pi", "0", "pi"]),
-        (36, ["-pi", "-pi/2", "0", "pi/2", "pi"]),
-        (200, ["-pi", "-pi/2", "0", "pi/2", "pi"]),
-    ],
-)
-def test_an_axis_has_as_many_angles_as_there_is_room_for_in_pi(columns, labels):
-    axis = framed(Viewport.portrait(columns, 4, DRIFT), Picture())[-1]
-    assert [text.strip() for text, ink in axis if ink == TEXT] == labels
 
 
 @given(st.floats(0.01, 100), st.floats(0, 80), st.floats(0, 48))
