@@ -22,7 +22,6 @@ from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.models import MODELS, NUMBERS
 from pendu_tui.engine.scenes import (
     DEFAULT_SCENE,
-    MAX_METHODS,
     SCENES,
     Line,
     Scene,
@@ -113,7 +112,7 @@ class _FieldError(InputError):
             found = pattern.search(text, start)
             if found:
                 start = found.end()
-        return f", line {text[:start].count(chr(10)) + 1}" if self.names else ""
+        return f", line {text[:start].count(chr(10)) + 1}"
 
 
 @contextmanager
@@ -162,7 +161,7 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
 
     try:
         text = path.read_text(encoding="utf-8-sig")
-        return text, tomllib.loads(text)
+        return text, _printable(tomllib.loads(text))
     except OSError as error:
         why = f"cannot read {path}: {error.strerror}."
     except (ValueError, RecursionError) as error:  # binary data, or an integer of 5,000 digits
@@ -198,9 +197,7 @@ def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def _cast_for(model: str) -> Cast:
-    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
-    suited = tuple(method for method in METHODS if model in method.models)
-    return next(casts, suited[:MAX_METHODS])
+    return next(scene.cast for scene in SCENES.values() if scene.model == model)
 
 
 def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
@@ -239,7 +236,7 @@ def _values(given: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, Any
             try:
                 if name in _READERS:
                     value = _READERS[name](str(value))
-                found[name] = _printable(msgspec.convert(value, types[name]))
+                found[name] = msgspec.convert(value, types[name])
             except msgspec.ValidationError as error:
                 raise InputError(f"{name}: {error}; use for example {_example(name)}.") from None
             except ValueError as error:  # of a reader
@@ -256,12 +253,13 @@ def _example(name: str) -> str:
 
 
 def _printable(value: Any) -> Any:
-    if isinstance(value, str):
-        return printable(value, MAX_TEXT)
-    if isinstance(value, (tuple, list)):
-        return type(value)(map(_printable, value))
-    if isinstance(value, Line):
-        return replace(value, name=printable(value.name, 40))
+    match value:
+        case str():
+            return printable(value, MAX_TEXT)
+        case list():
+            return [*map(_printable, value)]
+        case dict():
+            return {name: _printable(each) for name, each in value.items()}
     return value
 
 

@@ -69,7 +69,7 @@ def shown(kind: str, unit: str) -> str:
     for pattern, name in _OTHER_NAMES[kind]:
         if re.fullmatch(pattern, unit, re.IGNORECASE):
             return name
-    return unit.lower() if kind == "time" and unit.lower() in NANOSECONDS else unit
+    return unit.lower() if unit.lower() in NANOSECONDS else unit
 
 
 def plain(kind: str, unit: str) -> str:
@@ -79,7 +79,7 @@ def plain(kind: str, unit: str) -> str:
 
 
 def size(kind: str, unit: str) -> float:
-    """Return a unit of time in ns, of energy in kT at 1 K.  Raises UserError if it is not known."""
+    """Return a unit of time in ns, or kT at 1 K in a unit of energy.  Raises UserError."""
     name = plain(kind, unit)
     if not name:
         raise UserError(

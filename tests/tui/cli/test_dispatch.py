@@ -54,6 +54,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("zzz", 2, "there is no command or scene 'zzz'; pendu-tui --help lists them."),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),
+        ("stability --scene damped", 2, "no friction"),
         ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),
         ("run --resume=x", 2, DROPPED["run --resume"]),
         ("snapshot -x lab.svg", 2, "there is no option -x; pendu-tui snapshot --help"),

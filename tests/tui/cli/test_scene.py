@@ -36,10 +36,11 @@ def test_a_listed_scene_as_json_or_toml_is_read_to_the_last_bit(mine):
         again = read_scene(mine, scene_text(scene))
         assert again == replace(scene, often_said="")
         assert scene_text(scene).isascii() == scene.watch.isascii()
-        assert ("[shot]" in scene_text(scene)) == (scene.shot != Shot())
+        assert ("\n\n[shot]\n" in scene_text(scene)) == (scene.shot != Shot())
+        assert f"theta = {scene.theta!r}\n" in scene_text(scene)
         assert (again.speed, again.shot) == (scene.speed, scene.shot)
-    turned = SCENES["drift"].altered(theta=7.0)  # more than a turn, which needs a unit
-    assert read_scene(mine, scene_text(turned)).theta == 7.0
+    for theta in (7.0, -7.0):  # more than a turn, which needs a unit
+        assert read_scene(mine, scene_text(SCENES["drift"].altered(theta=theta))).theta == theta
 
 
 def test_without_methods_it_has_those_that_are_for_its_model(mine):
@@ -60,7 +61,10 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("h = 0.1\nmethods = []", "line 2: no method is given"),
         ("[shot]\nlog = true\nfront = ['rk5']", "line 3: there is no method 'rk5'"),
         (f"theta = {5000 * '['}", "is not TOML"),
-        *((text, "no scene") for text in ("# nothing", "scene = []", "scene = 1", "scene = [1]")),
+        *(
+            (text, "no scene")
+            for text in ("# nothing", "scene = []", "scene = 1", "scene = [{h = 1}, 1]")
+        ),
         (
             "[shot]\nseconds = 9\nlog = 1",
             "line 3: log: Expected `bool`, got `int`; use for example log = ",
@@ -70,6 +74,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
             "line 2: shot: Expected `object`, got `int`; use for example [shot]",
         ),
         ("[shot]\nvew = 'phase'", "line 2: there is no field 'vew': did you mean view?"),
+        ("[shot]\nquantity = 'eror'", "line 2: there is no quantity 'eror'"),
         ("[shot]\nview = 'phse'", "line 2: there is no view 'phse': did you mean phase?"),
         ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
@@ -112,6 +117,7 @@ LECTURE = """
 h = 0.2
 [[scene]]
 name = "kept"
+watch = "\\u001b"
 theta = "120deg"
 methods = ["rk4", "velocity_verlet"]
 
@@ -121,8 +127,12 @@ h = 0.1
 view = "phase"
 theta = "40deg"
 seconds = "30s"
-line = {quantity = "energy_error", value = 0.01, name = "1 %"}
+line = {quantity = "energy_error", value = 0.01, name = "\\u001b"}
 front = ["rk4"]
+moment = 1
+question = "Why?"
+answers = ["a", "\\u001b"]
+right = 2
 """
 
 
@@ -130,6 +140,8 @@ def test_a_listed_scene_gives_what_a_page_does_not_name(mine):
     scene = read_scene(mine, "from = 'crossover'\n[shot]\nlog = false")
     assert scene == SCENES["crossover"]
     assert (scene.speed, scene.shot) == (SCENES["crossover"].speed, Shot(log=False))
+    asked = "question = 'Why?'\nmoment = 1\nanswers = ['a', 'b', 'c', 'd']"
+    assert read_scene(mine, f"[shot]\nview = 'stability'\n{asked}").shot.right == 1
     other = read_scene(mine.with_name("b.toml"), "from = 'crossover'\ntheta = 2")
     assert (other.name, other.h, other.watch) == ("b", SCENES["crossover"].h, "")
 
@@ -140,7 +152,9 @@ def test_a_shot_names_what_differs_and_several_scenes_are_a_lesson(mine):
     assert (first.name, first.h) == ("kept", 0.2)
     assert (second.name, second.h) == ("mine-2", 0.1)
     assert first.shot == Shot()
-    assert second.shot.line == Line("energy_error", 0.01, "1 %")
+    steers = "\N{REPLACEMENT CHARACTER}"  # a terminal
+    assert first.watch == second.shot.answers[1] == steers
+    assert second.shot.line == Line("energy_error", 0.01, steers)
     assert (second.shot.view, second.shot.front) == ("phase", ("rk4",))
     assert (second.shot.theta, second.shot.seconds) == (math.radians(40), 30.0)
     assert pendu("run", "--scene", mine, "--time", "1", "--json").json["scene"]["name"] == "kept"
