@@ -137,9 +137,9 @@ class Judge:
             self.judgement = self._judgement()
         self._add_evidence(point)
 
-    def fail(self, steps: int) -> None:
-        """Note that the numbers have ended, so many steps after the start."""
-        self.judgement = Judgement(FAILED, periods=steps * self._h / self._period)
+    def fail(self) -> None:
+        """Note that the numbers have ended."""
+        self.judgement = Judgement(FAILED)
 
     @property
     def _swings(self) -> float:
@@ -155,7 +155,7 @@ class Judge:
 
     def _add_evidence(self, point: LookPoint) -> None:
         """Complete the judgement by what is known at each look point."""
-        found = self.judgement._replace(periods=self._swings, progress=None)
+        found = self.judgement._replace(periods=self._swings)
         if self._orbit:
             verdict = self._orbit.verdict(found.verdict, self.peak, self._swings)
             found = found._replace(verdict=verdict)
@@ -164,10 +164,10 @@ class Judge:
                 found = found._replace(lyapunov=lyapunov)
         elif not self._model.turns and point.error > levels.ESCAPED_ERROR:
             found = found._replace(verdict=GROWS)
-        if found.verdict != UNDECIDED:
-            found = found._replace(reason="")
-        elif progress := self.progress_at(self._last.step):
-            found = found._replace(progress=progress, reason=str(progress))
+        if found.verdict == UNDECIDED:
+            found = found._replace(progress=self.progress_at(self._last.step))
+        else:
+            found = found._replace(progress=None, reason="")
         self.judgement = found
 
     def _judgement(self) -> Judgement:

@@ -187,7 +187,7 @@ class Lockstep:
                 start = self._look_point(track)
                 judge = Judge(h, self.period, method=method, model=self._model, start=start)
                 if track.diverged_at is not None:
-                    judge.fail(0)
+                    judge.fail()
                 self._judges.append(judge)
         self._next_stop = self._following_stop()
 
@@ -210,7 +210,7 @@ class Lockstep:
                 track.diverged_at = self._t_base + (begin + done + 1) * h
                 track.is_watched = False
                 if self._judged:
-                    self._judges[index].fail(begin + done)
+                    self._judges[index].fail()
                     step = self.step + math.ceil((done + 1) / track.parts)
                     self._note(FAILED, index, step=step, t=track.diverged_at)
         self.step += n

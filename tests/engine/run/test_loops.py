@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from pendu_tui.engine.methods import GENERAL, RK4, VELOCITY_VERLET, method_of
+from pendu_tui.engine.methods import GENERAL, RK4, TAYLOR_20, VELOCITY_VERLET, method_of
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.run import loops as loops_module
 from pendu_tui.engine.run.loops import (
@@ -167,8 +167,11 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     assert used == compiled_steps
 
 
-def test_a_method_of_ones_own_is_never_compiled():
-    assert isinstance(compiled(load(VERLET), PENDULUM), PlainLoops)
+def test_what_numba_cannot_take_is_never_compiled():
+    damped = EXAMPLES["damped"].equations
+    plain = [(load(VERLET), PENDULUM), (RK4, damped), (method_of("verlet_compensated"), PENDULUM)]
+    assert all(isinstance(compiled(*each), PlainLoops) for each in plain)
+    assert not isinstance(compiled(TAYLOR_20, PENDULUM), PlainLoops)
 
 
 def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):

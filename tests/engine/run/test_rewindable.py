@@ -109,6 +109,9 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
         assert sample.run == 2
         assert phases(sample) == phases(straight(step, {100: 0.1, 2000: 0.02}))
         assert course.step_at(course.x) == step
+    again = RewindableRun(SCENE)
+    again.repeat(course.changes[1:], 4500)
+    assert phases(again.sample()) == phases(straight(4500, {100: 0.1, 2000: 0.02}))
 
 
 def test_an_error_on_the_way_leaves_the_run_where_it_was():
