@@ -64,9 +64,8 @@ class RewindableRun:
 
     def x_at(self, step: int) -> float:
         """Return the simulated time [s] on the way to a step."""
-        last = bisect_right(self.changes, step, key=attrgetter("step")) - 1
-        change = self.changes[last]
-        return change.x + (step - change.step) * abs(change.stepping.h)
+        last = self.changes[bisect_right(self.changes, step, key=attrgetter("step")) - 1]
+        return last.x + (step - last.step) * abs(last.stepping.h)
 
     @property
     def in_past(self) -> bool:
@@ -75,13 +74,9 @@ class RewindableRun:
 
     def step_at(self, x: float) -> int:
         """Return the last step that is not after x."""
-        following = max(bisect_right(self.changes, x, key=attrgetter("x")), 1)
-        last = self.changes[following - 1]
+        last = self.changes[bisect_right(self.changes, x, key=attrgetter("x")) - 1]
         # x is a sum of floats, and the step must not lag because of that
-        step = last.step + int((x - last.x) / abs(last.stepping.h) + 1e-6)
-        if following < len(self.changes):
-            return min(step, self.changes[following].step)
-        return step
+        return last.step + int((x - last.x) / abs(last.stepping.h) + 1e-6)
 
     @property
     def home(self) -> float:

@@ -93,14 +93,6 @@ def test_what_leaves_or_is_lost_is_told_at_the_end(method, scene, steps, ends):
     assert ["", *course(method, scene, steps)][-1] in ends
 
 
-def test_a_rotation_of_few_steps_a_turn_gets_no_early_verdict():
-    spin = Scene(theta=0.0, omega=2.2 * W0 / 0.1, h=0.1 / W0, cast=(R, E))
-    lockstep = moved(spin, [1000])
-    assert words(lockstep) == ["undecided", "undecided"]
-    lockstep.advance(5000)
-    assert words(lockstep) == ["loses", "grows"]
-
-
 @pytest.mark.parametrize("h", [0.02, 0.1, -0.05])
 def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
@@ -292,6 +284,14 @@ def test_an_error_that_beats_must_go_one_way_nine_times_in_ten(every, length, si
 def test_a_symplectic_method_comes_back():
     judgement = judge_of(1e-3 * np.arange(6000), method=method_of("verlet_compensated")).judgement
     assert (judgement.verdict, judgement.reason) == ("undecided", levels.RETURNS)
+    assert judge_of(1e-3 * np.arange(100), method=V).judgement.trend is None
+
+
+def test_a_verdict_by_a_theorem_stays_where_the_theorem_no_longer_holds():
+    judge = judge_of([0.0] * 200, method=FOREST_RUTH)
+    for step in range(200, 300):
+        judge.look(LookPoint(step, 0.0, 0.0, 0.0, omega=40.0))
+    assert judge.judgement.verdict == "bounded"
 
 
 def test_growth_is_that_of_the_logarithm_where_energy_is_multiplied_each_step():

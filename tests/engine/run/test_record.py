@@ -148,8 +148,6 @@ SIDES = {
     "SUSPECT": (lambda chance: with_chance(noise_of(200, 2), chance), {0.07: "bounded", 0.035: ""}),
     "MATERIAL": (lambda move: SINE + move * T / 100, {0.4: "bounded", 0.6: "grows"}),
     "LARGE": (lambda move: SLOW + move * T / 100, {0.0: "bounded", 2.0: ""}),
-    # the quarters' mean widths differ by 1.7 and by 4.8
-    "WIDENING": (lambda last: SINE * (1 + (last - 1) * T / 100), {2.0: "bounded", 8.0: ""}),
     "MIN_CYCLES": (lambda n: np.sin(math.tau * n * T / 100 + 1.3), {1.5: "", 2.5: "bounded"}),
     "GONE": (lambda far: np.where(T < 10, 0, far + SWING), {3: "", 7: "grows"}),
 }
