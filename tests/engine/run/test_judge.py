@@ -127,12 +127,6 @@ def test_other_models_have_their_verdicts(name, seconds, expected):
     assert {each.method.key: each.verdict for each in found}.items() >= expected.items()
 
 
-def test_a_bob_that_escapes_is_called_growing_within_half_a_second():
-    (escape,) = milestones(moved(SCENES["stiff-limit"], [20]), "verdict")
-    assert (escape.method.key, escape.verdict) == ("velocity_verlet", "grows")
-    assert escape.step <= 10
-
-
 @pytest.mark.parametrize("error", [-0.5, 0.5])
 @pytest.mark.parametrize(("share", "peak"), [(0.99, 0.0), (1.01, 0.5)])
 def test_a_damped_swing_and_the_true_one_count_from_1e5_roundings_on(error, share, peak):
@@ -194,7 +188,6 @@ def test_a_judge_looks_eight_times_a_period_or_a_vibration_at_every_h():
     for h in (0.001, -0.001):
         strides = [stride(0.8, h, model) for model in (Pendulum(1.0), stiff)]
         assert strides == [100, round(1000 * math.tau / stiff.fastest / 8)]
-    assert stride(0.8, 1.0, Pendulum(1.0)) == 1
 
 
 @pytest.mark.parametrize(
@@ -202,12 +195,10 @@ def test_a_judge_looks_eight_times_a_period_or_a_vibration_at_every_h():
     [(V, 3.15, True), *((FOREST_RUTH, turn, abs(turn) < 3.14) for turn in (3.13, 3.15, -3.15))],
 )
 def test_beyond_order_2_no_theorem_holds_from_half_a_turn_a_step_on(method, turn, is_regular):
-    h = -0.1 / W0
-    start = LookPoint(0, 0.0, 0.0, 0.0)
-    judge = Judge(h, 1.0, method=method, model=Scene().equations, start=start)
-    for step, omega in enumerate((turn / h, 0.0)):
-        judge.look(LookPoint(step + 1, 0.0, 0.0, 0.0, omega=omega))
-    assert judge._orbit.is_regular == is_regular
+    judge = judge_of([0.0], h=-0.1, method=method)
+    for step, rad in enumerate((turn, 0.0)):
+        judge.look(LookPoint(step + 1, 0.0, 0.0, 0.0, omega=rad / -0.1))
+    assert (judge.judgement.progress.need == 8) == is_regular
 
 
 @pytest.mark.parametrize(
@@ -384,10 +375,11 @@ def test_a_run_is_judged_when_it_is_an_eighth_longer():
     judgements = []
     for step in range(1, 160):
         slope = judge.judgement.slope
-        judge.look(LookPoint(step, *[1e-3 * step**2] * 3))
+        judge.look(LookPoint(step, step**2, 0.0, 2.0 * step**2))
         if judge.judgement.slope != slope:
             judgements.append(step)
     assert judgements == [64, 72, 82, 94, 106, 120, 136, 156]  # with bins of 2, then 4 looks
+    assert judge.judgement.slope == pytest.approx(156 / 0.1, rel=0.02)
 
 
 @pytest.mark.parametrize("name", ["gentle", "crossover", "spin", "damped", "stiff-limit"])
@@ -448,15 +440,11 @@ def test_rk4s_error_passes_verlets_once_for_good():
     assert {R, V} <= {each.method for each in milestones(lockstep, "verdict") if each.step <= 167}
 
 
-def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():
+def test_a_method_fails_once_and_for_good():
     lockstep = moved(Scene(model="linear", h=1.0), [600])
-    failed = {each.method: each.t for each in milestones(lockstep, "failed")}
-    readings = lockstep.sample().readings
-    ends = {m: r.diverged_at for m, r in zip(USUAL_CAST, readings, strict=True) if r.diverged_at}
-    assert failed == ends
-    assert failed
+    assert [each.method for each in milestones(lockstep, "failed")] == [S, V, E, R]
     lockstep.set_stepping(Stepping(0.5, cast=USUAL_CAST))
-    assert [word == "failed" for word in words(lockstep)] == [m in failed for m in USUAL_CAST]
+    assert words(lockstep) == ["failed"] * 4
 
 
 @pytest.mark.parametrize(
