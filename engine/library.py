@@ -210,23 +210,22 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     if finite < len(e):
         diverged_at = float(t[finite])
     e = _finite("energies", e[: max(finite, 1)])
-    judgement = judge_record(t[: len(e)], e, failed=diverged_at is not None)
     size = _size(e, scale)
-    scaled = judgement.scaled(1 / size)
-    if not math.isfinite(scaled.bound or 0):  # beyond doubles
-        scaled = scaled._replace(slope=None, uncertainty=None, bound=None)
+    found = judge_record(t[: len(e)], e, failed=diverged_at is not None).scaled(1 / size)
+    if not math.isfinite(found.bound or 0):  # beyond doubles
+        found = found._replace(slope=None, uncertainty=None, bound=None)
     return Judged(
-        verdict=judgement.verdict,
-        reason=judgement.reason,
-        slope=scaled.slope,
-        uncertainty=scaled.uncertainty,
-        bound=scaled.bound,
-        share=judgement.share,
-        rests=judgement.rests,
+        verdict=found.verdict,
+        reason=found.reason,
+        slope=found.slope,
+        uncertainty=found.uncertainty,
+        bound=found.bound,
+        share=found.share,
+        rests=found.rests,
         error=float(e[-1] - e[0]) / size,
         max_error=float(np.abs(e - e[0]).max()) / size,
-        fluctuation=scaled.fluctuation,
-        independent=judgement.independent,
+        fluctuation=found.fluctuation,
+        independent=found.independent,
         scale=size,
         diverged_at=diverged_at,
     )

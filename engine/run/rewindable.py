@@ -97,14 +97,13 @@ class RewindableRun:
     def forward(self, n: int) -> None:
         target = self.step + n
         while self.step < target:
-            while (
-                self._applied < len(self.changes) and self.changes[self._applied].step == self.step
-            ):
-                self.lockstep.set_stepping(self.changes[self._applied].stepping)
-                self._applied += 1
             stops = [target]
-            if self._applied < len(self.changes):
-                stops.append(self.changes[self._applied].step)
+            for change in self.changes[self._applied :]:
+                if change.step == self.step:
+                    self.lockstep.set_stepping(change.stepping)
+                    self._applied += 1
+                else:
+                    stops.append(change.step)
             if self.step < self._reset:
                 stops.append(self._reset)
             self.lockstep.advance(min(stops) - self.step)

@@ -336,6 +336,7 @@ def test_a_run_with_a_certain_trend_is_not_bounded_however_small_the_trend():
     wave = np.roll(BAND, 4) - 0.5  # from 0, so that its band never leaves the start
     trend = 2e-6 * np.arange(6000)  # to a hundredth of the band
     assert [told(wave + each)[0] for each in (0, trend)] == ["bounded", "undecided"]
+    assert told(-np.append(BAND, 4 * BAND[:2000])) == ("undecided", False)
     found = judge_of(wave[:4090] + 5).judgement
     assert found.fluctuation == pytest.approx(1 / math.sqrt(8), rel=0.01)
     assert found.reason == levels.SHORT
@@ -365,7 +366,7 @@ def test_a_band_has_left_the_start_by_half_its_width(sign, word):
 def test_a_word_is_kept_until_a_quarter_of_its_band_is_beyond_the_start(share, sign, word):
     rise = 3e-3 * np.arange(640)
     amplitude = rise[-1] / (1 - share) / 2
-    wave = rise[-1] - amplitude + amplitude * np.cos(math.tau * np.arange(1400) / 100)
+    wave = rise[-1] - amplitude + amplitude * np.cos(math.tau * np.arange(700) / 100)
     found = judge_of(sign * np.append(rise, wave)).judgement
     assert str(found) == word if share < 0.25 else found.verdict == "undecided"
 
