@@ -49,7 +49,15 @@ class Stepping(NamedTuple):
 
     def next(self, up: bool) -> Self:
         """Return the stepping whose smallest own |h| is the next or previous of 1, 2, 5, 10, …"""
-        return self.with_smallest(_next_rung(self.smallest, up))
+        size = self.smallest
+        decade = math.floor(math.log10(size))
+        powers = (decade - 1, decade, decade + 1)
+        ladder = [digit * 10.0**power for power in powers for digit in (1, 2, 5)]
+        if up:
+            rung = min(rung for rung in ladder if rung > size * (1 + 1e-9))
+        else:
+            rung = max(rung for rung in ladder if rung < size * (1 - 1e-9))
+        return self.with_smallest(float(f"{rung:.1g}"))
 
     def with_smallest(self, h: float) -> Self:
         """Return the stepping whose smallest own |h| [s] is the given one."""
@@ -91,16 +99,3 @@ class SteppingChange(NamedTuple):
 def change_before(changes: Sequence[SteppingChange], step: int) -> SteppingChange:
     """Return the change that was in force on the way to a step."""
     return changes[max(bisect_left(changes, step, key=attrgetter("step")), 1) - 1]
-
-
-def _next_rung(size: float, up: bool) -> float:
-    """Return the next of 1, 2, 5, 10, … above or below a size."""
-    decade = math.floor(math.log10(size))
-    ladder = [
-        digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)
-    ]
-    if up:
-        rung = min(rung for rung in ladder if rung > size * (1 + 1e-9))
-    else:
-        rung = max(rung for rung in ladder if rung < size * (1 - 1e-9))
-    return float(f"{rung:.1g}")
