@@ -211,9 +211,9 @@ class Judge:
     def _doubt(self, verdict: str, is_away: bool) -> str:
         """Return why a verdict of the core does not hold for this run; "" if it does."""
         is_long = self._last.step >= levels.LONG
-        rises = [a.low + a.high < b.low + b.high for a, b in pairwise(self._bins)]
-        falls = len(rises) - sum(rises)
-        is_straight = max(sum(rises), falls) >= levels.MIN_ONE_WAY * len(rises)
+        moves = len(self._bins) - 1
+        rises = sum(a.low + a.high < b.low + b.high for a, b in pairwise(self._bins))
+        is_straight = max(rises, moves - rises) >= levels.MIN_ONE_WAY * moves
         if self._may_beat and not (is_long and is_straight):
             return levels.BEATS
         if verdict in LEAVES and self._method.symplectic:

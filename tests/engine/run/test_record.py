@@ -31,7 +31,6 @@ def noise_of(times: float, seed: int = 1, count: int = 2000):
 MAKES = {
     "noise": (NOISE, "bounded"),
     "a wobble": (SINE, "bounded"),
-    "a constant": (0 * T, "bounded"),
     "rounding": (1e-10 * NOISE, "bounded"),
     "last digits": (np.round(0.3 * NOISE), "bounded"),
     "a first sample near": (np.where(T > 0, 3 + NOISE, 0), "bounded"),
@@ -78,8 +77,6 @@ def test_what_has_left_its_start_and_rests_has_the_slope_of_the_rest(name):
         found = judge_record(T, 1000 + sign * RESTING[name])
         assert (found.verdict, found.rests) == (verdict, True)
         assert abs(found.slope) < 3 * found.uncertainty
-        if name == "a first sample far from the others":
-            assert found.independent > 1200
 
 
 @pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a walk"])
