@@ -129,7 +129,7 @@ class Canvas:
             length = np.where(steep, dy, dx)
             first = np.floor(np.minimum(start, start + length)).clip(0)
             last = np.floor(np.maximum(start, start + length))
-            last = last.clip(max=np.where(steep, self.height, self.width) - 1)
+            last = last.clip(max=np.where(steep, self.height, self.width))
             counts = (
                 np.where(np.isfinite(dx) & np.isfinite(dy), last - first + 1, 0)
                 .clip(0)

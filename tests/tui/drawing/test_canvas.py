@@ -138,6 +138,7 @@ def test_trails_in_one_place_are_all_seen(end):
 def test_a_letter_stands_where_no_other_method_is():
     canvas = Canvas(3, 1)
     canvas.points([(0, 0)], 1)
+    canvas.points([], 2)
     canvas.points([(2, 0)], 0)
     canvas.points([(2, 1)], faint(1))
     canvas.label_near([(0, 0), (1, 0), (2, 0)], "e", 0)
@@ -162,8 +163,11 @@ def test_a_line_has_one_dot_in_each_column_of_dots_or_row_where_it_is_steep():
         "⠉⠑⠒⠢⠤⣀⡀\n      ⠈⠉⠑⡲\n       ⢀⠎"
     )
     assert drawn(lambda canvas: canvas.line(0, 0, 12, 0, 0, dotted=True), 6, 1).text == "⠁⠈ ⠁⠈"
+    assert drawn(lambda canvas: canvas.line(12, 0, 0, 0, 0, dotted=True), 6, 1).text == " ⠁⠈ ⠁⠈"
 
 
+@example((0.875, 0.125, 1.875, 1.0))  # its first dot is beyond its end
+@example((1.875, 1.0, 0.875, 0.125))
 @given(ENDS)
 def test_the_dots_of_a_line_touch_each_other_and_the_line(ends):
     """On a canvas large enough for all of it."""
@@ -197,24 +201,27 @@ def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
 
 
 @pytest.mark.parametrize(
-    ("x", "radius", "hollow", "text"),
+    ("x", "y", "radius", "hollow", "text"),
     [
-        (6, 4, False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"),
-        (6, 4, True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊"),
-        (6, 2, True, "\n  ⢰⣲\n"),
-        (-2, 4, False, "⡀\n⣿\n⠋"),
-        (13, 4, False, "     ⢀\n     ⣿\n     ⠙"),
+        (6, 6, 4, False, "  ⣀⣀⡀\n ⢸⣿⣿⣿\n ⠈⠛⠛⠋"),
+        (6, 6, 4, True, "  ⣀⣀⡀\n ⢸  ⢸\n ⠈⠒⠒⠊"),
+        (6, 6, 2, True, "\n  ⢰⣲\n"),
+        (6, 6, 2.5, False, "\n  ⣾⣿⡆\n  ⠈⠉"),
+        (-2, 6, 4, False, "⡀\n⣿\n⠋"),
+        (13, 6, 4, False, "     ⢀\n     ⣿\n     ⠙"),
+        (6, -2, 4, False, " ⠈⠛⠛⠋\n\n"),
+        (6, 14, 4, False, "\n\n  ⣀⣀⡀"),
     ],
 )
-def test_a_disc_is_round_because_dots_are_square(x, radius, hollow, text):
-    assert drawn(lambda canvas: canvas.disc(x, 6, radius, 0, hollow=hollow), 6, 3).text == text
+def test_a_disc_is_round_because_dots_are_square(x, y, radius, hollow, text):
+    assert drawn(lambda canvas: canvas.disc(x, y, radius, 0, hollow=hollow), 6, 3).text == text
 
 
 def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
     canvas = Canvas(6, 1)
-    canvas.label(3, 0, "label", 1)
+    canvas.label(3, 0, " abel", 1)
     canvas.line(0, 0, 12, 0, 0)
-    assert canvas.picture().rows == ((("⠉⠉⠉", 0), ("lab", 1)),)
+    assert canvas.picture().rows == ((("⠉⠉⠉ ", 0), ("ab", 1)),)
     assert [canvas.is_free(column, 0) for column in (-1, 0, 2, 3, 6)] == [False, True, True] + [
         False
     ] * 2
@@ -239,5 +246,8 @@ def test_pictures_are_compared_row_by_row():
     assert list(new.changes(old, 6)) == [(0, 4, 1)]  # "abcx" is sent
     assert list(new.changes(old, 8)) == [(0, 8, 0)]  # up to the end, where a row may be wide
     assert list(new.changes(new, 6)) == []
+    longer = Picture(((("abc", 1), ("xyz", 2), ("ef", 3)),))
+    assert list(longer.changes(old, 8)) == [(0, 8, 0)]  # the end moves
     assert Canvas(0, 2).picture().text == "\n"
     assert Picture.of_text("a b", 2, 7).text == "\n\na\nb\n\n\n"
+    assert Picture.of_text("a b", 0, 1).text == "a"  # before it is laid out

@@ -18,6 +18,7 @@ from pendu_tui.tui.drawing.picture import (
     TEXT,
     WARN,
     Picture,
+    faint,
     ink_of,
     inks,
     lines_of,
@@ -106,6 +107,7 @@ def test_the_classics_have_the_same_ink_in_every_cast_and_the_others_the_next_fr
     assert ink_of(rk4, ()) == 3
     assert mark(0, rk4) == "1 r"
     assert ink_of(respa, USUAL_CAST) == QUIET
+    assert [faint(ink) for ink in (0, 3, EXACT)] == [FAINT, FAINT + 3, EXACT]
     for scene in SCENES.values():  # adding a method changes nobody's
         *before, last = inks((*scene.cast, replace(respa, key="new")))
         assert tuple(before) == inks(scene.cast)
