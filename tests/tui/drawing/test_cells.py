@@ -3,8 +3,11 @@
 from typing import ClassVar
 
 from rich.cells import cell_len
+from rich.segment import Segment
 from rich.style import Style
 from textual.app import App, ComposeResult
+from textual.filter import LineFilter
+from textual.geometry import Region
 from textual.strip import Strip
 
 from pendu_tui.tui.drawing.cells import CellWidget
@@ -24,9 +27,19 @@ class Drawn(CellWidget):
         return self.painted
 
 
+class Loud(LineFilter):
+    def apply(self, segments, background):
+        return [Segment(text.upper(), style) for text, style, _ in segments]
+
+
 class CellApp(App[None]):
+    filters: ClassVar[list[LineFilter]] = []
+
     def compose(self) -> ComposeResult:
         yield Drawn()
+
+    def get_line_filters(self):
+        return self.filters
 
 
 async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew():
@@ -52,11 +65,10 @@ async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew(
         assert x.style.bgcolor == y.style.bgcolor
         app.theme = "textual-light"
         await pilot.pause()
-        cells.draw()
-        assert next(iter(cells.render_line(0))).style.color.name == PALETTES["light"].text.lower()
+        assert [*cells.painted[0]][1].style.color.name == PALETTES["light"].text.lower()
 
 
-async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it():
+async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it(monkeypatch):
     app = CellApp()
     async with app.run_test(size=(8, 3)) as pilot:
         cells = app.query_one(Drawn)
@@ -73,3 +85,21 @@ async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it():
         cells.show(Picture([[("世bcdef", TEXT)]]))
         await pilot.pause()
         assert cells.painted[1].text == "│世bcde│"
+        monkeypatch.setattr(CellApp, "filters", [Loud()])
+        app.refresh_css(animate=False)
+        await pilot.pause()
+        for text in ("loud", "more"):
+            cells.show(Picture([[(text, TEXT)]]))
+            await pilot.pause()
+            assert cells.painted[1].text == f"│{text.upper()}  │"
+        for text in ("part", "next"):
+            cells.show(Picture([[(text, TEXT)]]))
+            lines = cells.render_lines(Region(0, 1, 8, 2))
+            assert [each.text for each in lines] == [f"│{text.upper()}  │", "╰──────╯"]
+        (line,) = cells.render_lines(Region(0, 0, 8, 1))
+        assert line.text == "╭──────╮"
+        cells.display = False
+        await pilot.pause()
+        cells.display = True
+        await pilot.pause()
+        assert cells.text == "6x1"  # drawn anew

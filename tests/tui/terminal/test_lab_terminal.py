@@ -179,19 +179,3 @@ def test_a_bug_ends_the_lab_with_a_traceback_and_its_recording_is_finished(libra
     assert "replay it with" in printed
     assert "ZeroDivisionError: in the lab" in printed
     assert whole(library)
-
-
-FULL = """
-import errno
-from pendu_tui.recordings import recorder
-def full(path): raise recorder.DiskError("the disk is full", path, errno.ENOSPC)
-recorder.LiveRecorder = full
-"""
-
-
-def test_a_lab_that_cannot_record_after_all_ends_with_a_sentence(library):
-    with lab(library, program=program(FULL)) as session:
-        assert session.end() == 5
-        printed = session.output.decode().rpartition("\x1b[")[2]
-    assert printed.count("pendu-tui: ") == 1
-    assert "the disk is full; free some space" in " ".join(printed.split())
