@@ -41,22 +41,14 @@ def front_words(found: Sequence[Cheapest], cost: Cost) -> str:
     """Name the cheapest method in each range of errors."""
     if not found:
         return "No power of ten lies between the errors of the coarsest and finest runs."
-    return f"Cheapest in {COSTS[cost]}: {_spans(found)}."
-
-
-def _spans(found: Sequence[Cheapest]) -> str:
     spans = []
     for method, some in groupby(found, key=lambda one: one.method):
-        powers = [_power(one.target) for one in some]
-        if len(powers) == 1:
-            spans.append(f"{method.label} at {powers[0]}")
-        else:
-            spans.append(f"{method.label} from {powers[0]} to {powers[-1]}")
-    return ", ".join(spans)
-
-
-def _power(target: float) -> str:
-    return f"1e{round(math.log10(target))}"
+        first, *others = [f"1e{round(math.log10(one.target))}" for one in some]
+        span = f"at {first}"
+        if others:
+            span = f"from {first} to {others[-1]}"
+        spans.append(f"{method.label} {span}")
+    return f"Cheapest in {COSTS[cost]}: {', '.join(spans)}."
 
 
 MAX_DRIFT = 1e-3  # relative change of the energy; with more an orbit is a spiral

@@ -3,7 +3,7 @@
 import io
 import itertools
 
-from pendu_tui.tui.cli.errors import progress, warn
+from pendu_tui.tui.cli.errors import progress, say, warn
 
 
 class Terminal(io.StringIO):
@@ -25,16 +25,19 @@ def test_a_terminal_shows_a_bar_and_the_time_left_for_work_of_more_than_a_second
     bar = shown(Terminal(), 0.5, monkeypatch)
     assert all(words in bar for words in ("[b]working", " 80%", "left"))
     assert bar.endswith("\x1b[2K")  # it goes at the end
+    assert bar.count("\x1b[?25l") == 1
     assert shown(Terminal(), 0.1, monkeypatch) == ""
     assert shown(io.StringIO(), 0.5, monkeypatch) == ""
 
 
 def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
-    sentence = "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter."
+    sentence = f"{'x' * 30}.mcap would be reduced by --sample-every 4 to a quarter of its size."
     monkeypatch.setenv("COLUMNS", "30")
     warn(sentence)
     assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"
     monkeypatch.setattr("sys.stderr", terminal := Terminal())
     warn(sentence)
     lines = terminal.getvalue().splitlines()
-    assert (max(map(len, lines)) <= 30, " ".join(lines)) == (True, f"pendu-tui: {sentence}")
+    assert (len(lines), " ".join(lines)) == (5, f"pendu-tui: {sentence}")
+    say("\x1b[2J\n1")
+    assert capsys.readouterr().out == "\N{REPLACEMENT CHARACTER}[2J\n1\n"

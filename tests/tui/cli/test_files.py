@@ -18,9 +18,9 @@ from pendu_tui.recordings.files import GOLDEN, RecordingError
 from pendu_tui.recordings.system import ENDING
 from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.errors import explained
-from pendu_tui.tui.cli.files import text_file, whole_file
+from pendu_tui.tui.cli.files import stop_requests, text_file, whole_file
 from pendu_tui.tui.cli.options import resolve
-from tests.tui.command_line import pendu
+from tests.tui.command_line import needs_signals, pendu
 
 EXPORT = ("export", "drift", "-o")
 
@@ -28,6 +28,7 @@ EXPORT = ("export", "drift", "-o")
 def write(file: Path, after, force: bool = False) -> None:
     with whole_file(file, force) as meanwhile:
         meanwhile.write_text("half")
+        assert meanwhile.parent.match(f"{file.parent}/.pendu-*")
         assert not file.exists() or file.read_text() == "older"
         after()
 
@@ -57,7 +58,20 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
     assert error is not OSError or str(raised.value) == f"{file}: full"
     assert file.read_text() == "older"
     assert list(tmp_path.iterdir()) == [file]
-    assert signal.getsignal(SIGTERM) is before
+    assert signal.getsignal(SIGTERM) is before is signal.SIG_DFL
+
+
+@needs_signals
+def test_a_second_signal_interrupts_and_one_that_is_ignored_stays_so_as_under_nohup():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    with stop_requests() as stopped:
+        signal.raise_signal(signal.SIGHUP)
+        assert not stopped()
+        signal.raise_signal(SIGTERM)
+        assert stopped()
+        with pytest.raises(KeyboardInterrupt):
+            ask_to_end(SIGTERM)
+    signal.signal(signal.SIGHUP, before)
 
 
 def test_the_program_itself_notices_interrupts_that_a_callback_swallows(monkeypatch):
@@ -70,8 +84,11 @@ def test_the_program_itself_notices_interrupts_that_a_callback_swallows(monkeypa
 
 
 def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
-    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    others = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda other: others.append(other.exc_type))
     repeat_swallowed_interrupts()
+    ctypes.CFUNCTYPE(None)(lambda: 1 / 0)()
+    assert others == [ZeroDivisionError]
 
     def wait():
         ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(SIGINT))()  # swallows it
@@ -92,6 +109,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
     ],
 )
 def test_an_error_of_a_file_comes_with_advice(number, advice):
+    assert str(explained(OSError("full"))) == "output: full."
     found = explained(OSError(number, "why", "x.csv"))
     assert (found.code, str(found)) == (5, f"x.csv: why; {advice}.")
     assert explained(MemoryError()).code == 3

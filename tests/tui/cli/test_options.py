@@ -3,8 +3,6 @@
 import re
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
@@ -65,12 +63,6 @@ def test_the_text_of_an_option_is_its_value_or_refused(read, text, value):
         return
     with pytest.raises(ValueError, match=re.escape(value or repr(text))):
         read(text)
-
-
-@given(st.floats(-1e9, 1e9))
-def test_every_finite_theta_and_omega_can_be_given(value):
-    scene = scene_from("--theta", f"{value!r}rad", "--omega", repr(value))
-    assert (scene.theta, scene.omega) == (value, value)
 
 
 @pytest.mark.parametrize("text", ["-1", "-1e-3", "-.5", "-0", "-pi/2", "-π/2"])

@@ -3,7 +3,7 @@
 import argparse
 import os
 import sys
-from functools import partial
+from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -40,6 +40,7 @@ def interrupted(error: BaseException, done: int, output: Path | None = None) -> 
     ],
 )
 def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code, tmp_path, capsys):
+    assert interrupted(error, done=1).conclude() == code
     assert interrupted(error, done=1, output=tmp_path / "new.csv").conclude() == code
     assert capsys.readouterr().err.endswith(": 33 % of the runs are done and kept.\n")
     with pytest.raises(type(error)):
@@ -68,11 +69,12 @@ def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monke
     child = SimpleNamespace(terminate=lambda: ended.append("one"))
     ended = []
     monkeypatch.setattr(workers, "active_children", lambda: [child])
-    for asked, processors, count in ((2, 3, 2), (1000, 3, 12), (1000, 64, 61)):
-        monkeypatch.setattr(os, "cpu_count", partial(int, processors))
+    for asked, processors, count in ((2, 3, 2), (99, 3, 12), (99, 64, 61), (99, None, 4)):
+        monkeypatch.setattr(os, "cpu_count", repeat(processors).__next__)
         outcome = pendu(*RUNS, "--workers", asked)
         assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
-    assert ended == ["one"] * 3
+    assert ended == ["one"] * 4
+    assert pendu(*RUNS, "--workers", 1).code == 0
 
 
 @pytest.mark.slow

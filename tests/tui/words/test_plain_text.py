@@ -106,13 +106,14 @@ def test_a_lesson_gives_time_to_read_asks_at_its_moment_answers_and_ends():
     told = []
     page = tour().page
     begin = clock.now
-    live = Live(DRIFT, clock=clock.read)
+    live = Live(SCENES["spin"], clock=clock.read)
 
     def emit(sentence):
         told.append((clock.now - begin, sentence))
 
     lesson = Lesson("Page", [DRIFT, page])
     tell(live, emit, lambda: clock.now > begin + 60, clock.read, clock.sleep, lesson=lesson)
+    assert 'the scene "drift"' in told[0][1]
     asked = next(at for at, sentence in told if page.shot.question in sentence)
     answered = next(at for at, sentence in told if page.shot.truth in sentence)
     times = (READING + page.shot.moment, READING, READING)

@@ -42,7 +42,10 @@ MAX = 1e-3  # relative drift of a slow spiral
         (RK4, replace(REGULAR, drift=0.3), ["spirals outwards", "6.3267 steps", "1:6"]),
         (RK4, replace(REGULAR, drift=-0.9 * MAX), ["A slow spiral"]),
         (RK4, replace(REGULAR, drift=-1.1 * MAX), ["spirals inwards"]),
-        (VELOCITY_VERLET, replace(REGULAR, drift=-1.1 * MAX), ["Regular"]),
+        (
+            *(VELOCITY_VERLET, replace(REGULAR, drift=-1.1 * MAX, rotation=-REGULAR.rotation)),
+            ["Regular: 6.3267 steps a turn, nearest 1:6."],
+        ),
     ],
 )
 def test_the_orbit_in_a_sentence(method, kind, parts):
