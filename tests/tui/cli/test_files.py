@@ -178,15 +178,6 @@ def test_a_text_has_the_same_bytes_on_every_system(tmp_path):
     assert (tmp_path / "data").read_bytes() == "θ\n".encode()
 
 
-def test_two_commands_may_write_the_same_name_at_once(tmp_path):
-    file = tmp_path / "data"
-    with whole_file(file, force=True) as one, whole_file(file, force=True) as other:
-        one.write_text("1")
-        other.write_text("2")
-    assert file.read_text() == "1"
-    assert list(tmp_path.iterdir()) == [file]
-
-
 @pytest.mark.parametrize(
     "command",
     [
