@@ -61,7 +61,7 @@ class Neighbourhood:
 
     def advance(self, n: int, stepping: Stepping) -> None:
         """Carry everything forward by n steps of the lockstep."""
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             for carried, part in zip(self._carried, stepping.parts, strict=True):
                 if not carried.lost:
                     self._carry(carried, n * part, stepping.h / part)
@@ -77,7 +77,7 @@ class Neighbourhood:
                 phase = next(phases)
                 ring = next(rings)
                 log_area = carried.log_area + math.log(abs(determinant))
-                if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):
+                if not (math.isfinite(log_area) and np.isfinite(ring).all()):
                     raise OverflowError
                 carried.phase = phase
                 carried.ring = ring
@@ -96,7 +96,6 @@ class Neighbours:
         self.radius = radius  # rad
         self.step = 0
         self._begun: tuple[Scene, int] | None = None
-        self._taken: list[SteppingChange] = []  # the changes already applied
         self._ring: Neighbourhood | None = None
 
     def ring_of(self, scene: Scene, run: int) -> Neighbourhood | None:
@@ -108,18 +107,17 @@ class Neighbours:
     ) -> Neighbourhood:
         """Carry the ring towards a step of a run, by at most `most` steps.
 
-        `changes` are all of the run's, in order.
+        `changes` are all of the run's, in order; those of its past stay, since a branch is another.
         """
-        past = [change for change in changes if change.step < self.step]
-        continues = self._begun == (scene, run) and step >= self.step and past == self._taken
-        if self._ring is None or not continues:
-            self._ring = Neighbourhood(scene, self.radius)
+        ring = self.ring_of(scene, run)
+        if ring is None or step < self.step:
+            ring = Neighbourhood(scene, self.radius)
+            self._ring = ring
             self._begun = (scene, run)
             self.step = 0
         target = min(step, self.step + most)
         while self.step < target:
             stop = min([target, *(change.step for change in changes if change.step > self.step)])
-            self._ring.advance(stop - self.step, change_before(changes, stop).stepping)
+            ring.advance(stop - self.step, change_before(changes, stop).stepping)
             self.step = stop
-        self._taken = [change for change in changes if change.step < self.step]
-        return self._ring
+        return ring
