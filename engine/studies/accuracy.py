@@ -268,12 +268,10 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
     if first is None or not (high := cost_of(line[first], cost)):
         return None
     below = line[first].errors[kind]
-    if not first or not below:
+    above = line[first - 1].errors[kind]
+    if not below or not target < above < math.inf:
         return high
     low = cost_of(line[first - 1], cost)
-    above = line[first - 1].errors[kind]
-    if not low or not target < above < math.inf:
-        return high
     share = math.log(above / target) / math.log(above / below)
     return float(low * (high / low) ** share)
 
@@ -295,8 +293,6 @@ def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     """
     epsilon = sys.float_info.epsilon
     exact = scene.exact()
-    if exact.regime == "equilibrium":
-        return epsilon, epsilon
     swing = ((exact.period or time) * sample / 400 for sample in range(401))
     start = max(map(exact.at, swing), key=lambda state: abs(state.omega))
     moving = scene.altered(theta=start.theta, omega=start.omega).exact()

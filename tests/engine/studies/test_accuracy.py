@@ -13,6 +13,7 @@ from pendu_tui.engine.methods import GENERAL, TAYLOR_20, USUAL_CAST, Method, met
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.engine.run.loops import PlainLoops, compiled, count_evaluations
 from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.studies import accuracy
 from pendu_tui.engine.studies.accuracy import (
     Point,
     Study,
@@ -68,7 +69,7 @@ def test_a_failed_run_is_kept_with_its_flaw():
         yield math.nan, math.nan
 
     lost = Study(DRIFT, 20.0).run(E, 100)
-    failed = Study(DRIFT, 1.0).run(replace(V, key="failing", phases=failing), 1000)
+    failed = Study(DRIFT, 1.0).run(replace(V, key="failing", phases=failing, varies=True), 1000)
     assert lost.errors["theta"] > math.pi
     assert lost.errors["energy"] > 1 > failed.errors["energy"]
     for point in (lost, failed):
@@ -111,9 +112,12 @@ def test_by_default_ten_small_swings_take_up_to_four_thousand_steps_each(
     assert len(steps) == rungs
     z = [time / steps[end] * DRIFT.w0 for end in (0, -1)]
     assert z == pytest.approx([largest, 0.0015], rel=0.02)  # whole steps
+    short = ladder(0.01, 0.01, 0.0015 / DRIFT.w0, rungs)
+    assert usual(DRIFT, all_methods, 0.01) == (0.01, short)
 
 
-def test_seconds_are_the_shortest_of_five_of_many_steps_with_their_spread():
+@pytest.mark.parametrize(("steps", "runs"), [(100, 200), (15_000, 1), (30_000, 1)])
+def test_seconds_are_the_shortest_of_five_of_20000_steps_or_more_with_their_spread(steps, runs):
     calls, lengths = [], [5.0, 3.0, 4.0, 6.0, 3.5]
 
     class Counting:
@@ -123,14 +127,13 @@ def test_seconds_are_the_shortest_of_five_of_many_steps_with_their_spread():
         def propagate(self, phase, h, n):
             calls.append(n)
 
-    def clock():  # each of 200 runs of 100 steps takes a 200th of the measurement
-        done = (len(calls) - 1) / 200
+    def clock():
+        done = (len(calls) - 1) / runs
         return sum(lengths[: int(done)])
 
-    point = Study(DRIFT, 10.0).run(R, 100)
-    found = timed(point, DRIFT, clock, Counting)
-    assert calls == 1001 * [100]  # 20 000 steps a measurement
-    assert (found.seconds, found.spread) == pytest.approx((3.0 / 200, 1.0))
+    found = timed(at(R, steps, 0.1), DRIFT, clock, Counting)
+    assert calls == (5 * runs + 1) * [steps]
+    assert (found.seconds, found.spread) == pytest.approx((3.0 / runs, 1.0))
 
 
 def test_with_all_methods_each_general_one_is_there_once_and_the_cast_first():
@@ -146,10 +149,12 @@ def test_a_scene_at_rest_has_no_errors():
     assert {error for point in points for error in point.errors.values()} == {0.0}
 
 
-def test_only_if_all_methods_can_be_compiled_are_they_timed_so():
+def test_only_if_all_methods_can_be_compiled_are_they_timed_so(monkeypatch):
     fields = {each.name: getattr(R, each.name) for each in dataclasses.fields(Method)}
     assert compilable((E, R))
     assert not compilable((E, OwnMethod(**fields, measured=None, source="", file="")))
+    monkeypatch.setattr(accuracy, "available", lambda: False)
+    assert not compilable((E, R))
 
 
 def at(method, steps, error, seconds=None, flaw=None):
@@ -173,6 +178,11 @@ def test_a_point_knows_its_step_in_each_unit():
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
     assert cost_at(LINES[:4], "theta", "evaluations", 1.0) == 4 * 10
+    for coarser, finer in (
+        (0.1, 0.0),
+        (math.inf, 1e-3),
+    ):
+        assert cost_at([at(R, 10, coarser), at(R, 20, finer)], "theta", "evaluations", 0.01) == 80
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
     assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
     assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
@@ -180,7 +190,7 @@ def test_an_error_that_no_useful_point_reaches_has_no_cost():
 
 
 def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
-    found = front(LINES, "theta", "evaluations")
+    found = front(LINES[::-1], "theta", "evaluations")
     assert [cut.target for cut in found] == pytest.approx([10.0**-n for n in range(1, 13)])
     for one in found:
         rk4, bm6 = 40 * one.target ** -(1 / 4), 11 * 10 * one.target ** -(1 / 6)
@@ -205,3 +215,4 @@ def test_evaluations_that_vary_are_those_of_2000_steps_extrapolated():
     point = Study(DRIFT, 10.0, compiled).run(method, 4000)
     counted = count_evaluations(method, DRIFT.equations, (1.0, 0.0), point.h, 4000)
     assert point.force_evaluations == pytest.approx(counted, rel=0.02)
+    assert Study(DRIFT, 10.0, compiled).run(V, 4000).force_evaluations == 4001
