@@ -313,6 +313,7 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
         ("moan", "may be blanes_moan_4 or blanes_moan_6"),
         ("verlt", "choose from explicit_euler, rk4, lagged_verlet, conformal_verlet"),
         ("rk4 RK4", "rk4 is given twice"),
+        ("taylor", "see it with pendu-tui accuracy --cost seconds"),
         ("", "for example rk4"),
         ("conformally-symplectic-verlett", "did you mean conformal_verlet?"),
     ],

@@ -189,6 +189,7 @@ def test_the_true_motion_of_too_fast_a_spring_is_not_known(ratio, followed):
 def test_on_a_spring_an_error_of_theta_is_less_than_half_a_turn():
     assert SPRING.theta_error(3.1, -3.1) == pytest.approx(6.2 - math.tau)
     assert SPRING.theta_error(0.3, 0.1) == pytest.approx(0.2)
+    assert DAMPED.theta_error(3.0, -4.0) == 7.0
 
 
 phases = st.tuples(angles, speeds, *[st.floats(-1, 1)] * 3)

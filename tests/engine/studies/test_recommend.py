@@ -17,24 +17,14 @@ E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 
 
-@pytest.mark.parametrize(
-    ("name", "time", "target", "kind"),
-    [
-        ("large-swing", 3.0, 1e-5, "theta"),
-        ("large-swing", 5.0, 1e-2, "final"),
-        ("spin", 3.0, 1e-2, "energy"),
-    ],
-)
-def test_the_recommended_run_reaches_its_target_and_a_coarser_one_does_not(
-    name, time, kind, target
-):
-    study = Study(SCENES[name], time, compiled)
-    best, *_ = least_cost(study, kind, target)
+def test_the_recommended_run_reaches_its_target_and_a_coarser_one_does_not():
+    study = Study(SCENES["large-swing"], 5.0, compiled)
+    best, *_ = least_cost(study, "final", 1e-2)
     steps = best.reached.steps
     runs = steps, math.ceil(1.1 * steps), math.floor(steps / 1.03)
-    here, finer, coarser = (study.run(best.method, n, n).errors[kind] for n in runs)
-    assert here == best.reached.errors[kind]  # 10,000 comparisons are every step of these runs
-    assert max(here, finer) <= target < coarser
+    here, finer, coarser = (study.run(best.method, n, n).errors["final"] for n in runs)
+    assert here == best.reached.errors["final"]  # compared at each step of a run so short
+    assert max(here, finer) <= 1e-2 < coarser
 
 
 def test_a_target_as_large_as_the_swing_is_refused():

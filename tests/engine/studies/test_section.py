@@ -87,12 +87,6 @@ def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
     assert (found.fraction, found.island, found.chaotic) == (fraction, True, False)
 
 
-def test_a_curve_beside_a_resonance_is_no_island():
-    for theta in (1e-4, 1e-3, 0.01):  # at z = 1 small swings turn by 1/6 minus some theta²
-        beside = kind(VERLET, theta, 1.0)
-        assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
-
-
 @pytest.mark.parametrize(
     ("radius", "turned", "q", "off", "island"),
     [
