@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import SteppingChange
-from pendu_tui.engine.run.verdicts import FAILED, UNDECIDED, Judgement, Milestone
+from pendu_tui.engine.run.verdicts import FAILED, Judgement, Milestone
 from pendu_tui.recordings.events import Event, check_present, is_present
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.playback.history import History
@@ -81,7 +81,7 @@ class Replay(Source):
         if self.sample.readings[index].diverged_at is not None:
             return Judgement(FAILED)
         found = Judgement(periods=steps * abs(self.stepping.h) / self._judging.period)
-        if last is not None and last.verdict != UNDECIDED:
+        if last is not None:
             found = found._replace(verdict=last.verdict, lyapunov=last.lyapunov)
             return found._replace(slope=last.trend, is_evident=last.trend is not None)
         if is_present(self.scene.cast[index]):
