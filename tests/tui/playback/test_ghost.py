@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import after
 
 OTHER_H = DEFAULT_SCENE.altered(h=0.1)
 
 
 def test_its_pendulums_and_errors_are_where_a_lab_with_its_step_size_would_have_them():
-    found = after(OTHER_H, 15.0).history.ghost()
+    history = after(OTHER_H, 15.0).history
+    found = history.ghost()
+    assert found.widest == abs(history.trails()[:, :-1, 0]).max()
+    assert after(SCENES["stiff-slow"], 1.0).history.ghost().rods(0.5) == {}  # no rods
     for t in (1.0, 2.55, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
         assert [*found.rods(t).values()] == [reading.theta for reading in readings]

@@ -9,7 +9,7 @@ import pytest
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Shot
 from pendu_tui.tui.cli.scene import read_scenes
-from pendu_tui.tui.playback.lesson import Lesson
+from pendu_tui.tui.playback.lesson import Lesson, LessonState
 from pendu_tui.tui.playback.live import Live
 from tests.tui.harness import FPS, Clocked
 
@@ -23,7 +23,9 @@ QUESTION = Shot(
 )
 ASKS = replace(SCENES["drift"], name="asks", shot=QUESTION, speed=2.0)
 TELLS = replace(SCENES["crossover"], name="tells", shot=Shot(moment=0.4, sentence="Here."))
-SHOWS = replace(SCENES["spin"], name="shows", watch="It spins.", shot=Shot(equal_cost=True))
+SHOWS = replace(
+    SCENES["spin"], name="shows", watch="It spins.", shot=Shot(equal_cost=True, under=0.1)
+)
 
 
 @pytest.fixture
@@ -44,7 +46,8 @@ def test_a_page_begins_with_its_scene_speed_and_cost_whatever_the_lab_did_before
     assert (live.scene, live.playhead.speed, live.stepping) == (TELLS, 4.0, Stepping(0.2))
     lesson.begin(live, 2)
     assert live.stepping.equal_cost
-    assert live.stepping.smallest == SHOWS.h
+    assert (live.stepping.smallest, live.ghost) == (SHOWS.h, None)
+    assert not lesson.follow(live, live.sample)  # it has no moment
 
 
 def test_forward_goes_to_the_moment_the_truth_and_the_next_page_and_ends_after_the_last(
@@ -92,7 +95,9 @@ def test_a_question_stays_asked_when_the_user_goes_back_before_its_moment(lesson
     before = live.sample
     live.step(5)
     assert not lesson.follow(live, before)
-    assert lesson.stage == "asked"
+    live.change(live.stepping.reversed())
+    assert not lesson.is_astray(live)  # it has told what it tells
+    assert lesson.state == LessonState(0, "asked")
     lesson.begin(live, 1)
     lesson.forward(live)
     lesson.follow(live, live.sample)
@@ -110,6 +115,10 @@ def test_where_time_returns_the_pause_comes_at_the_start(live):
         latest = max(latest, clocked.run(1 / FPS).t)
     assert latest == pytest.approx(1.0, abs=0.1)
     assert (live.sample.t, live.sample.step) == (pytest.approx(0.0, abs=1e-12), 40)
+    end = live.sample
+    lesson.begin(live, 0)
+    lesson.forward(live)
+    assert live.sample == end._replace(run=3)
 
 
 @pytest.mark.parametrize("choice", [1, 2, None])

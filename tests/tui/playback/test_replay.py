@@ -10,6 +10,7 @@ import pytest
 from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.events import Event, simulate
 from pendu_tui.recordings.files import RecordingError
@@ -78,6 +79,7 @@ def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_fram
     assert len(table.replay.history.trails()) == 39
     assert table.replay.knows_past
     replay = Replay(Recording.open(sitting), clock=itertools.count(0, 0.003).__next__)
+    assert replay.stepping == replay.changes[0].stepping
     replay.seek(replay.length)
     assert not replay.fill()
     assert not replay.knows_past
@@ -187,6 +189,7 @@ def test_the_next_event_and_the_one_before_are_found(replay):
         if places[-1] == pytest.approx(2.0):
             assert replay.events[-1].kind == "set_h"
     assert [round(place) for place in places] == [0, 2, 4, 5, 9, 9, 12]  # a verdict
+    assert replay.playhead.paused
     replay.pause(False)
     assert replay.go_to(1, 40)
     assert (replay.playhead.position, replay.playhead.paused) == (places[1], True)
@@ -299,7 +302,10 @@ def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(
             if value.run > 1:
                 break
             if isinstance(value, Event) and value.milestone == said:
-                value = value._replace(milestone=said._replace(verdict="chaotic", lyapunov=0.5))
+                other = said._replace(verdict="chaotic", lyapunov=0.5)
+                recorder.add(value._replace(milestone=other), clock)
+                passes = Milestone("over the top", said.method, said.step, said.t, 0.0)
+                value = value._replace(milestone=passes)
             recorder.add(value, clock)
     table = Table(tmp_path / "other.mcap")
     table.replay.seek(table.replay.length)
@@ -318,8 +324,10 @@ def test_no_lab_goes_on_without_the_users_own_method(tmp_path):
 
 
 def test_a_closed_replay_stands_still(table, replay):
+    replay.seek(11.0)
     here = replay.sample
+    history = replay.history
     replay.close()
     assert table.run(1.0) == here
-    assert replay.fill()
+    assert (replay.history, replay.playhead.position) == (history, 11.0)
     assert table.recording._stream.closed

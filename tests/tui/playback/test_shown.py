@@ -45,10 +45,11 @@ def test_windows_axes_and_quantities_come_in_turn():
     assert quantities(DEFAULT_SCENE) == ("energy_error", "theta_error", "shadow_error", "energy")
     assert shown.quantity_ahead(1, DEFAULT_SCENE) == "theta_error"
     assert shown.quantity_ahead(-1, DEFAULT_SCENE) == "energy"
-    other = Shown(quantity="of another model")
-    assert other.quantity_ahead(1, DEFAULT_SCENE) == "theta_error"
-    for scene in (SCENES["spin"].with_cast(CAST[3:]), SCENES["stiff-slow"]):
-        assert "shadow_error" not in quantities(scene)
+    for quantity, following in (("theta_error", "shadow_error"), ("of others", "theta_error")):
+        assert Shown(quantity=quantity).quantity_ahead(1, DEFAULT_SCENE) == following
+    without_shadow = ("energy_error", "theta_error", "energy")
+    assert quantities(SCENES["spin"].with_cast(CAST[3:])) == without_shadow
+    assert "shadow_error" not in quantities(SCENES["stiff-slow"])
 
 
 def test_methods_are_hidden_shown_and_left_alone():
