@@ -122,16 +122,11 @@ def chains(step, h, seconds, seeds=SEEDS):
     return h * np.arange(1, steps + 1), np.transpose(energies)
 
 
-def records(step, seeds):
-    """Return (h, times, energies) at two steps for each seed."""
-    simulated = [(h, *chains(step, h, 60.0, seeds)) for h in (0.05, 0.1)]
-    for seed in range(seeds):
-        yield [(h, times, energies[seed]) for h, times, energies in simulated]
-
-
 def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
     powers = []
-    for runs in records(RIGHT, SEEDS):
+    simulated = [(h, *chains(RIGHT, h, 60.0)) for h in (0.05, 0.1)]
+    for seed in range(SEEDS):
+        runs = [(h, times, energies[seed]) for h, times, energies in simulated]
         order = energy_gate.check_order(runs, at_least=1.8)
         powers.append(order.power)
     assert np.mean(powers) == pytest.approx(2, abs=0.05)
@@ -140,13 +135,6 @@ def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
     energy_gate.check_order(runs, at_least=0.999 * order.highest)
     with failing("not as h"):
         energy_gate.check_order(runs, at_least=1.001 * order.highest)
-
-
-@pytest.mark.parametrize("broken", [{"second": 0.0}, {"first": 0.55}, {"dropped": 100}], ids=str)
-def test_the_order_of_broken_runs_fails(energy_gate, broken):
-    for runs in records(kicks(**broken), seeds=5):
-        with failing("the energy fluctuates as h"):
-            energy_gate.check_order(runs, at_least=1.8)
 
 
 def test_runs_that_are_too_short_to_tell_fail_and_say_how_long_they_must_be(energy_gate):
