@@ -54,9 +54,9 @@ class PhasePane(Chooser[State]):
 
     @property
     def settled(self) -> bool:
-        if self.sample is None or not self.drawable or self.neighbours is None:
+        if not self.drawable or self.neighbours is None:
             return self.sample is not None
-        return self.neighbours.step == self.sample.step
+        return self.neighbours.step == self.source.sample.step
 
     @property
     def _cells(self) -> tuple[int, int]:

@@ -183,7 +183,7 @@ def method_points(
     """
     points = []
     exact = source.exact.at(sample.t)
-    if shown.exact and math.isfinite(exact.theta):
+    if shown.exact:
         points.append(PhasePoint(*exact, EXACT, "x"))
     trails = source.history.trails()
     cast = source.scene.cast
@@ -291,7 +291,7 @@ def _names(viewport: Viewport, w0: float) -> list[Word]:
         if theta == 0:
             column -= len(text) // 2 + 1
         room = viewport.columns - column
-        if column > 0 and len(text.rstrip()) <= room and 0 <= row < viewport.rows:
+        if len(text.rstrip()) <= room:
             words.append((column, row, text[:room]))
     return words
 

@@ -14,7 +14,6 @@ import aiohttp
 import pytest
 from aiohttp import web
 
-from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.commands import serve, served
 from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import IS_WINDOWS, own_method, pendu

@@ -7,6 +7,7 @@ from textual import events
 
 from pendu_tui.engine.scenes import SCENES, Line, Scene
 from pendu_tui.tui.views.phase import SectionPane
+from pendu_tui.tui.views.viewport import LEFT
 from tests.tui.harness import lab, until
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
@@ -34,6 +35,10 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         assert pane.border_title == "Own map of Velocity Verlet: h 0.348011 s, z 1.09"
         words = "start: A chain of islands: 1 turn in every 6 steps, 1:6."
         assert pane.text.splitlines()[-1] == words
+        await theatre.pilot.hover(pane, offset=(LEFT + 2, 2))
+        words = pane.text.splitlines()[-1]
+        assert words.startswith("{:g}, {:g}: ".format(*pane.pointer))
+        assert "islands" not in words
         pane._orbits = 20
         pane.draw()
         assert str(pane.border_title).endswith(", computing 50%")

@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 import pytest
 from textual import events
 
+from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.ring import Neighbours
 from pendu_tui.tui.views.phase import DOTS, AreaTable, PhasePane
@@ -101,8 +102,9 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
 
 
 async def test_the_wheel_zooms_around_the_pointer():
-    async with phase_view() as (theatre, pane):
+    async with phase_view(SCENES["gentle"]) as (theatre, pane):
         before = pane.viewport
+        assert before.theta_span > 6.2  # all angles, by key o
         what = dict.fromkeys(("button", "shift", "meta", "ctrl", "delta_x", "delta_y"), 0)
         x, y = pane.content_region.offset
         theatre.app.post_message(events.MouseScrollUp(None, x + 30, y + 2, **what))
@@ -131,10 +133,14 @@ async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
         assert "out of range" in theatre.notices[0]
 
 
-async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away():
+async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(monkeypatch):
     async with phase_view() as (theatre, pane):
         await theatre.run(20)
         await theatre.press("space", "g")
+        assert not pane.settled
+        await theatre.press("f2")
+        assert pane.settled  # out of sight
+        await theatre.press("f3")
         await until(theatre.pilot, lambda: pane.neighbours and pane.settled)
         source = theatre.source
         expected = Neighbours(pane.neighbours.radius).follow(
@@ -147,10 +153,28 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         assert any(area in symplectic for area in (" 1 + ", " 1 - ", " 1 "))  # but for rounding
         assert f" {expected.area_ratios[3]:.9f} " in rk4  # a loss that four digits do not show
         assert str(pane.border_subtitle) == "ring, radius 0.1 rad"
+        monkeypatch.setattr("pendu_tui.tui.views.phase.has_own", lambda scene: True)
+        source.start(SCENES["gentle"])
+        source.step(9)
+        theatre.stage.show_now()
+        assert (pane.neighbours.radius, pane.neighbours.step) == (pytest.approx(0.01), 1)
         await theatre.press("g")
         theatre.stage.show_now()
         assert pane.ring is None
         assert "area" not in table.text
+
+
+async def test_a_ring_that_an_own_method_cannot_carry_is_told_once(monkeypatch):
+    def fail(*_):
+        raise OwnMethodError("No ring.")
+
+    monkeypatch.setattr(Neighbours, "follow", fail)
+    async with phase_view() as (theatre, pane):
+        await theatre.press("g")
+        for _ in range(3):
+            pane.draw()
+        assert theatre.notices == ["No ring."]
+        assert pane.border_subtitle == "click: start, wheel: zoom, g: ring"
 
 
 @pytest.mark.filterwarnings("error")

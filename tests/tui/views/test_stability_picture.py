@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.studies.stability import (
     CELL,
+    CHAOTIC,
     GROWS,
     HOLDS,
     LOSES,
@@ -108,7 +109,7 @@ def cells(*rows: tuple[int, float, int]) -> np.ndarray:
 LADDER = cells(
     (300, 1e-3, HOLDS),
     (300, 2e-2, HOLDS),
-    (300, 0.2, HOLDS),
+    (300, 0.2, CHAOTIC),
     (40, 0.9, OVER_THE_TOP),
     (3, 5.0, GROWS),
 )
@@ -120,9 +121,10 @@ LOST = cells(*[(0, 2.0, GROWS)] * 5)
 @pytest.mark.parametrize(
     ("outcomes", "z", "sentence"),
     [
-        (LADDER, 1, "0.5 s, 90°: held, error 2e-2; lost at h 1 s"),
-        (LADDER, 3, "1 s, 90°: over the top, step 41; held at h 0.75 s"),
-        (LADDER, 4, "1.25 s, 90°: grows, step 4; held at h 0.75 s"),
+        (LADDER, 1, "0.5 s, 90°: held, error 2e-2; lost at h 0.75 s"),
+        (LADDER, 2, "0.75 s, 90°: chaotic; held at h 0.5 s"),
+        (LADDER, 3, "1 s, 90°: over the top, step 41; held at h 0.5 s"),
+        (LADDER, 4, "1.25 s, 90°: grows, step 4; held at h 0.5 s"),
         (HELD, 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
         (LOST, 0, "0.25 s, 90°: grows, step 1; lost at every h on this map"),
         (BEGUN, 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),

@@ -51,6 +51,7 @@ async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_i
         for step, end in ((-99, (0, 0)), (99, (79, 47))):  # it stays on the map
             pane.action_move(step, step)
             assert pane.cursor == end
+        assert pane.text.splitlines()[1].count("@") == 2
         await pilot.press("escape", *["right"] * 7, "up", "enter")
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
         assert (live.scene.theta, live.scene.omega) == (pane.grid.theta[theta + 1], 0)
@@ -70,8 +71,9 @@ async def test_a_click_starts_with_what_was_clicked_on():
         lowest = max(
             y for y, line in enumerate(pane.text.splitlines()) if line.startswith("   90┤")
         )
-        for column in (4, 1 + 38):  # on a label, and beside the map
-            await pilot.hover(StabilityPane, offset=(column, 1 + lowest))
+        # on a label, beside a map, above, and below one
+        for beside in ((4, 1 + lowest), (39, 1 + lowest), (20, 1), (20, 4 + lowest)):
+            await pilot.hover(StabilityPane, offset=beside)
             assert pane.pointer is None
         await pilot.hover(StabilityPane, offset=(1 + 7, 2))
         assert "Explicit Euler at h 0.0419 s, 159°: over the top" in pane.text
@@ -91,6 +93,7 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
         await pilot.press("3")
         await pilot.pause(0.3)
         assert "Explicit Euler at" in pane.text  # the first that is shown
+        await pilot.hover(StabilityPane, offset=(70, 14))  # where the fourth was
         await pilot.press("1")
         await pilot.pause(0.3)
         assert "Explicit" not in pane.text

@@ -105,7 +105,13 @@ def test_phase_space(snapshot):
     ends = zip((-9.0, 9.0, 0.1, 0.2), (1.0, -1.0, 30.0, -30.0), strict=True)
     outside = [PhasePoint(*each, ink, "esvr"[ink]) for ink, each in enumerate(ends)]
     part = Portrait.of(views[0][0]._replace(wrap=False), model)
-    texts.append(look(phase_picture(part, outside)))
+    texts.append(look(phase_picture(part, outside, line=Line("theta", 9.0, "no omega"))))
+    small = Viewport.portrait(35, 9, DRIFT)
+    deep = small._replace(omega=-120.0).zoomed(1e-5, *small.middle)
+    for part in (*(small.zoomed(0.6, x, 12) for x in (0, 40, 70)), deep):
+        texts.append(look(Picture(framed(part, phase_picture(Portrait.of(part, model), [])))))
+    damped = Portrait.of(small, SCENES["damped"].equations)  # whose orbits are no curves
+    texts.append(look(phase_picture(damped, [], orbit=states[0])))
     short = after(DRIFT, 1)
     points = method_points(short, short.sample, Shown(), None)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
