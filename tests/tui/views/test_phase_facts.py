@@ -52,7 +52,7 @@ def test_a_ring_that_is_behind_says_by_how_many_steps():
     assert ring_text(stiff, None) == stiff.scene.why_no_ring != ""
 
 
-def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_change_of_h():
+def test_with_friction_the_true_motion_leaves_less_area_even_after_a_change_of_h():
     live = Live(SCENES["damped"])
     live.step(100)
     live.change(Stepping(0.05, cast=live.scene.cast))
@@ -60,5 +60,3 @@ def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_ch
     left = f"{math.exp(-0.05 * 7.5):.9f}"
     ring = followed(live)
     assert f"the true motion leaves {left} of its area" in ring_text(live, ring)
-    ratios = ring.ring_of(live.scene, live.sample.run).area_ratios
-    assert [area_text(ratio) == left for ratio in ratios] == [False, False, True, False]

@@ -2,6 +2,7 @@
 
 import re
 from contextlib import asynccontextmanager
+from unittest.mock import Mock
 
 import pytest
 from textual import events
@@ -158,22 +159,14 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         source.step(9)
         theatre.stage.show_now()
         assert (pane.neighbours.radius, pane.neighbours.step) == (pytest.approx(0.01), 1)
-        await theatre.press("g")
-        theatre.stage.show_now()
+        fail = Mock(side_effect=OwnMethodError("No ring."))
+        monkeypatch.setattr(Neighbours, "follow", fail)
+        pane.draw()
         assert pane.ring is None
-        assert "area" not in table.text
-
-
-async def test_a_ring_that_an_own_method_cannot_carry_is_told_once(monkeypatch):
-    def fail(*_):
-        raise OwnMethodError("No ring.")
-
-    monkeypatch.setattr(Neighbours, "follow", fail)
-    async with phase_view() as (theatre, pane):
-        await theatre.press("g")
-        for _ in range(3):
-            pane.draw()
+        await theatre.run(0.1)
+        fail.assert_called_once()
         assert theatre.notices == ["No ring."]
+        assert "area" not in table.text
         assert pane.border_subtitle == "click: start, wheel: zoom, g: ring"
 
 

@@ -152,9 +152,3 @@ def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name):
     else:
         assert fastest.max() > 1
         assert beyond
-
-
-def test_an_altered_scene_has_the_shot_of_all_and_a_recorded_one_that_of_its_name():
-    resonance = SCENES["resonance"]
-    assert Shown().through(resonance).hidden == {"symplectic_euler"}
-    assert Shown().through(resonance.altered(h=1.0)) == Shown(log_time=True)

@@ -34,11 +34,8 @@ async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen
         assert pane.here(VERLET) == (live.scene.z, 1.0)
         assert pane.text.count("@") == 4
         piece = next(pieces(pane.grid, (20,)))
-        for steps, done, words in (
-            (20, 1, "Computing 100 %. "),
-            (60, 0.5, "Computing 50 %. "),
-            (60, 1, ""),
-        ):
+        said = "Computing 100 %. ", "Computing 50 %. ", ""
+        for steps, done, words in zip((20, 60, 60), (1, 0.5, 1), said, strict=True):
             part = replace(piece.part, grid=replace(piece.part.grid, steps=steps))
             pane.add(replace(piece, part=part, done=done))
             pane.draw()
