@@ -5,10 +5,10 @@ from functools import partial
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -37,15 +37,6 @@ async def complete(pilot, pane: AccuracyPane) -> None:
 def test_a_point_is_found_within_six_columns_or_three_rows():
     cells = (16, 5), (17, 5), (10, 2), (10, 1)
     assert [nearest([(10, 5, "here")], *cell) for cell in cells] == ["here", None] * 2
-
-
-def test_the_slope_of_an_order_lies_below_its_first_method():
-    scene = SCENES["drift"].with_cast((method_of("velocity_verlet"), method_of("heun")))
-    lines = accuracy_series([*measured(scene, 5.0, RUNGS)], "theta", "evaluations", cast=scene.cast)
-    (slope,) = (line for line in lines if line.dotted)
-    assert slope.mark == "slope 2"
-    assert [*slope.x] == [RUNGS[0] + 1, RUNGS[-1] + 1]  # Heun's are twice as many
-    assert slope.y[0] / slope.y[1] == pytest.approx((501 / 26) ** 2)
 
 
 accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)
