@@ -73,6 +73,10 @@ def test_tables_and_titles(snapshot):
             texts.append(title(shown, live.exact, live.scene.equations, room))
         shown = Shown(stretch=Stretch(1, 2.5, 7.25, True), log_time=True)
         texts.append(title(shown, live.exact, live.scene.equations))
+    live = after(DRIFT, 20)
+    *others, last = live.sample.readings
+    sample = live.sample._replace(readings=(*others, last._replace(diverged_at=0.8)))
+    texts.append(look(Picture(table(live, sample, Shown(), 80))))  # red is for failures alone
     spin = SCENES["spin"]
     for room in (24, 100):
         texts.append(title(Shown(), spin.exact(), spin.equations, room))
