@@ -175,7 +175,7 @@ class Results:
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
         chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
         yield from lines_of(chart, PALETTES["dark"])
-        if self.options.all and self.points:
+        if self.options.all:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"
         if self.attempts:
             yield from self._advice_notes()
@@ -258,5 +258,5 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
 
 def _times(row: Row) -> str:
     if row["times_the_cheapest"] is None:
-        return row["why_not"] or ""
+        return str(row["why_not"])
     return f"{row['times_the_cheapest']:.3g}"

@@ -97,9 +97,8 @@ def judge(name: str, options: argparse.Namespace) -> Answer:
         tables = [_seen(number, each) for number, each in enumerate(seen, 1)]
         fields: dict[str, Any] = {"file": name, "seen": tables}
         series = table_to_judge(seen, options.table)
-        if series is None:
+        if doubt := series.choice.doubt:
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
-            doubt = seen[-1].choice.doubt or "the total energy"
             raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
         series.finish(options.start, options.end)
         judged = _judged(series, options.scale[0])
@@ -136,8 +135,8 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
     return found
 
 
-def table_to_judge(seen: Sequence[Series], table: int | None) -> Series | None:
-    """Return the table to judge, None if that is not certain.  Raises UserError."""
+def table_to_judge(seen: Sequence[Series], table: int | None) -> Series:
+    """Return the last table whose columns are certain, or else the last.  Raises UserError."""
     if table and table > len(seen):
         raise UserError(f"there is no table {table}; the input has {len(seen)}.")
     some = [seen[table - 1]] if table else seen
@@ -145,7 +144,7 @@ def table_to_judge(seen: Sequence[Series], table: int | None) -> Series | None:
     if not named:
         raise _missing(some[-1])
     certain = [series for series in named if not series.choice.doubt]
-    return certain[-1] if certain else None
+    return (certain or named)[-1]
 
 
 def _missing(series: Series) -> UserError:
@@ -235,11 +234,8 @@ def _per_atom(fields: dict[str, Any], atoms: int, temperature: float | None) -> 
         scales["kt"] = units.size("energy", fields["energy_unit"]) * temperature
     time = units.size("time", fields["time_unit"])
     for name, scale in scales.items():
-        for what, value in (
-            (name, fields["absolute_trend"]),
-            (f"{name}_bound", fields["absolute_bound"]),
-        ):
-            result[f"{what}_per_ns_per_atom"] = value and value / time / atoms / scale
+        for end, value in (("", fields["absolute_trend"]), ("_bound", fields["absolute_bound"])):
+            result[f"{name}{end}_per_ns_per_atom"] = value and value / time / atoms / scale
     return result
 
 

@@ -20,10 +20,7 @@ CLAIMS = (
     *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic"),
     *("reversible", "linear_limit", "other_names", "reference", "used"),
 )
-MEASURED = (
-    *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
-    "measured_force_evaluations",
-)
+MEASURED = ("order", "linear_limit", "symplectic", "reversible", "force_evaluations")
 NOTE = """
 order: of the theta error over half a period, as measured; claimed: what its author states.
 evals: force evaluations per step, on average if they vary.
@@ -79,10 +76,9 @@ def _row(method: Method) -> Row:
     claims = fields_of(method, *CLAIMS)
     if isinstance(method, OwnMethod):
         claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
-    if not method.general:  # tests measure these, each in its own scene
-        return claims | dict.fromkeys(MEASURED)
-    found = measured(method.phases)
-    return claims | {name: getattr(found, name.removeprefix("measured_")) for name in MEASURED}
+    # tests measure the others, each in its own scene
+    found = measured(method.phases) if method.general else None
+    return claims | {f"measured_{name}": getattr(found, name, None) for name in MEASURED}
 
 
 def _by_family(rows: list[Row]) -> Iterator[Any]:

@@ -39,17 +39,19 @@ LOG += lines("  {t:.1f} 300. {e!r}", FIRST) + "Loop time of 1 on 1 procs\n\n"
 LOG += "Step TotEng Temp\n" + lines("  {t:.1f} {e!r} 300.") + "Loop time\n"
 FILES = {
     "md.log": LOG.replace("  15.0 ", "  15.0x "),
-    "lost.log": LOG + "ERROR: Lost atoms: original 648 current 612\n",
+    "lost.log": LOG + f"ERROR: Lost atoms: original 648 current 612{99 * '!'}\n",
     "again.log": LOG + "ERROR: Lost atoms: original 648 current 612\n" + LOG,
     "table.csv": TABLE,
+    "both.log": f"{LOG}\nStep Temp Press\n" + lines("{n} {e} {e}"),
     "printed.txt": lines("t = {t}, E1 = {e}, E2 = {e}"),
     "bodies.csv": "body,E\n" + "".join(f"{n % 3},-1.{n % 7}\n" for n in range(30)),
     "flags.csv": "E,flag\n" + "".join(f"-1.{n % 7},{int(n % 9 == 0)}\n" for n in range(90)),
-    "errors.csv": "t,dE/E\n" + lines("{t},{e}", [(t, 1e-6 * (e - 100)) for t, e in ROWS]),
+    "errors.csv": "t,dE/E\n"
+    + lines("{t},{e}", [(t, 1e-6 * (e - 100) + (t == 9)) for t, e in ROWS]),
     "steps.txt": "Step E\n" + lines("{n} {e}", [(t, e + t) for t, e in ROWS]),
     "faster.txt": "Step E\n" + lines("{n} {e}", [(t, 4 * e - 300 + 2 * t) for t, e in ROWS]),
     "units.csv": "Time (ps),E (eV),K\n" + lines("{t},{e},-{n}", [(t, e + t) for t, e in ROWS]),
-    "mixed.csv": "t,E [kJ/mol],K [kJ/mole],P [units]\n" + lines("{t},{e},5,{e}"),
+    "mixed.csv": "t,E [kJ/mol],K [kJ/mole],P [units of a great length]\n" + lines("{t},{e},5,{e}"),
     "zero.csv": "t,E\n" + lines("{n},{e}", [(n, (n * 7919) % 13 - 6.5) for n in range(300)]),
     "spike.csv": "t,E\n"
     + lines("{n},{e}", [(n, {0: 16, 9: 6}.get(n, n / 99)) for n in range(300)]),
@@ -63,7 +65,7 @@ FILES = {
     **{
         name: "t,E\n"
         + lines("{t},{e}", [(n, 100 + 4 * math.cos(3 * n) + rise * n) for n in range(300)])
-        for name, rise in (("coarse.csv", 0.0), ("rising.csv", 0.01), ("rises.csv", 0.02))
+        for name, rise in (("coarse.csv", 0.0), ("falling.csv", -0.01), ("falls.csv", -0.02))
     },
 }
 PER_ATOM = "--step 2fs --units energy=eV --atoms 10 --temperature 300"
@@ -75,6 +77,7 @@ again.log --table 3
 table.csv --time 1 --energy E --from 5 --to 20 --fail-if 'skipped > 0 or samples < 151'
 table.csv --table 1 --time t --from 5 --to 20 --fail-if 'samples > 150'
 table.csv --energy E+Energy --units time=ps
+both.log
 printed.txt
 printed.txt --json
 printed.txt --energy E2
@@ -92,6 +95,7 @@ units.csv --atoms 100 --from 5000fs
 units.csv --scale kinetic:K
 mixed.csv --scale kinetic:K
 mixed.csv --energy P --units energy=eV
+mixed.csv --energy P
 zero.csv
 zero.csv --scale std
 zero.csv --scale 50
@@ -101,13 +105,13 @@ failed.csv
 large.csv --from 0
 huge.csv
 cold.csv --scale kinetic:K
-table.csv --to 0.1 --atoms 10 --step 1fs --units energy=eV
+steps.txt --to 0 --atoms 10 --step 1fs --units energy=eV
 odd.csv --from 10 --json
 table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'
 coarse.csv table.csv --steps 1,2 --energy E
 table.csv failed.csv --steps 1,2
-rising.csv rises.csv --steps 1,2
+falling.csv falls.csv --steps 1,2
 """
 
 
