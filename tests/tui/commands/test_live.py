@@ -51,7 +51,7 @@ def test_without_a_terminal_there_is_no_screen(command):
 
 
 def test_labs_that_begin_at_once_record_under_names_of_their_own(tmp_path, monkeypatch):
-    path = tmp_path / "library" / "now.mcap"
+    path = tmp_path / "new" / "library" / "now.mcap"
     monkeypatch.setattr("pendu_tui.recordings.files.new_path", lambda _: path)
     labs = [Live(DEFAULT_SCENE) for _ in range(2)]
     for each in labs:
@@ -98,6 +98,8 @@ def asking(tmp_path):
 def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     screens = []
     methods = []
+    library = asking.with_name("library")
+    monkeypatch.setenv("PENDU_RECORDINGS", str(library))
     monkeypatch.setattr(lab, "own_methods", lambda options: options.method)
     monkeypatch.setattr(lab, "remember", methods.append)
     monkeypatch.setattr("pendu_tui.tui.cli.watchdog.watch_calls_in_c", bool)
@@ -129,6 +131,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     assert (usual.looping, usual.playhead.paused, usual.playhead.position) == (False, False, 0.0)
     assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
     assert (equal.playhead.speed, live.playhead.speed) == (3.0, 1.0)
+    assert not library.exists()  # a replay is not recorded
     behind = ("--start-at", usual.length + 0.02)
     assert pendu("replay", "drift", *behind).refused(2, f"0 to {usual.length:.2f} s")
     for source in sources:

@@ -73,9 +73,10 @@ async def test_its_pages_are_where_it_says_and_load_nothing_from_elsewhere(
     assert server.command.endswith(lab)
     running = asyncio.create_task(server.run())
     told = ""
-    while not (told or running.done()):
-        await asyncio.sleep(0.01)
-        told = capsys.readouterr().out
+    async with asyncio.timeout(50):
+        while not (told or running.done()):
+            await asyncio.sleep(0.01)
+            told = capsys.readouterr().out
     address, _, limits = told.partition(" ")
     assert (address[:-5], limits) == (f"http://{host}:", "serves up to 2 labs; Ctrl+C ends it.\n")
     assert warning in "".join(warned)
@@ -101,7 +102,9 @@ async def test_its_pages_are_where_it_says_and_load_nothing_from_elsewhere(
 def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        assert pendu("serve", "--port", port).refused(2, "cannot listen", str(port), "--port")
+        said = pendu("serve", "--port", port)
+    assert said.refused(2, f"cannot listen on 127.0.0.1 port {port}: ", "--port")
+    assert "[Errno" not in said.err
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "No such file")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
     monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.serve", raising=False)

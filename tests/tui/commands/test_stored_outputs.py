@@ -6,6 +6,7 @@ import shlex
 
 import pytest
 
+from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands.options import OPTIONS
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
@@ -93,6 +94,8 @@ def test_outputs(snapshot, library):
 
 def test_options(snapshot):
     assert "\n  bounded: " in pendu("run", "--help").out
+    files = [each.dest for each in parser_of("run")._actions if hasattr(each, "complete")]
+    assert files == ["method", "record", "output"]
     texts = []
     for name, each in OPTIONS.items():
         choices = each.get("choices", ())
