@@ -179,9 +179,7 @@ class LabScreen(SizedScreen[None]):
         """Pause at the moment of a page, and where reversed time is back at 0."""
         if self.lesson.follow(live, before):
             self.show_now()
-        returned = live.history.returned
-        is_new = returned is not None and before.step < returned.step == live.sample.step
-        if is_new and not live.playhead.paused:
+        elif (at := live.history.returned) and before.step < at.step == live.sample.step:
             live.pause(True)
             live.mark("Back at the start")
             self.show_now()

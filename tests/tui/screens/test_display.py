@@ -4,12 +4,16 @@ from itertools import chain
 
 import pytest
 from rich.color import Color
+from textual.app import ScreenStackError
+from textual.drivers import web_driver
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.drawing.picture import PALETTES, TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp, portable
 from pendu_tui.tui.screens.lab import LabScreen
+from pendu_tui.tui.terminal.driver import PatientParser
+from pendu_tui.tui.terminal.options import TerminalOptions
 from pendu_tui.tui.views import VIEWS
 from tests.tui.drawn import screen
 from tests.tui.harness import key_of, lab
@@ -59,12 +63,21 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
             assert all(colour.is_default for colour in colours(theatre.app))
 
 
-def test_an_empty_no_color_means_nothing(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("NO_COLOR", "")
-    assert not PenduApp(LabScreen(Live(DEFAULT_SCENE))).no_color
+async def test_the_app_has_what_was_asked_for_and_ends_with_the_first_error(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "")  # which means nothing
+    monkeypatch.setattr(web_driver, "XTermParser", None)
+    screen = LabScreen(Live(DEFAULT_SCENE))
+    app = PenduApp(screen, TerminalOptions("light", "half", fps=5))
+    assert not app.no_color
+    assert (app.theme, screen.fps, app.character_filter.enabled) == ("light", 5, True)
+    assert web_driver.XTermParser is PatientParser
+    for error in (ScreenStackError(), bug := ZeroDivisionError(), OSError()):
+        app._handle_exception(error)
+    assert app.return_value is bug
 
 
 def test_a_wide_character_has_two_cells_of_a_picture():
-    svg = portable('<text x="10" y="1" textLength="30">世a</text>')
-    assert svg.count("<text") == 2
-    assert '<text x="10" y="1" textLength="20">世</text><text x="30" y="1" textLength="10">a' in svg
+    svg = portable('<text x="10" y="1" textLength="30">世&lt;</text>')
+    wide = '<text x="10" y="1" textLength="20">世</text>'
+    assert svg == f'{wide}<text x="30" y="1" textLength="10">&lt;</text>'
+    assert not portable('<text x="10" y="1" textLength="0"></text>')

@@ -213,12 +213,12 @@ async def test_pictures_and_scenes_are_saved_among_the_recordings_or_say_why_not
     folder = tmp_path / "to" / "make"
     monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
     async with lab(size=(80, 24)) as theatre:
-        await theatre.press("s", "S")
-        picture, scene = sorted(folder.iterdir())
+        await theatre.press("s", "S", "S")
+        picture, another, scene = sorted(folder.iterdir())
         assert ">scene</text>" in picture.read_text(encoding="utf-8")
         monkeypatch.setattr(PenduApp, "is_web", True)
         await theatre.press("s", "S")  # a visitor's do nothing
-        assert sorted(folder.iterdir()) == [picture, scene]
+        assert sorted(folder.iterdir()) == [picture, another, scene]
         monkeypatch.setattr(PenduApp, "is_web", False)
         monkeypatch.setenv("PENDU_RECORDINGS", str(picture / "below"))
         theatre.app.clear_notifications()

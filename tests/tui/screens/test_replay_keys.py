@@ -93,7 +93,13 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         assert "over the top" in theatre.text(EventList)
 
 
-async def test_where_the_lab_could_not_record_the_replay_stays_and_what_it_records_is_closed(path):
+async def test_where_the_lab_could_not_record_the_replay_stays_and_ctrl_c_closes_what_it_records(
+    path, monkeypatch
+):
+    ended = []
+    monkeypatch.setattr("os._exit", ended.append)
+    monkeypatch.setattr("pendu_tui.tui.screens.app.is_gone", lambda: True)
+
     def refuse(live):
         raise UserError("/nowhere is not writable: choose another folder.")
 
@@ -106,8 +112,9 @@ async def test_where_the_lab_could_not_record_the_replay_stays_and_what_it_recor
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
         theatre.stage.record = lambda live: start_recording(live, path.with_name("new.mcap"))
-        await theatre.press("f")
-    assert path.with_name("new.mcap").exists()  # it has this name when it is closed
+        await theatre.press("f", "ctrl+c")
+        assert path.with_name("new.mcap").exists()  # it has this name when it is closed
+        assert [*ended, theatre.app.return_value] == [130, 130]
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
-from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.screens.app import PenduApp
-from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
@@ -53,7 +49,14 @@ def test_the_theme_follows_what_the_terminal_says(environment, theme):
 
 @pytest.mark.parametrize(
     ("term", "number"),
-    [("xterm-256color", 256), ("xterm-Kitty", 256), ("screen", 16), ("", 0), ("unknown", 0)],
+    [
+        ("xterm-256color", 256),
+        ("xterm-Kitty", 256),
+        ("screen", 16),
+        ("", 0),
+        ("dumb", 0),
+        ("unknown", 0),
+    ],
 )
 def test_colours_are_counted_by_what_the_terminal_is_called(term, number):
     assert colours({"TERM": term}) == number
@@ -71,7 +74,7 @@ def ask(monkeypatch):
 
         def select(*asked):
             waits.append(asked[-1])
-            return [0] * (asked[-1] > 0), [], []
+            return asked[0] * (asked[-1] > 0), [], []
 
         clock = SimpleNamespace(monotonic=itertools.count(0.0, 0.375).__next__)
         files = SimpleNamespace(
@@ -106,12 +109,6 @@ def test_a_terminal_that_does_not_answer_is_awaited_for_a_second(ask):
     _, _, waits = ask(b"\x1b", b"]")
     assert waits == [0.625, 0.25, 0.0]
     assert ask(can_wait=False) == (None, [], [])
-
-
-def test_the_screen_has_the_frames_that_were_asked_for():
-    screen = LabScreen(Live(DEFAULT_SCENE))
-    PenduApp(screen, chosen("--fps 5"))
-    assert screen.fps == 5
 
 
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
