@@ -193,9 +193,8 @@ def test_a_path_has_the_dots_of_its_lines(points):
     assert drawn(lambda canvas: canvas.path(*np.array(points).T, 0)) == lines.picture()
 
 
-@pytest.mark.parametrize("far", [1e20, 1e300])
-def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
-    found = dots(drawn(lambda canvas: canvas.line(-far, 5, far, 5, 0)))
+def test_a_line_from_far_away_is_drawn_where_it_is_visible():
+    found = dots(drawn(lambda canvas: canvas.line(-1e300, 5, 1e300, 5, 0)))
     assert found == {(x, 5) for x in range(2 * COLUMNS)}
     assert not dots(drawn(lambda canvas: canvas.line(0, 5, np.nan, 5, 0)))
 

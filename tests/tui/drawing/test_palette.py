@@ -91,7 +91,6 @@ def test_methods_are_told_apart_by_the_colour_blind_too(theme):
     classics_apart, apart, plainly, _ = THEMES[theme]
     classics = PALETTES[theme].methods[:4]
     assert worst_pair(classics) == pytest.approx(classics_apart, abs=0.05)
-    assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < classics_apart / 3
     for scene in SCENES.values():
         colours = [PALETTES[theme].colour(ink) for ink in inks(scene.cast)]
         assert worst_pair(colours) >= apart, scene.name
