@@ -2,14 +2,14 @@
 
 import json
 import subprocess
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
-from pendu_tui.engine.methods import METHODS, RK4, USUAL_CAST, Cast, named
+from pendu_tui.engine.methods import METHODS, RK4, TAYLOR_20, USUAL_CAST, Cast, named
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.tui.cli import watchdog
+from pendu_tui.tui.cli.cast import cast_of
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.scene import scene_of
 from tests.tui.command_line import EULER, PENDU, ROOT, pendu
@@ -22,6 +22,7 @@ def mine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
     (tmp_path / "long.py").write_text(SOURCE + "#" * 30_000)
+    (tmp_path / "binary.py").write_bytes(b"\xff")
     (tmp_path / "once.py").write_text("def once(force, phase, h):\n    yield phase")
 
 
@@ -45,6 +46,8 @@ def test_the_start_of_a_name_is_enough_and_the_order_is_the_one_given(text, keys
 def test_a_name_as_the_tables_print_it_will_do_in_any_case():
     for method in METHODS:
         assert named(method.label.upper()) is named(method.key.upper()) is method
+    options = parser_of("accuracy").parse_args(["--cost=seconds", "--methods=TAYLOR 20"])
+    assert cast_of(options, ()) == (TAYLOR_20,)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +74,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert (last.key, last.symplectic, last.source) == ("kick_drift", True, SOURCE)
     assert cast_from(*own, "--methods", "kick,rk4") == (last, RK4)
     assert cast_from(*own) == (*USUAL_CAST, last)
-    assert last.letter not in {method.letter for method in METHODS}
+    assert last.letter == "K"  # which no other has
 
 
 @pytest.mark.other_process
@@ -79,7 +82,10 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     ("text", "code", "words"),
     [
         ("mine.py", 3, "mine.py has no function 'mine'; it has kick_drift, rk4"),
-        ("mine.py:größer", 2, "cannot be a method's name"),
+        ("mine", 2, "'mine' is not FILE.py:FUNCTION"),
+        *((f"mine.py:{key}", 2, f"'{key}' cannot be") for key in ("größer", "1st", "a" * 31)),
+        (f"mine.py:{'a' * 30}", 3, "has no function"),
+        ("binary.py", 3, "it is not text in UTF-8"),
         ("mine.py:rk4", 2, "there is a method rk4 already"),
         ("no:absent.py:kick_drift", 3, "no:absent.py cannot be read: No such file"),
         ("once.py", 3, "once ends while the run goes on"),
@@ -103,15 +109,11 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
 def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(
     mine, monkeypatch, work, seconds, why
 ):
-    waits = []
-    show = nullcontext(lambda *done: waits.append(done))
-    monkeypatch.setattr("pendu_tui.tui.cli.workers.progress", lambda _: show)
     monkeypatch.setattr("pendu_tui.tui.cli.cast.MAX_SECONDS", seconds)
     Path("hostile.py").write_text(
         f"import os\ndef hostile(force, phase, h):\n    {work}\n    yield"
     )
     assert pendu("run", "--time", "2", "--method", "hostile.py").refused(3, "hostile.py", why)
-    assert waits or "takes" not in why
 
 
 def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_the_command(

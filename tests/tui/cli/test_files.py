@@ -136,11 +136,6 @@ def test_a_recording_is_a_file_or_a_bundled_one_or_the_latest_or_another_of_the_
     assert resolve("old") == resolve("old.mcap") == library / "old.mcap"
 
 
-def test_force_does_not_replace_a_folder(tmp_path):
-    with pytest.raises(OSError, match="already exists"), whole_file(tmp_path, force=True):
-        raise AssertionError
-
-
 def test_a_device_is_written_to_and_not_replaced():
     with whole_file(Path(os.devnull)) as meanwhile:
         assert str(meanwhile) == os.devnull

@@ -74,14 +74,9 @@ def test_a_negative_number_after_an_option_is_its_value(text):
     ("argument", "words"),
     [
         ("--h=0", "h = 0 s"),
-        ("--length=0", "length = 0"),
         ("--theta=inf", "theta = inf"),
         ("--theta=-170", "-170deg or -170rad"),
-        ("--theta=1e9", "1e9deg or 1e9rad"),
-        ("--theta=abc", "is not an angle; use for example 2 "),
         ("--h=small", "is not a time; use for example 0.05"),
-        ("--omega=", "is not an angle"),
-        ("--scene=near-seperatrix", "did you mean near-separatrix"),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_its_name_and_what_to_do(argument, words):

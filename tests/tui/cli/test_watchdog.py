@@ -11,9 +11,11 @@ from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.watchdog import ALARM, Watchdog
 
 
-@pytest.mark.parametrize(("steps", "happens"), [(0, [(3.0, ALARM), (3.6, 3)]), (1, [])])
+@pytest.mark.parametrize(
+    ("depth", "steps", "happens"), [(1, 0, [(3.0, ALARM), (3.6, 3)]), (1, 1, []), (0, 0, [])]
+)
 def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
-    steps, happens, monkeypatch
+    depth, steps, happens, monkeypatch
 ):
     now = 0.0
     happened = []
@@ -29,7 +31,7 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
     for place, name in ((dog, "end"), (watchdog, "interrupt_main")):
         monkeypatch.setattr(place, name, lambda code, *_: happened.append((round(now, 1), code)))
     monkeypatch.setattr(watchdog.time, "sleep", sleep)
-    monkeypatch.setattr(watchdog, "USER_CODE", SimpleNamespace(depth=1, count=0))
+    monkeypatch.setattr(watchdog, "USER_CODE", SimpleNamespace(depth=depth, count=0))
     with pytest.raises(StopIteration):
         dog.run()
     assert happened == happens
@@ -40,8 +42,13 @@ def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_erro
     found = {"__name__": "own_method", "find": watchdog._place_in_main}
     exec(line, found)
     assert found["found"].startswith("mine.py, line 2")
+    watchdog.USER_CODE.depth = 1  # an interrupt came while a step began
     with pytest.raises(OwnMethodError, match="takes more than 3 s"), watchdog.limited():
         raise TooLongError
+    assert watchdog.USER_CODE.depth == 0
+    watchdog._interrupt()  # comes too late
+    with pytest.raises(TooLongError), watchdog.USER_CODE:
+        watchdog._interrupt()
 
 
 def test_the_recording_is_closed_and_the_terminal_restored_before_the_end(monkeypatch):
@@ -68,7 +75,8 @@ def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(m
     monkeypatch.setattr(dog, "end", ended.append)
     monkeypatch.setattr(watchdog.system, "is_gone", lambda: False)
     loop = SimpleNamespace(call_soon_threadsafe=asked.append)
-    dog.guard(loop, leave := object(), bool)
+    dog.guard(loop, leave := object(), close := object())
+    assert dog.close is close
     assert handled == [*watchdog.system.ENDING[1:]]
     dog._look()
     assert not asked
@@ -81,7 +89,7 @@ def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(m
     assert {*asked} == {leave}
 
 
-def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypatch):
+def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypatch, capfd):
     second = 0
     ended = []
 
@@ -90,8 +98,10 @@ def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypa
         second += 1
         return second == 5
 
-    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(signal, "signal", lambda *given: ended.append(given))
+    monkeypatch.setattr(watchdog.system, "restore_terminal", lambda _: ended.append("restored"))
     monkeypatch.setattr(watchdog.system, "is_stopped", lambda _: second in (7, 8))
     monkeypatch.setattr(watchdog.system, "kill", lambda *given: ended.append((second, *given)))
     watchdog._end_if_silent(SimpleNamespace(poll=poll, recv=bool), 123)
-    assert ended == [(5 + 2 + 5, 123, 3)]
+    assert ended == [(signal.SIGINT, signal.SIG_IGN), "restored", (5 + 2 + 5, 123, 3)]
+    assert capfd.readouterr().err.startswith("pendu-tui: ended, for a call in C")

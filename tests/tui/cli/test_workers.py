@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+from contextlib import nullcontext
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
@@ -105,6 +106,8 @@ def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
             received(here, process)
     assert received(here, process) == "done"
     monkeypatch.setattr(workers, "wait", lambda _, seconds: waits.append(seconds))
+    show = nullcontext(lambda *done: waits.append(done))
+    monkeypatch.setattr(workers, "progress", lambda _: show)
     with pytest.raises(TimeoutError):
         awaited(here, process, 4.0, "waiting")
-    assert waits == [1.0] * 4
+    assert waits == [1.0, (1, 4.0), 1.0, (2, 4.0), 1.0, (3, 4.0), 1.0]
