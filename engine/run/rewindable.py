@@ -156,6 +156,6 @@ class RewindableRun:
         kept = self._copies[:1]
         for place, following in pairwise(self._copies[1:]):
             gap = following.lockstep.step - kept[-1].lockstep.step
-            if gap > max(COPY_EVERY, (self.step - place.lockstep.step) // 8):
+            if gap > (self.step - place.lockstep.step) // 8:
                 kept.append(place)
         self._copies = [*kept, self._copies[-1]]

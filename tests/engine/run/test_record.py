@@ -31,9 +31,7 @@ def noise_of(times: float, seed: int = 1, count: int = 2000):
 MAKES = {
     "noise": (NOISE, "bounded"),
     "a wobble": (SINE, "bounded"),
-    "rounding": (1e-10 * NOISE, "bounded"),
     "last digits": (np.round(0.3 * NOISE), "bounded"),
-    "a first sample near": (np.where(T > 0, 3 + NOISE, 0), "bounded"),
     "a line within noise": (NOISE + T / 50, "grows"),
     "a line within five slow beats": (np.sin(0.3 * T) + 0.03 * T, "grows"),
     "a line within correlated noise": (noise_of(200) + 0.1 * T, "grows"),
@@ -165,7 +163,7 @@ def test_the_share_is_what_the_slope_adds_up_to_over_the_width_of_the_band():
 
 @pytest.mark.parametrize(
     ("freedom", "t", "chance"),  # of printed tables
-    [(6, 2.447, 0.975), (10, 2.228, 0.975), (10, 3.169, 0.995), (120, 2.617, 0.995)],
+    [(6, 2.447, 0.975), (10, 3.169, 0.995), (120, 2.617, 0.995)],
 )
 def test_students_distribution_is_that_of_tables(freedom, t, chance):
     assert student(2 * t, 2.0, freedom) == pytest.approx(chance, abs=2e-4)
@@ -182,9 +180,23 @@ def test_a_band_widens_from_quarter_to_quarter_to_three_times_its_width(widths, 
     assert core.Part(bins_around(flat, half), flat).why_not_bounded() == reason
 
 
-@pytest.mark.parametrize(("rise", "verdict"), [(0.45e-12, "bounded"), (0.6e-12, "grows")])
+@pytest.mark.parametrize(
+    ("rise", "verdict"),
+    [
+        (0.45e-12 * T / T[-1], "bounded"),
+        (0.6e-12 * T / T[-1], "grows"),
+        (0.4e-12 * (T > 10), "bounded"),
+    ],
+)
 def test_what_roundings_may_add_up_to_is_no_trend(rise, verdict):
-    assert judge_record(T, 1 + rise * T / T[-1]).verdict == verdict
+    assert judge_record(T, 1 + rise).verdict == verdict
+
+
+def test_eight_bins_may_rise_in_order_by_chance():
+    values = 0.3 * NOISE[:64]
+    values[-8:] = values[:-8].max() + 0.01 * np.arange(8)
+    values[-1] += 1
+    assert core.judge_bins(bins_around(values, 0.3)).reason == levels.UNLIKE_END
 
 
 def value_beyond(others, chance):
@@ -250,9 +262,10 @@ def test_an_end_is_new_a_quarter_of_its_move_beyond_all_before(before, length, m
 
 @pytest.mark.parametrize(("before", "way"), [(10.9, 10), (11.1, 0), (-0.9, 10), (-1.1, 0)])
 def test_an_energy_has_not_left_if_it_was_half_its_band_beyond_start_and_rest(before, way):
-    values = np.repeat([0.0, before, 10.0], [4, 12, 48])
-    whole = core.Part(bins_around(values, 1.0), values)
-    assert core._way_from_start(whole, whole.last(0.75)) == pytest.approx(way)
+    for sign in (1, -1):
+        values = sign * np.repeat([0.0, before, 10.0], [4, 12, 48])
+        whole = core.Part(bins_around(values, 1.0), values)
+        assert core._way_from_start(whole, whole.last(0.75)) == pytest.approx(sign * way)
 
 
 def test_noise_models_are_weighted_by_their_likelihoods():
