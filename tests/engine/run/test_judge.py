@@ -83,7 +83,6 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number():
     [
         (R, Scene(theta=0.0, omega=200.0, h=0.001), 30_000, ["", "undecided", "loses"]),
         (R, SCENES["rk4-limit-above"], 6000, ["grows"]),
-        (E, DRIFT.altered(h=0.16), 10_000, ["grows"]),  # at omega h = pi
         (R, Scene(h=1.2 / W0), 6000, ["loses"]),  # everything
         (V, SCENES["chaos-fenced"], 6000, ["chaotic"]),
         (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
@@ -112,7 +111,6 @@ def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
 @pytest.mark.parametrize(
     ("name", "seconds", "expected"),
     [
-        ("damped", 60, {"explicit_euler": "grows"}),
         ("stiff-slow", 300, {"rk4": "loses", "imex_euler": "loses"}),
         (
             "halving",

@@ -45,7 +45,6 @@ MAKES = {
     "a line that turns back": (NOISE + 2 * np.minimum(T, 160 - T) / 100, levels.TURNED),
 }
 RESTING = {
-    "relaxation to another level": 1 - np.exp(-T / 8) + 0.02 * NOISE,
     "a first sample far from the others": np.where(T > 0, 50 + NOISE, 0),
     "a rise by 50 % in the first twentieth": 0.5 - 0.5 * np.exp(-T) + 1e-3 * NOISE,
 }
@@ -367,6 +366,9 @@ def test_a_digit_is_a_jump_that_comes_three_times():
     energies[60:] = 1
     assert resolution(energies) == 1
     assert resolution(np.tile([0.0, 3.0, 1.0], 30)) == 1
+    digits = judge_record(T, np.round(T))
+    t = 100 * np.arange(64) / 64
+    assert digits.uncertainty == pytest.approx(1 / math.sqrt(12) / t.std() / 8, rel=0.2)
 
 
 def test_64_samples_are_needed():
