@@ -79,9 +79,8 @@ class Run:
 
     @property
     def milestones(self) -> list[Milestone]:
-        """The milestones, by step."""
-        milestones = (event.milestone for _, event in self.events if event.milestone)
-        return sorted(milestones, key=attrgetter("step"))
+        """The milestones, as they were noticed."""
+        return [event.milestone for _, event in self.events if event.milestone]
 
 
 class Recording:

@@ -7,9 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mcap.writer import Writer
 
-from pendu_tui.engine.methods import RK4
-from pendu_tui.engine.run.verdicts import Milestone
-from pendu_tui.recordings.events import Entry, Event, arithmetic_here, noticed, simulate
+from pendu_tui.recordings.events import Entry, Event, arithmetic_here, simulate
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
@@ -111,6 +109,9 @@ def test_a_file_of_another_program_is_called_so(tmp_path):
         writer.finish()
     with pytest.raises(RecordingError, match="not a recording of pendu-tui"):
         Recording.open(path)
+    path.write_bytes(b"")
+    with pytest.raises(RecordingError, match="its end is missing"):
+        Recording.open(path)
 
 
 def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
@@ -124,11 +125,8 @@ def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
         Recording.open(tmp_path / "a.mcap")
 
 
-def test_milestones_are_in_the_order_of_steps_also_while_time_runs_back():
+def test_the_way_of_a_run_grows_also_while_time_runs_back():
     run = Run(1, SCENE, arithmetic_here(), 0.0, 9.0)
-    for step, t in ((200, 10.0), (600, 4.0)):
-        run.add(9.0, noticed(1, Milestone("over the top", RK4, step, t, 0.1)))
-    assert [each.step for each in run.milestones] == [200, 600]
     for step, t, h in ((20, 2.0, -0.05), (60, 0.0, 0.1)):
         run.add(9.0, Event("set_h", 1, step, t, h=h))
     assert [change.x for change in run.changes] == [0.0, 2.0, 4.0]  # s on the way
