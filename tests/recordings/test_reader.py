@@ -193,7 +193,7 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(path, o
     verified = verify(path)  # up to the first loss
     assert (verified.identical, verified.first_difference) == (False, None)
     kept = values(out)
-    assert (recovery["damaged"], recovery["runs_lost"]) == (True, 0)
+    assert (recovery["file"], recovery["damaged"], recovery["runs_lost"]) == (str(path), True, 0)
     assert recovery["samples_kept"] == len(kept)
     assert recovery["entries_lost"] == len(whole) - len(kept) > 0
     after_gaps = [sample for sample in kept if sample not in whole]

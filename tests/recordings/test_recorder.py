@@ -21,7 +21,7 @@ from mcap.stream_reader import StreamReader
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Event, simulate, steps_for
-from pendu_tui.recordings.files import DiskError
+from pendu_tui.recordings.files import DiskError, in_use
 from pendu_tui.recordings.format import EVENTS
 from pendu_tui.recordings.recorder import LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
@@ -93,7 +93,8 @@ def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_writ
         recorder.add(stepped(step), 0.5)
     synced = []
     monkeypatch.setattr(os, "fsync", lambda _: synced.append(recorder.part.exists()))
-    recorder.close()
+    for _ in range(2):
+        recorder.close()
     assert synced == [True]  # on disk before it has its name
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
@@ -118,6 +119,7 @@ def test_a_live_recorder_has_every_sample_on_disk_after_half_a_second_without_a_
         assert time.monotonic() < deadline
         time.sleep(0.05)
     recorder.close()
+    recorder.add(stepped(3), 0.2)  # as a frame does that is still due
     with recorder.path.open("rb") as file:
         _, _, message = next(make_reader(file).iter_messages())
     assert 0 <= time.time_ns() - message.publish_time < 10e9  # by the clock on the wall
@@ -155,7 +157,7 @@ def test_a_writer_that_waits_for_the_disk_does_not_hang_the_close(tmp_path, monk
     time.sleep(0.05)
     recorder.close()
     assert writer.is_alive()
-    assert "does not answer" in recorder.failed
+    assert recorder.failed == f"{recorder.part}: the disk does not answer"
     writer.join()
 
 
@@ -172,10 +174,15 @@ def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_pa
     recorder = begin(Recorder(path, overwrite=True))
     recorder.keep_older()
     recorder.path.write_text("precious")
-    with pytest.raises(DiskError, match="appeared meanwhile"):
+    with pytest.raises(DiskError, match=f"{recorder.path}: .* appeared"):
         recorder.close()
     assert recorder.path.read_text() == "precious"
     assert verify(recorder.part).complete
+    recorder.part.unlink()
+    with suppress(DiskError), Recorder(path, overwrite=True) as recorder:
+        begin(recorder)
+        raise DiskError("is full", path)
+    assert not in_use(recorder.part)
     recorder.part.unlink()
     with Recorder(path, overwrite=True) as recorder:
         begin(recorder)
@@ -186,7 +193,7 @@ def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_pa
 
 
 def test_two_labs_never_write_to_the_same_file(recorder):
-    with pytest.raises(DiskError, match="is in use"):
+    with pytest.raises(DiskError, match=r"\.part: is in use"):
         Recorder(recorder.path)
 
 
@@ -196,7 +203,7 @@ def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_p
     recorder = LiveRecorder(tmp_path / "lab.mcap")
     for sample in simulate(SCENE, 4.0, recorder.add):
         recorder.add(Event("mark", 1, sample.step, sample.t), sample.t)
-    assert "is full" in recorder.failed
+    assert f"{recorder.path}: is full" in recorder.failed
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
         assert len(recording.events) == 30
