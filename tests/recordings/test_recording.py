@@ -7,10 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mcap.writer import Writer
 
-from pendu_tui.recordings.events import Entry, Event, arithmetic_here, simulate
+from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.format import without_extremes
-from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording, Run
 from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
@@ -72,17 +71,6 @@ def test_a_time_is_rounded_to_the_nearest_nanosecond(tmp_path, frame):
     with Recording.open(path) as recording:
         assert recording.sample(recording.at(clock)).value.step == 3
         assert len(list(recording.entries(clock, clock))) == 2  # the sample and the stop
-
-
-def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
-    with Recorder(tmp_path / "a.mcap") as recorder:
-        list(simulate(SCENE, 2.0, recorder.add))
-        recorder.flush()
-        with Recording.open(recorder.part) as recording:
-            assert (recording.complete, recording.damaged) == (False, False)
-            assert recording.reason == "its end is missing or damaged"
-            assert recording.samples == 21
-            assert recording.sample(recording.at(1.0)).value.step == 10
 
 
 def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_refused(
