@@ -18,7 +18,6 @@ ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
         (STABILITY, 6, "6 % of the swings", "pendulum", 2),
         (ACCURACY, 1, "4 % of", "points", 1),
     ],
-    ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
 def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, field, count):
     monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)

@@ -20,7 +20,7 @@ def test_methods_that_are_named_are_listed_alone():
     listed = pendu("methods", "rk4", "verlet", "--json").json["methods"]
     assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
     six = [method.key for method in METHODS[:6]]
-    assert "\nVerlet " not in pendu("methods", *six).out  # families are told of more
+    assert "\nVerlet " not in pendu("methods", *six).out
     answer = pendu("methods", "--json").json
     assert [method["key"] for method in answer["methods"]] == [method.key for method in METHODS]
     assert answer["compiled"] == available()

@@ -11,7 +11,7 @@ from tests.tui.command_line import PENDU
 
 @pytest.mark.slow
 def test_when_nobody_reads_any_more_the_recording_is_whole(tmp_path):
-    env = {**os.environ, "PENDU_RECORDINGS": str(tmp_path), "TERM": "dumb"}
+    env = {**os.environ, "PENDU_RECORDINGS": str(tmp_path)}
     line = [*PENDU, "live", "--plain", "--speed", "20"]
     with subprocess.Popen(line, env=env, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline().startswith("The lab runs at 20×")

@@ -12,8 +12,6 @@ import pytest
 from pendu_tui.recordings.verification import verify
 from tests.tui.command_line import PENDU
 
-pytestmark = pytest.mark.slow
-
 if not Path("/proc").is_dir():
     pytest.skip("needs /proc, to count the labs", allow_module_level=True)
 
@@ -70,6 +68,10 @@ class Server:
         pid = self.process.pid
         return Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
 
+    async def status(self) -> int:
+        async with aiohttp.request("GET", self.address) as page:
+            return page.status
+
     async def until_labs(self, count: int) -> None:
         async with asyncio.timeout(PATIENCE):
             while len(self.labs) != count:
@@ -98,6 +100,7 @@ async def server(tmp_path):
         await running.until_labs(0)
 
 
+@pytest.mark.slow
 async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path):
     async with server.tab() as first:
         async with server.tab() as second:
@@ -114,23 +117,26 @@ async def test_a_tab_shows_the_lab_takes_keys_and_ends_with_it(server, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-async def test_each_tab_records_into_the_folder_even_if_it_is_cut_off_under_a_flood_of_keys(
+async def test_so_many_tabs_record_into_the_folder_even_if_cut_off_under_a_flood_of_keys(
     tmp_path,
 ):
     folder = tmp_path / "recorded"
-    library = str(tmp_path / "library")
-    with serving("--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=library) as server:
+    options = ("--record", str(folder), "--scene", "spin", "--at-most", "2")
+    with serving(*options, PENDU_RECORDINGS=str(tmp_path / "library")) as server:
         async with server.tab((120, 40)) as one, server.tab() as other:
             await asyncio.gather(*(tab.shows("scene spin", "REC ") for tab in (one, other)))
+            assert await server.status() == 503
             for _ in range(300):
                 await one.press("v+-bpr .,")
             one.socket._response.connection.transport.abort()
         await server.until_labs(0)
-    results = [verify(path) for path in folder.iterdir()]
-    assert [(result.complete, result.identical) for result in results] == [(True, True)] * 2
+        assert await server.status() == 200
+    results = map(verify, folder.iterdir())
+    assert [(each.complete, each.identical) for each in results] == [(True, True)] * 2
     assert list(tmp_path.iterdir()) == [folder]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["SIGINT", "SIGKILL"])
 async def test_a_signal_ends_the_server_and_its_labs(name):
     number = getattr(signal, name)
