@@ -137,7 +137,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
         phase = (phase[0][kept], phase[1][kept])
         watched = Watched(*(each[kept] for each in watched))
     cells["error"][index] = watched.worst / watched.start
-    if method.symplectic and len(index):
+    if method.symplectic:
         wobbling = index[(watched.width > 1.1 * reach[index]) | (z[index] > method.linear_limit)]
         if len(wobbling):
             steady = np.where(z[wobbling] > method.linear_limit, ELSEWHERE, WOBBLES)
@@ -196,9 +196,9 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     Rep. 52 (1979) 263.
     """
     phases = method.on(UNIT, np.sin)
-    along = 1.0 + 0.0 * theta
-    across = 0.0 * theta
-    total = 0.0 * theta
+    along = 1.0
+    across = 0.0
+    total = 0.0
     for _ in range(steps):
         (theta, omega), (along, across) = tangent_map(phases, (theta, omega), (along, across), z)
         growth = np.hypot(along, across)

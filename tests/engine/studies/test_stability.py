@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from itertools import islice, pairwise
+from itertools import islice, pairwise, product
 
 import numpy as np
 import pytest
@@ -18,6 +18,7 @@ from pendu_tui.engine.methods import (
     VELOCITY_VERLET,
     method_of,
 )
+from pendu_tui.engine.methods.tangent import at_bottom
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.stability import (
@@ -172,6 +173,7 @@ def test_the_default_map_reaches_beyond_every_limit(cast):
     [
         (-0.7, 0.0, 0.7),
         (0.0, 2 * Scene().w0 * math.sin(0.6), 1.2),
+        (2 * math.asin(0.3), 0.8 * Scene().w0, math.pi / 3),
         (0.0, 1.999 * Scene().w0, 3.0784),  # 2 asin(0.9995)
         (0.0, 2.001 * Scene().w0, None),
         (0.0, 0.0, None),
@@ -179,6 +181,7 @@ def test_the_default_map_reaches_beyond_every_limit(cast):
 )
 def test_an_amplitude_is_that_of_the_exact_swing(theta, omega, expected):
     assert amplitude(Scene(theta=theta, omega=omega)) == pytest.approx(expected, abs=1e-4)
+    assert amplitude(Scene(theta=-3.1)) == 3.1  # to the last bit
 
 
 def test_a_ladder_has_the_scenes_own_step_and_amplitude():
@@ -192,19 +195,14 @@ def test_a_ladder_has_the_scenes_own_step_and_amplitude():
     assert near.z.tolist() == sorted([0.1, 0.2, Scene().z])
 
 
-def on_the_unit_circle_below_two(z):
-    return 1.0 if z <= 2 else z**2 / 2 - 1 + z * math.sqrt(z**2 / 4 - 1)
-
-
-@given(z=st.floats(1e-6, 3).filter(lambda z: abs(z - 2) > 1e-3))
-def test_the_amplification_is_the_textbooks(z):
-    # At z = 2 two multipliers meet and rounding shows as its square root; 1e-3 away it is below 1e-13.
-    for method, radius in (
-        (EXPLICIT_EULER, math.sqrt(1 + z**2)),
-        (RK4, math.sqrt(1 - z**6 / 72 + z**8 / 576)),
-        *((method, on_the_unit_circle_below_two(z)) for method in SYMPLECTIC),
-    ):
-        assert amplification(method, z) == pytest.approx(radius, rel=1e-12)
+@given(z=st.floats(1e-6, 3))
+def test_the_amplification_is_the_textbooks_and_the_largest_eigenvalue(z):
+    textbook = {EXPLICIT_EULER: 1 + z**2, RK4: 1 - z**6 / 72 + z**8 / 576}
+    for method, square in textbook.items():
+        assert amplification(method, z) == pytest.approx(math.sqrt(square), rel=1e-12)
+    for method in GENERAL:
+        radius = abs(np.linalg.eigvals(np.reshape(at_bottom(method, z), (2, 2)))).max()
+        assert amplification(method, z) == pytest.approx(radius, rel=1e-6)  # where two meet
 
 
 @given(z=st.floats(0.05, 1.9), beyond=st.floats(2.001, 1000))
@@ -214,8 +212,8 @@ def test_the_wobble_has_a_closed_form_and_none_without_an_ellipse(z, beyond):
     assert wobble(SYMPLECTIC_EULER, z) == pytest.approx(expected, rel=1e-12)
     for method in (EXPLICIT_EULER, RK4):
         assert wobble(method, z)[:2] == pytest.approx((1.0, 1.0), abs=1e-9)
-    for method in SYMPLECTIC:
-        assert wobble(method, beyond) == (0.0, 1.0, 1.0)
+    for method, edge in product(SYMPLECTIC, (2.0, beyond)):
+        assert wobble(method, edge) == (0.0, 1.0, 1.0)
 
 
 def largest_omega(scene, method, steps, enough=math.inf):
