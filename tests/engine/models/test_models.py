@@ -138,7 +138,10 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     assert true == pytest.approx(DAMPED.energy()(DAMPED.exact(2.0, 0.0).at(30.0)))
     expected = [1, math.log(reference.least / true)]
     assert reference.errors(30.0, true * math.e, 0.0) == pytest.approx(expected)
-    assert reference.least == pytest.approx(1e-24 * 9.81)
+    assert reference.least == 1e-24 * 9.81
+    small = DAMPED.reference(1e-3, 0.0)
+    assert small.least == 1e-24 * small.scale < 1e-29
+    assert DAMPED.reference(1e-157, 0.0).least == 1e-300
     assert reference.errors(30.0, math.inf)[0] == pytest.approx(math.log(1e300 / true))
     # of an energy that is hardly a number, and far back in time, there are still numbers
     assert DampedPendulum(9.81, 0.1).reference(1e-157, 0.0).errors(30.0, 0.0) == [0]
