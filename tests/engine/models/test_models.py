@@ -170,6 +170,7 @@ def test_the_spring_starts_stretched_by_4_percent_beyond_equilibrium():
     fast, _, solve = SPRING.parts()
     solution = solve(z, 0.01)
     assert solution == pytest.approx(z + 0.01 * fast(solution))
+    assert (solution / z).real > 0  # there is another beyond the pivot
     assert SPRING.spring_energy((z, w)) == pytest.approx(2500 / 2 * 0.04**2)
     assert SPRING.reference(1.0, 0.0).start == pytest.approx(6.5040, abs=1e-4)
     assert EXAMPLES["spring"].altered(stiffness=2500.0, h=0.02).z == pytest.approx(1.0)

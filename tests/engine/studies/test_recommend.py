@@ -33,12 +33,6 @@ def test_a_target_as_large_as_the_swing_is_refused():
         least_cost(study, "theta", study.sizes["theta"])
 
 
-def test_a_target_near_the_rounding_floor_is_reached():
-    best, *_ = least_cost(Study(DRIFT, 20.0, compiled), "theta", 2e-13)
-    assert best.method is R
-    assert best.reached.errors["theta"] <= 2e-13
-
-
 def test_a_method_far_dearer_than_another_is_given_up():
     study = Study(replace(DRIFT, cast=(E, R)), 10.0, compiled)
     seconds = count()  # each measurement takes one
