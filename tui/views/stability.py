@@ -236,7 +236,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.cells: Cells = self.grid.unknown()
         self._title = "Stability (F5)"
         self._state = ""
-        self.cursor = self.pointer = None
 
     @property
     def settled(self) -> bool:

@@ -214,7 +214,7 @@ class Lens(NamedTuple):
     times: int = 1
 
     def __call__(self, theta: float) -> float:
-        if self.times == 1 or not isfinite(theta):
+        if not isfinite(theta):
             return theta
         rest = remainder(theta, tau)
         edge = self.times * self.half

@@ -93,7 +93,9 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         await pilot.click(pane, at)
         await complete(pilot, pane)
         assert (live.stepping.h, pane.index) == (point.h, 3)
-        await pilot.press("up", "e")
+        await pilot.press("right")
+        assert pane.cursor.steps == RUNGS[3]
+        await pilot.press("escape", "up", "e")
         assert pane.index == 2
         assert "theta error" in str(pane.border_title)
         await pilot.hover(pane, (70, 2))

@@ -30,7 +30,7 @@ GRID = Grid((np.arange(12) + 0.5) * math.pi / 12, (np.arange(30) + 0.5) / 10, ST
 def half_lost() -> np.ndarray:
     """Every method holds below z = 1.5, and above loses a large swing later than a small one."""
     cells = GRID.unknown()
-    cells[:15] = np.array((STEPS, 1e-6, HOLDS), CELL)
+    cells[:15] = np.array((STEPS, 1e-13, HOLDS), CELL)
     cells[15:, :, :6] = np.array((5, 1.0, GROWS), CELL)
     cells[15:, :, 6:] = np.array((500, 1.0, GROWS), CELL)
     return cells

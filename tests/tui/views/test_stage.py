@@ -68,6 +68,7 @@ def test_a_lens_enlarges_small_angles_and_keeps_turns_order_and_the_top(theta, h
     assert lens(half / 2) == pytest.approx(times * half / 2)
     assert lens(theta + math.tau) == pytest.approx(lens(theta) + math.tau, abs=1e-6)
     assert lens(-theta) == -lens(theta)
+    assert lens(math.inf) == math.inf
     assert lens(math.pi) == pytest.approx(math.pi)
     assert lens(theta + 0.01) > lens(theta)
 
@@ -125,7 +126,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         await theatre.press("u")
         assert theatre.source.scene == SCENES["drift"]
         assert theatre.source.sample.step == before.step
-        for click, drag in (((14, 9), (15, 9)), ((12, 10), (12, 11))):
+        for click, drag in (((14, 9), (15, 9)), ((12, 10), (12, 11)), ((12, 9), (60, 9))):
             assert (await grabbed(theatre, click, wait=0))[0] is None
             assert (await grabbed(theatre, drag, wait=0))[0] is not None
         stage = theatre.stage.query_one(Stage)

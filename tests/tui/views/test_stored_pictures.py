@@ -114,8 +114,9 @@ def test_phase_space(snapshot):
     deep = small._replace(omega=-120.0).zoomed(1e-5, *small.middle)
     for part in (*(small.zoomed(0.6, x, 12) for x in (0, 40, 70)), deep):
         texts.append(look(Picture(framed(part, phase_picture(Portrait.of(part, model), [])))))
-    damped = Portrait.of(small, SCENES["damped"].equations)  # whose orbits are no curves
-    texts.append(look(phase_picture(damped, [], orbit=states[0])))
+    for name in ("damped", "linear"):  # orbits that are no curves of energy, and closed ones
+        portrait = Portrait.of(small, SCENES[name].equations)
+        texts.append(look(phase_picture(portrait, [], orbit=State(2.5, -4.0))))
     short = after(DRIFT, 1)
     points = method_points(short, short.sample, Shown(), None)
     texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))

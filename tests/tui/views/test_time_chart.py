@@ -44,10 +44,9 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert [word for word in text.split() if word in "esvr"] == ["e", "s", "v", "r"]
         t = chart.plot.at(29).t
         assert text.startswith(f"{t:.2f} s:")
-        scroll = dict.fromkeys(("delta_x", "delta_y", "button", "shift", "meta", "ctrl"), 0)
         x, y = chart.content_region.offset
-        where = {"screen_x": x + 29, "screen_y": y + 3}
-        chart.on_mouse_scroll_up(MouseScrollUp(chart, 30, 4, **scroll, **where))
+        scroll = None, x + 29, y + 3, *[0] * 6
+        theatre.app.post_message(MouseScrollUp(*scroll))
         await theatre.pilot.pause()
         await theatre.settled()
         stretch = theatre.stage.shown.stretch
@@ -60,7 +59,7 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.press("z")
         half = theatre.stage.shown.stretch
         assert half.end - half.begin == pytest.approx((stretch.end - stretch.begin) / 2)
-        chart.on_mouse_scroll_down(MouseScrollDown(chart, 30, 4, **scroll, **where))
+        theatre.app.post_message(MouseScrollDown(*scroll))
         await theatre.pilot.pause()
         farther = theatre.stage.shown.stretch
         assert farther.end - farther.begin == pytest.approx((half.end - half.begin) / 0.8)

@@ -53,6 +53,7 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     assert before.zoomed(1e-9, x, y).theta_span == pytest.approx(1e-3)
     assert before.zoomed(1e9, x, y).theta_span == pytest.approx(200 * math.pi)
     assert before.stepped(State(0.0, before.omega_at(60.0)), 0.0, 0.0) == (0.0, 0.0)
+    assert before._replace(wrap=False).stepped(State(9.0, 0.0), 0.0, 0.0) == (0.0, 0.0)
     near = [before.at(before.middle[0] + dots, 0.0).theta for dots in (0.45, 0.55)]
     assert [theta == 0 for theta in near] == [True, False]
     lowest = before.stepped(State(0.0, before.omega_at(47.0)), 0.0, -9.0)
