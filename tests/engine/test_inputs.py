@@ -20,7 +20,6 @@ from pendu_tui.engine.inputs import angle, number, seconds, start_angle
         (angle, "pi/2", math.pi / 2),
         (angle, "-2pi/3", -2 * math.pi / 3),
         (angle, "-0.5*π", -math.pi / 2),
-        (angle, "100", 100.0),
         (start_angle, "6.28", 6.28),
         (start_angle, "inf", math.inf),  # a scene says within which limits
         (start_angle, "-6.29rad", -6.29),

@@ -42,7 +42,7 @@ def words(lockstep):
     return [judgement.verdict for judgement in lockstep.judgements]
 
 
-def moved(scene, gaps, loops=PlainLoops):  # compiling takes longer than these runs
+def moved(scene, gaps, loops=PlainLoops):
     lockstep = Lockstep(scene, loops=loops, judged=True)
     for gap in gaps:
         lockstep.advance(gap)

@@ -141,6 +141,11 @@ def finite(reading):
     return all(map(math.isfinite, numbers))
 
 
+def test_a_spring_energy_is_relative_to_its_start():
+    stiff, *_ = Lockstep(SCENES["stiff-slow"]).sample().readings
+    assert (stiff.extra["spring_energy"], stiff.max_invariant_error) == (1, None)
+
+
 def test_from_a_tiny_start_relative_errors_stay_finite_too():
     lockstep = Lockstep(Scene(theta=1e-150, model="linear", h=100.0))
     lockstep.advance(1000)

@@ -34,12 +34,10 @@ def test_h_goes_along_1_2_5():
 
 
 @given(STEPPINGS)
-def test_the_next_step_size_up_or_down_keeps_its_sign_and_is_undone(
-    stepping,
-):
-    larger, smaller = stepping.next(up=True), stepping.next(up=False)
-    assert smaller.smallest < stepping.smallest < larger.smallest
-    assert {math.copysign(1, each.h) for each in (larger, smaller, stepping)} in ({1}, {-1})
+def test_the_next_step_size_up_keeps_the_sign_and_is_undone(stepping):
+    larger = stepping.next(up=True)
+    assert larger.smallest > stepping.smallest
+    assert larger.h / stepping.h > 0
     assert larger.next(up=True).next(up=False) == larger
 
 
