@@ -236,7 +236,7 @@ def _search(stream: BinaryIO, topics: dict[int, str]) -> Contents:
             contents.damage(f"{missing} entries are lost")
         elif missing < 0:
             contents.damage("its entries are out of order")
-        used = set(chain.from_iterable(group.channels for group in groups))
+        used = chain.from_iterable(group.channels for group in groups)
         has_events = any(contents.topics.get(number) == EVENTS for number in used)
         place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
         contents.places.append(place)

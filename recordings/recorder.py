@@ -80,7 +80,7 @@ class Recorder:
                 raise NameTakenError(why, self.part) from error
         with suppress(OSError):  # some file systems have no locks
             lock(self._file)
-        self._writer = Writer(self._file, chunk_size=1 << 62, enable_data_crcs=True)
+        self._writer = Writer(self._file, enable_data_crcs=True)
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def add(self, value: Sample | Event | None, clock: float) -> None:
