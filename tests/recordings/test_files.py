@@ -3,6 +3,7 @@
 import errno
 import os
 import re
+import signal
 import sys
 import time
 from contextlib import suppress
@@ -126,3 +127,19 @@ def test_an_error_of_the_disk_or_in_a_file_names_the_file_first(tmp_path):
             files.named(tmp_path),
         ):
             raise RecordingError(text)
+
+
+@pytest.mark.skipif(IS_WINDOWS, reason="has no such signals")
+@pytest.mark.parametrize("platform", ["linux", "win32"])
+def test_processes_are_ended_stopped_and_put_last(monkeypatch, platform):
+    monkeypatch.setattr(sys, "platform", platform)
+    calls = []
+    for module, name in ((os, "kill"), (os, "nice"), (signal, "signal")):
+        monkeypatch.setattr(module, name, lambda *each: calls.append(each))
+    system.kill(7, 3)
+    system.give_way()
+    system.stop()
+    system.stop_as_usual()
+    linux = [(7, signal.SIGKILL), (10,), (os.getpid(), signal.SIGSTOP)]
+    linux += [(each, signal.SIG_DFL) for each in (signal.SIGTSTP, signal.SIGCONT)]
+    assert calls == {"linux": linux, "win32": [(7, 3)]}[platform]

@@ -11,18 +11,17 @@ import pytest
 from pendu_tui.recordings.pytest import EnergyDrift, MethodProperties
 
 SEEDS = 20
-PARTICLES = 16
 
 
-def kicks(first=0.5, second=0.5, dropped=None):
-    """Return velocity Verlet with other factors of its kicks; each `dropped`-th step has but one."""
+def kicks(second=0.5, dropped=None):
+    """Return velocity Verlet with another second kick, which each `dropped`-th step lacks."""
 
     def step(force, phase, h):
         q, p = phase
         count = 0
         while True:
             count += 1
-            p = p + first * h * force(q)
+            p = p + 0.5 * h * force(q)
             q = q + h * p
             if dropped is None or count % dropped:
                 p = p + second * h * force(q)
@@ -85,14 +84,14 @@ def test_a_right_method_passes_and_each_of_its_properties_is_compared(method_gat
             method_gate.check(RIGHT, **claim)
 
 
-def chains(step, h, seconds, seeds=SEEDS):
+def chains(h, seconds, seeds=SEEDS):
     """Simulate chains with cubic and quartic springs; return times and the energies of each.
 
     The first 50 units of time, in which the chains come to equilibrium, are left out.
     """
     random = np.random.default_rng(2026)
-    q = np.zeros((seeds, PARTICLES))
-    p = random.normal(size=(seeds, PARTICLES))
+    q = np.zeros((seeds, 16))
+    p = random.normal(size=(seeds, 16))
 
     def stretched(q):
         return np.roll(q, -1, axis=1) - q
@@ -105,7 +104,7 @@ def chains(step, h, seconds, seeds=SEEDS):
     q, p = next(islice(RIGHT(force, (q, p), 0.05), 1000, None))
     energies = []
     steps = round(seconds / h)
-    phases = step(force, (q, p), h)
+    phases = RIGHT(force, (q, p), h)
     for _ in range(steps):
         q, p = next(phases)
         d = stretched(q)
@@ -116,7 +115,7 @@ def chains(step, h, seconds, seeds=SEEDS):
 
 def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
     powers = []
-    simulated = [(h, *chains(RIGHT, h, 60.0)) for h in (0.05, 0.1)]
+    simulated = [(h, *chains(h, 60.0)) for h in (0.05, 0.1)]
     for seed in range(SEEDS):
         runs = [(h, times, energies[seed]) for h, times, energies in simulated]
         order = energy_gate.check_order(runs, at_least=1.8)
@@ -137,41 +136,22 @@ def test_runs_that_are_too_short_to_tell_fail_and_say_how_long_they_must_be(ener
 
 
 @cache
-def record(step=RIGHT, seconds=150.0):
+def record(seconds=150.0):
     """Return the times and energies of one chain."""
-    times, energies = chains(step, 0.05, seconds, seeds=1)
+    times, energies = chains(0.05, seconds, seeds=1)
     return times, energies[0]
-
-
-LIMITS = {"max_error": 5e-3, "max_fluctuation": 1e-3, "max_drift": 1e-4}
-"""Of the right runs of 3000 steps the largest are 2.9e-3, 6.6e-4 and 3.6e-6."""
-
-
-@pytest.mark.parametrize(
-    ("broken", "reason"),
-    [
-        (stale, "the verdict is not bounded"),
-        (kicks(second=0.0), "the fluctuation is"),
-        (kicks(dropped=100), "the error is"),
-    ],
-    ids=["stale force", "no second kick", "dropped steps"],
-)
-@pytest.mark.filterwarnings("ignore:(overflow|invalid value)")
-def test_energies_of_broken_runs_fail_for_what_is_broken(energy_gate, broken, reason):
-    with failing(reason):
-        energy_gate.check(*record(broken), **LIMITS)
 
 
 def test_a_limit_is_compared_on_both_sides(energy_gate):
     judged = energy_gate.check(*record())
     assert energy_gate._properties == [("verdict", "bounded"), ("slope", judged.slope)]
-    for name, value in (
-        ("max_error", judged.max_error),
-        ("max_fluctuation", judged.fluctuation),
-        ("max_drift", judged.bound),
+    for name, value, reason in (
+        ("max_error", judged.max_error, "^the error is"),
+        ("max_fluctuation", judged.fluctuation, "^the fluctuation is"),
+        ("max_drift", judged.bound, "the drift is"),
     ):
         assert energy_gate.check(*record(), **{name: value})
-        with failing():
+        with failing(reason):
             energy_gate.check(*record(), **{name: 0.999 * value})
 
 
