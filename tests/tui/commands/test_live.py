@@ -75,6 +75,7 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path,
     asked = (SCENES["spin"], 3.0, (60, 16), TerminalOptions("dark", "half"))
     assert Path("spin.svg").read_text(encoding="utf-8") == str(asked)
     assert pendu(*picture).refused(5, "--force")
+    assert pendu(*picture, "-o", "b.svg").err == "pendu-tui: wrote b.svg\n"
 
 
 async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
@@ -114,7 +115,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     for command in (
         replay,
         ("replay", "drift", "--method", "mine.py"),
-        ("live", "--equal-cost", "--no-record", "--speed", 3),
+        ("live", asking, "--equal-cost", "--no-record", "--speed", 3),
         ("live", "--scene", asking, "--record", "new.mcap"),
     ):
         assert pendu(*command).code == 0
@@ -122,7 +123,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     gc.enable()
     assert ["record" in vars(screen) for screen in screens] == [False, True, False, True]
     assert screens[-1].record.keywords == {"file": Path("new.mcap")}
-    assert [screen.guide is None for screen in screens] == [True, True, True, False]
+    assert [screen.guide is None for screen in screens] == [True, True, False, False]
     assert methods == [[], ["mine.py"]]
     sources = [screen.source for screen in screens]
     given, usual, equal, live = sources
@@ -156,8 +157,6 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
 
 
 class App(SimpleNamespace):
-    """An app that ends at once."""
-
     def run(self, mouse: bool):
         return self.result
 
