@@ -165,9 +165,9 @@ def record_chart(
     edges = [trend + sigmas * (deviation or 0.0) for sigmas in (-2, 2)]
     span = np.concatenate([errors, *edges])
     rows = height - 2
-    y_axis = linear_axis(float(span.min()), float(span.max()), rows)
-    first = float(times[0])
-    last = float(times[-1])
+    y_axis = linear_axis(span.min(), span.max(), rows)
+    first = times[0]
+    last = times[-1]
     columns = columns_beside(y_axis.label_width, width)
     labels = number_ticks(first, last, max(columns // 12, 1))
     labels[max(labels)] += f" {unit}".rstrip()

@@ -101,7 +101,7 @@ class _Run(NamedTuple):
             return per_column(x, self.low, self.high, edges)
         hold = self.window.repeats
         if not log_time:  # in whole columns, or moving charts would flicker
-            column = float(edges[-1] - edges[0]) / (len(edges) - 1)
+            column = (edges[-1] - edges[0]) / (len(edges) - 1)
             hold = column * math.ceil(hold / column)
         magnitude = np.maximum(np.fmax(abs(self.low), abs(self.high)), FLOOR)
         # the errors at the start are zero
@@ -220,7 +220,7 @@ class _Plot(LineChart):
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
                 canvas.label(begin, self.rows - 1, text, QUIET)
         for text, level in self.levels.items():
-            down = canvas.height * min(max(1 - self.y_axis.share(level), 0.0), 1.0)
+            down = canvas.height * min(1 - self.y_axis.share(level), 1.0)
             canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
             row = max(int(down) // 4 - 1, 0)
             canvas.label(1, row, text, EXACT)
@@ -329,7 +329,7 @@ def _crossings(heights: Floats, times: Floats, repeats: float) -> list[tuple[int
             between = gap[before[-1] : after[0] + 1]
             at = int(before[-1] + np.nanargmin(abs(between)))
             width = min(abs(gap[before]).max(), abs(gap[after]).max())
-            found.append((float(width), at, float(one[at] + other[at]) / 2))
+            found.append((width, at, (one[at] + other[at]) / 2))
     clear = 0.5 * max([width for width, *_ in found], default=0.0)
     return [(at, height) for width, at, height in found if width >= clear]
 
@@ -348,9 +348,9 @@ def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
     known = [each for each in known if len(each)]
     if not known:
         return log_axis(-4, 0, rows)
-    top = min(float(np.nanmax(curves)), limit)
+    top = min(np.nanmax(curves), limit)
     bottom = min(np.sort(each)[len(each) // 40] for each in known)
-    return log_axis(float(bottom), float(max([top, *levels.values()])), rows)
+    return log_axis(bottom, max([top, *levels.values()]), rows)
 
 
 def _linear_y_axis(runs: list[_Run], levels: dict[str, float], rows: int) -> Axis:

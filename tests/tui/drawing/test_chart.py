@@ -54,7 +54,7 @@ def test_charts_as_they_are_stored(snapshot):
     names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     ghost = (window(t, 1.7 * grows), USUAL_CAST)
     changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
-    limit = {"line": Line("energy_error", -0.4, "limit")}
+    limit = {"line": Line("energy_error", -2.0, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
     pictures = [

@@ -142,6 +142,7 @@ def test_a_column_has_the_extremes_of_its_rows_and_of_those_held_from_before(dat
     x, low, high = data
     edges = np.linspace(0, 40, columns + 1)
     lows, highs = per_column(x, low, high, edges, hold)
+    assert len(lows) == columns
     edges -= 1e-9 * 40 / columns  # a row on an edge belongs to the right
     edges[-1] = np.nextafter(40, 41)
     for column, (begin, end) in enumerate(pairwise(edges)):
