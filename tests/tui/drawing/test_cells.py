@@ -98,8 +98,5 @@ async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it(monkeyp
             assert [each.text for each in lines] == [f"│{text.upper()}  │", "╰──────╯"]
         (line,) = cells.render_lines(Region(0, 0, 8, 1))
         assert line.text == "╭──────╮"
-        cells.display = False
-        await pilot.pause()
-        cells.display = True
-        await pilot.pause()
-        assert cells.text == "6x1"  # drawn anew
+        cells.on_show()
+        assert cells.text == "6x1"
