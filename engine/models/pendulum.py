@@ -154,17 +154,17 @@ def _rotation(start: _Start, k: float, k_prime: float) -> ExactMotion:
 
 
 def _separatrix(start: _Start) -> Callable[[float], State]:
-    """theta = 2 gd(u), omega = ±2 w0/cosh u, u = ±w0 t + u0: never upright."""
-    s, c, turns = _half_angle(start)
+    """theta = 2 gd(u), omega = ±2 w0/cosh u, u = ±w0 t: never upright.
+
+    Only starts at the bottom lie on it to 100 digits.
+    """
     rate = math.copysign(start.w0, start.omega)
-    offset = math.asinh(s / c)
 
     def motion(t: float) -> State:
-        u = rate * t + offset
+        u = rate * t
         decay = math.exp(-abs(u))  # cosh itself overflows at u = 711
-        return State(
-            turns + 4 * math.atan(math.tanh(u / 2)), 4 * rate * decay / (1 + decay * decay)
-        )
+        swung = 4 * math.atan(math.tanh(u / 2))
+        return State(start.theta + swung, 4 * rate * decay / (1 + decay * decay))
 
     return motion
 

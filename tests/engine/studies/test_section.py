@@ -95,9 +95,7 @@ def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
         *((2e-9, 6.8, 6, 0.11, False), (2e-9, 6.8, 6, -0.11, False)),
     ],
 )
-def test_in_an_island_every_qth_point_winds_around_a_centre_and_is_a_tenth_of_a_turn_off_in_all(
-    radius, turned, q, off, island
-):
+def test_every_qth_point_of_an_island_winds_around_a_centre(radius, turned, q, off, island):
     angle = np.linspace(1, 1 + turned, 4000)
     points = 2 + radius * np.cos(angle), radius * np.sin(angle)
     assert section._is_island(points, 1 / q + off / 4000, Fraction(1, q), False) == island
