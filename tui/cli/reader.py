@@ -131,8 +131,8 @@ def _uncut(line: str, above: list[str]) -> str:
 def _unmarked(lines: list[str]) -> list[str]:
     """Return lines without commas between thousands, in those that have decimal points, too."""
     text = "\n".join(lines)
-    if not any(map(text.__contains__, '=:";| \t')) or not _MAY_BE_MARKED.search(text):
-        return lines  # commas delimit
+    if not _MAY_BE_MARKED.search(text):
+        return lines
     unmarked = partial(_MARKED.sub, lambda found: found[0].replace(",", ""))
     return [unmarked(line) if _HAS_POINT.search(line) else line for line in lines]
 
@@ -174,7 +174,7 @@ def _records(document: Any) -> list[str]:
         if isinstance(item, dict):
             lines.append(_encoded(_flat(item)))
         else:
-            lines.append(" ".join(map(str, item if isinstance(item, list) else [item])))
+            lines.append(str(item).strip("[]"))
     return lines
 
 
@@ -226,7 +226,7 @@ def _flat(item: dict[str, Any], above: str = "") -> dict[str, Any]:
 def _arrays(stream: io.BufferedReader) -> Any:
     """Return the arrays of an .npz or .npy as lists, by name if they have names."""
     try:
-        loaded: Any = np.load(io.BytesIO(stream.read()), allow_pickle=False)
+        loaded: Any = np.load(io.BytesIO(stream.read()))
         names = getattr(loaded, "files", None) or loaded.dtype.names
         if names:
             return {name: loaded[name].squeeze().tolist() for name in names}
@@ -319,6 +319,7 @@ class _Text:
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
         self._labels = dict(enumerate(next(named, ())))  # names of columns by place
         self._passed = 0  # columns of earlier sets
+        self._shared = ""  # the only unit of xmgrace's y axis
         self._above: dict[str, list[str]] = {}  # the names in lines above one line of numbers
         self._over = ""  # such a line
         self._is_over = False  # the data have ended
@@ -503,6 +504,7 @@ class _Text:
                 shared = re.findall(r"\(([^()]*)\)", units)
                 energies = [unit for unit in shared if plain("energy", unit) and unit != "K"]
                 self._units = ("", energies[0] if len(energies) == 1 else "")
+                self._shared = shared[0] if len(shared) == 1 else ""
             case _:
                 return False
         return True
@@ -570,12 +572,11 @@ class _Text:
         """Add a row to the last table, or to one that begins here.  Return whether it is a row."""
         numbers = _numbers(fields)
         is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
+        sheet = self._tables[-1]
         if is_row:
-            sheet = self._tables[-1]
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
         elif opening == self._form[2] and (opening or numbers[0] is not None):
-            sheet = self._tables[-1]
-            is_below_row = sheet.last == self._line - 1 and not self._begins
+            is_below_row = sheet.last == self._line - 1
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
                 sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
             elif is_below_row and len(numbers) < self._form[1] and None not in numbers:
@@ -593,7 +594,7 @@ class _Text:
         if names is None:
             bare = [""] * len(fields)
             is_sure = None not in numbers[bool(form[2]) :] or self._worth(bare, numbers)
-            goes_on = is_like and not (self._begins and is_sure)
+            goes_on = is_like and not self._begins
             if not goes_on and (not is_sure or (any(last.names) and not self._begins)):
                 return False
         elif goes_on:
@@ -645,13 +646,13 @@ class _Text:
             return 0
         asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
         if not all(map(str.isdecimal, asked)):
-            return len(names) + 1
+            return len(names)
         known = known_names(names)
         if known > 1:
             return known
-        is_data = numbers is None or any(number(name) is not None for name in names)
+        is_data = any(number(name) is not None for name in names)
         is_first = not self._tables[-1].names or self._begins
-        return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
+        return int(is_first and not is_data and None not in (numbers or ()))
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
@@ -672,6 +673,8 @@ class _Text:
                 units[place] = "s"
             if match:
                 units[place] = match[2]
+            if place:
+                units[place] = units[place] or self._shared
         return units
 
 

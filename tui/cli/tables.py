@@ -99,7 +99,7 @@ def find(names: Sequence[str], text: str | None) -> Group | None:
 
 def _place(names: Sequence[str], text: str) -> int:
     """Return the column of a name or a number, -1 without it."""
-    if text.isdecimal() and 0 < int(text) <= len(names):
+    if text.isdecimal() and int(text) <= len(names):
         return int(text) - 1
     for way in (str.strip, str.casefold, _bare):
         keys = [way(name.strip()) for name in names]
@@ -274,9 +274,8 @@ class Sheet:
             self._values[place].extend(values)  # type: ignore[arg-type]
         self.last = lines[-1]
         self.error = ""
-        is_sampled = self.puts >= SAMPLE
         self.puts += len(lines)
-        if self.puts >= SAMPLE and not is_sampled:
+        if self.puts - len(lines) < SAMPLE <= self.puts:
             self.choose()
 
     def put_cut(self, line: int, numbers: Sequence[Any]) -> None:
