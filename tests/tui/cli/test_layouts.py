@@ -32,7 +32,7 @@ CASES = {
     ),
     "GROMACS md.log": (
         "Time ps, Conserved En. kJ/mol",
-        "Started mdrun on rank 0\n",
+        "Started mdrun on rank 0\n           Step           Time\n\n",
         "           Step           Time\n{s:15}{t:15.5f}\n\n"
         "   Energies (kJ/mol)\n"
         "    Kinetic En.   Total Energy  Conserved En.    Temperature Pressure (bar)\n"
@@ -43,7 +43,7 @@ CASES = {
         "TS, TOTAL kcal/mol",
         "ETITLE:      TS           BOND         TOTAL          TEMP\n",
         "ENERGY: {s:7}       1.5     {e:14.4f}       302.7\nInfo: a remark with 1 number",
-        "",
+        "1 remark with a number\n",
     ),
     "CHARMM": (
         "Time ps, TOTEner kcal/mol",
@@ -66,7 +66,8 @@ CASES = {
         "",
         " NSTEP ={n:9}   TIME(PS) ={t:12.3f}  TEMP(K) =   300.00  PRESS =     0.0\n"
         " Etot   ={e:14.4f}  EKtot   ={k:14.4f}  EPtot      ={p:14.4f}",
-        "      A V E R A G E S   O V E R    1000 S T E P S\n Etot   =  1.0  EKtot   = 20.0\n",
+        "      A V E R A G E S   O V E R    1000 S T E P S\n"
+        " Etot   =        1.0000  EKtot   =       20.0000  EPtot      =      -19.0000\n",
     ),
     "CP2K's output": (
         "Time fs, Conserved quantity hartree",
@@ -151,7 +152,7 @@ def test_each_layout_reads_its_case(layout):
     series = tables(head + rows(row) + foot, layout.file.replace("\\", ""))[-1]
     assert columns(series) == found
     assert list(series.energies) == pytest.approx(ENERGIES, abs=0.006)
-    assert len(series.times) == 90
+    assert (len(series.times), series.skipped) == (90, 0)
 
 
 def test_of_the_errors_that_end_a_log_the_first_is_told():
@@ -181,7 +182,12 @@ def test_the_words_before_a_number_are_its_name_which_is_not_certain_twice_in_a_
     assert found is None or series.energies == pytest.approx(ENERGIES)
 
 
-MORE = [("", "Start\n" + LOOP, "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
+MORE = [
+    ("", "Start\n" + LOOP, "t = {t}, E = {e}"),
+    ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,"),
+    ("", "t,E\n", "t,E\n{t},{e}\n{t}1,{e}\n{t}2,{e}"),
+    ("", "t,E\n", "{t},{e}\nsaved as file {n}"),
+]
 
 
 @pytest.mark.parametrize("case", [*CASES.values(), *MORE])

@@ -73,13 +73,16 @@ def columns(series: Series) -> str | None:
         ("Time (ps) Total E (eV)", "{t} {e}", "Time ps, Total E eV"),
         ("x,E", "{t},{e}", "x, E"),  # evenly
         ("x E\n--- ---", "{t} {e}", "x, E"),
-        ("x,E", "{n}e{n},{e}", None),  # unevenly
+        ("t E\n(ps) (eV) (K)", "{t} {e}", "t, E"),
+        ("now NVE\nt E", "{t} {e}", "t, E"),
+        ("seed 7,", "{t} {e}", "column 1, column 2"),
+        ("x,E", "{n}e{n},{e}", None),
         ("", "{n}e{n} {e}", "column 1, column 2"),
         ("x,E", "{k},{e}", "row, E"),  # no column increases
-        ("x,E", "{b},{e}", None),  # bodies in turn
+        ("x,E", "{b},{e}", None),  # bodies
         ("x,E", "{f},{e}", "row, E"),
         ("x,E", "5,{e}", "row, E"),
-        ("KE,E", "{b},{e}", "row, E"),  # an orbit
+        ("KE,E", "{b},{e}", "row, E"),
         ("t,total,Total Energy", "{t},{k},{e}", "t, Total Energy"),
         ("time,t_sim,energy", "{s},{t},{e}", "t_sim, energy"),
         ("t [Frames],E", "{t},{e}", "t Frames, E"),
@@ -94,6 +97,7 @@ def columns(series: Series) -> str | None:
         ("t,KE,PE,mechanical energy", "{t},{k},{p},{e}", "t, mechanical energy"),
         ("t,KE,PE,total", "{t},{k},{p},1000", None),  # of particles
         ("t,KE,PE,total", "{t},{k},{p},1000.00{n:02}", None),
+        ("t,KE,PE,E", "{t},{k},{p},1000", None),
         ("t,KE,PE,total", "{t},20,-366.8,{e}", "t, total"),  # 0.5 % from their sum
         ("t,KE,PE,total", "{t},20,-383,{e}", None),  # 5 %
         ("t,KE,energy", "{t},{k},{p}", None),
@@ -179,7 +183,7 @@ def test_thousands_may_have_commas_beside_decimal_points(form):
 
 def test_words_between_rows_that_name_one_column_are_no_head():
     table = rows("{t} {e} {k}").splitlines(keepends=True)
-    table[45:45] = ["the time passed\n"]
+    table[45:45] = ["the time passed\n", "total energy drift\n"]
     (series,) = tables("t E K\n" + "".join(table))
     assert len(series.times) == 90
 
@@ -214,7 +218,8 @@ def array(*unnamed: object, **named: object) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        "\ufeff" + json.dumps({"run": {"h": 0.5, "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
+        "\ufeff" + json.dumps({"run": {"h": [], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
+        json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
@@ -257,10 +262,13 @@ def test_blocks_of_any_size_hold_the_same(text, size, monkeypatch):
 
 def test_columns_of_inner_arrays_have_numbers():
     pairs = [[0.0, energy] for energy in ENERGIES]
-    for data in (array(t=TIMES, e=pairs), json.dumps({"t": TIMES, "e": pairs})):
+    documents = array(t=TIMES, e=pairs), json.dumps({"t": TIMES, "e": pairs})
+    for data in (*documents, rows('{{"t": {t}, "e": [0.0, {e}]}}')):
         (series,) = tables(data, energy="3")
         assert columns(series) == "t, e_2"
         assert list(series.energies) == ENERGIES
+    (series,) = tables(json.dumps({"e": [*zip(TIMES, ENERGIES, strict=True)]}), energy="2")
+    assert columns(series) == "e_1, e_2"
 
 
 @pytest.mark.parametrize(
@@ -298,6 +306,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", 45.0, 1),
         ("t K E\n" + rows("{t} 3 {e}") + "**********\ndone\n**********\n", None, 2),
         ("n t E\n" + rows("{n} {t} {e}") + 2 * "**********\n", 44.5, 2),
+        ("ETITLE: t B E\n" + rows("ENERGY: {t} 1 {e}") + 2 * "ENERGY: 45.0 nan\n", 44.5, 2),
         ("t,E\n" + rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
         ("t,E\n" + rows("{t},{e}") + "45.0,\n", None, 1),  # cut while it is written
         ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no numbers
@@ -352,6 +361,7 @@ OBJECTS = rows('{{"t": {t}, "E": {e}}}')
         (OBJECTS, '{"k": -nan(ind), "p": +1.D+02}', 0),
         ("t,E,K,P\n" + rows("{t},{e},{k},{p}"), "a gap,,,", 2),
         ("t,E\n" + rows("{t},{e}"), "# a note, 5", 0),
+        ("t,E\n" + rows("{t},{e}"), "# a note, b", 0),
         ("t,E\n" + rows("{t},{e}"), "t,E", 0),
         ("t E\n" + rows("{t} {e}"), "a note", 0),
     ],
@@ -395,7 +405,7 @@ def test_units_of_time_are_known_ones(read, form):
 
 
 def test_units_of_energy_are_those_of_no_other_kind():
-    for unit in ("ps", "bar"):
+    for unit in ("ps", "bar", "GPa", "m", "m/s", "rad", "V"):
         with pytest.raises(ValueError, match=f"'{unit}' is not .* unit of energy"):
             assignments(f"energy={unit}")
 
@@ -453,6 +463,8 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         ("t,E\n" + rows("{t},{e}\n{t},{e}"), [1, 90]),
         (f"Step A B E\n{rows('{s} 1 2 {e}')}Step E\n1 2 3 4\nStep E\n{rows('{s} {e}')}", [90, 90]),
         ("a n t E\na 5 0.1-1.0\n" + rows("a 5 {t} -{k}").replace("7.0 ", "7.0"), [90]),
+        ("t,E\n" + rows("{t},{e}\na = {n}, b = {s}, E = {k}"), [90]),
+        ("DYNA DYN: Step  Time  E\n" + rows("DYNA> {n} {t} {e}\nAVER DYN: Step  Time  E"), [90]),
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
         (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
@@ -499,7 +511,7 @@ BROKEN = (
     ("1,1\n" * 20_001, "more than 20,000 lines"),
     ("1 2\n1\n" * 5, "more than 9 tables"),
     ('{"t": 1}\n' * 9000, "more than 80,000 characters"),
-    ("t,E\n" + rows("{t},1", 0, 30) + rows("{t},1,1"), "the number of columns"),
+    ("t,E\n" + rows("{t},1", 0, 30) + rows("{t},1,1", 30), "the number of columns"),
     ("t,E\n" + rows("-{t},1"), "name the column of times"),
     ("t,E\n0,1\n9e9,1\n" + rows("{t},1", 1), "name the column of times"),
     ("t,E\n" + rows("{t},{e}\n{t},{k}"), "grep"),
@@ -512,6 +524,7 @@ MISUSED = (
     ("t,K [J],P [eV]\n" + rows("{t},{k},{p}"), {"energy": "K+P"}, r"K\+P differ \(J, eV\)"),
     ("t,E [J]\n" + rows("{t},{e}"), {"units": {"energy": "eV"}}, "E is in J, not in eV"),
     (TABLE, {"step": (0.5, "fs"), "time": "t"}, "t is a time already"),
+    (TABLE + 2 * "nan,nan\n", {"start": 50.0}, "from 0 to 44.5, none from 50 to inf"),
     ("T (ps),E\n" + rows("{t},{e}"), {"step": (0.5, "fs")}, "T is a time already"),
 )
 
@@ -526,7 +539,7 @@ def test_what_cannot_be_read_or_judged_is_one_sentence(text, wanted, words, monk
         monkeypatch.setattr(f"pendu_tui.tui.cli.reader.MAX_{name}", value)
     with pytest.raises(UserError, match=words) as error:
         tables(text, **wanted)
-    assert error.value.code == (2 if wanted else 3)
+    assert error.value.code == (2 if {*wanted} - {"start"} else 3)
 
 
 @pytest.mark.parametrize("legends", [("Total Energy", "Potential"), ("Potential", "Total Energy")])
@@ -538,6 +551,8 @@ def test_each_set_of_xmgrace_has_its_own_legend(legends):
     (series,) = (each for each in found if not each.choice.doubt)
     assert columns(series) == "Time ps, Total Energy kJ/mol"
     assert list(series.energies) == ENERGIES
+    (series,) = tables(axes + sets["Potential"])
+    assert series.units == ("ps", "kJ/mol")
 
 
 def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
@@ -577,4 +592,5 @@ def test_a_name_may_have_a_plus_and_its_unit_counts_before_its_case_does_not():
 def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
     table = (("a", "b"), ("", ""), [(0, 1, 2), (3, 4, 5)])
     assert choose(*table, Wanted(energy="1"))[:2] == ((1,), (0,))
-    assert choose(*table, Wanted(step=(1.0, "")))[:2] == ((), ())
+    assert choose(*table, Wanted(step=(1.0, ""))).doubt == "the total energy"
+    assert choose(*table, Wanted()).doubt == "the time and the total energy"

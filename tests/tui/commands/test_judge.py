@@ -45,7 +45,6 @@ FILES = {
     "both.log": f"{LOG}\nStep Temp Press\n" + lines("{n} {e} {e}"),
     "printed.txt": lines("t = {t}, E1 = {e}, E2 = {e}"),
     "bodies.csv": "body,E\n" + "".join(f"{n % 3},-1.{n % 7}\n" for n in range(30)),
-    "flags.csv": "E,flag\n" + "".join(f"-1.{n % 7},{int(n % 9 == 0)}\n" for n in range(90)),
     "errors.csv": "t,dE/E\n"
     + lines("{t},{e}", [(t, 1e-6 * (e - 100) + (t == 9)) for t, e in ROWS]),
     "steps.txt": "Step E\n" + lines("{n} {e}", [(t, e + t) for t, e in ROWS]),
@@ -83,11 +82,9 @@ printed.txt --json
 printed.txt --energy E2
 bodies.csv
 bodies.csv --step 1fs
-flags.csv
 errors.csv
 steps.txt --step 2 --units time=ps
 steps.txt {PER_ATOM}
-steps.txt --step 2fs --from 0.1ps --to 500fs
 steps.txt {PER_ATOM} --fail-if 'energy_per_ns_per_atom > 5005 or skipped > 0'
 steps.txt {PER_ATOM} --fail-if 'kt_per_ns_per_atom > 194000'
 steps.txt faster.txt --steps 1,2 --atoms 10 --step 1fs --units energy=eV --json
@@ -140,13 +137,9 @@ WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
         ("1 2\n", "1 2+", 2, "there is no column ''"),
         (TABLE, "1 3", 2, "there is no column '3'; choose from t, E"),
         ("1 2\n", "t E", 2, "choose from 1, 2"),
-        ("t,E\nnan,1\n", "t E", 3, "no row of numbers"),
         ("t,E\n0,nan\n1,inf\n2,nan\n", "t E", 3, "at 0 its energy is already nan"),
         (b"\x1f\x8b\x08\x00rest", "1 2", 3, "cannot be unpacked"),
         (TABLE, "t E --table 2", 2, "no table 2; the input has 1"),
-        (TABLE, "t E --from 5 --to 4", 2, "no time from 5 to 4"),
-        (TABLE, "t E --from 50", 3, "from 0 to 29.9, none from 50"),
-        (TABLE, "t E --from 5fs", 2, "the unit of time is not known"),
         (TABLE, "t E --atoms 10", 2, "--step 0.5fs"),
         ("t,E\n0,0\n1,1\n", "t E", 2, "give a typical energy with --scale"),
         (UNITS, "t E --scale kinetic:K", 2, "of K and the energy differ (kJ/mol, kcal/mol)"),
