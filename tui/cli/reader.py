@@ -286,7 +286,7 @@ class Found(NamedTuple):
     lines: list[int]
     places: Group = ()
     columns: Sequence[Sequence[float | None]] = ()
-    needed: int | None = None  # how many columns need a value, from the first; None: all
+    needed: int = 0  # how many columns need a value, from the first
 
     def blanks(self) -> list[int]:
         """Return where the columns that need a value have their first blank."""
@@ -414,7 +414,7 @@ class _Text:
         shapes = "\0".join(fields[::2]).split("\n")
         unknown = (at for at, shape in zip(lines, shapes, strict=True) if shape not in self._shapes)
         for at in islice(unknown, 1):
-            yield Found(self._prints[-1], [at], (), [[None]])
+            yield Found(self._prints[-1], [at], (), [[None]], needed=1)
         starts = [0, *accumulate(2 * shape.count("\0") for shape in shapes)]
         for shape in {*shapes} & self._shapes.keys():
             places, picks = self._shapes[shape]
@@ -599,7 +599,7 @@ class _Text:
                 return False
         elif goes_on:
             last.heads.append(self._line)
-        for line, ways in self._heads.items() if goes_on else ():
+        for line, ways in self._heads.items():
             if names in ways and len(self._page) < MAX_HEADS:
                 self._page.add(line)
             elif not any(map(self._worth, ways)):  # it never will be a head
