@@ -95,8 +95,9 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         assert (live.stepping.h, pane.index) == (point.h, 3)
         await pilot.press("right")
         assert pane.cursor.steps == RUNGS[3]
-        await pilot.press("escape", "up", "e")
-        assert pane.index == 2
+        await pilot.press("up")
+        assert (pane.index, pane.cursor.method.key) == (VERLET, "velocity_verlet")
+        await pilot.press("escape", "e")
         assert "theta error" in str(pane.border_title)
         await pilot.hover(pane, (70, 2))
         assert pane.pointer is None  # far from any point

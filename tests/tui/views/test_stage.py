@@ -104,10 +104,10 @@ async def grabbed(theatre, *moves, start=(12, 9), wait=0.3):
         await theatre.pilot.hover(stage, offset=move)
     await theatre.pilot.pause(wait)
     held = theatre.stage.shown.held
-    texts = theatre.text(ErrorTable), str(stage.border_subtitle)
+    table = theatre.text(ErrorTable)
     await theatre.pilot.mouse_up(stage, offset=moves[-1])
     await theatre.pilot.pause()
-    return held, *texts
+    return held, table
 
 
 async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go():
@@ -116,9 +116,8 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
         await theatre.run(2)
         before = theatre.source.sample
         # two dots right of the pivot and two below
-        _, table, below = await grabbed(theatre, (30, 9), (23, 12), start=(22, 12))
+        _, table = await grabbed(theatre, (30, 9), (23, 12), start=(22, 12))
         assert table.count("+0.785") == 4
-        assert below == "let go or throw"
         scene = theatre.source.scene
         assert (scene.theta, scene.omega) == (0.785, 0.0)
         assert [event.kind for event in theatre.source.events] == ["start", "start"]
