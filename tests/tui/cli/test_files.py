@@ -58,7 +58,7 @@ def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after,
     assert error is not OSError or str(raised.value) == f"{file}: full"
     assert file.read_text() == "older"
     assert list(tmp_path.iterdir()) == [file]
-    assert signal.getsignal(SIGTERM) is before is signal.SIG_DFL
+    assert signal.getsignal(SIGTERM) is before is not signal.default_int_handler
 
 
 @needs_signals
