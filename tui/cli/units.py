@@ -27,7 +27,10 @@ BOLTZMANN = {  # per kelvin, in the 2019 SI
     "erg": 1.380649e-16,
     "k": 1.0,
 }
-_NO_ENERGIES = ("bar", "gpa", "m", "m/s", "rad", "v", "v/m")
+_NO_ENERGIES = (
+    *("bar", "kbar", "atm", "gpa", "mpa", "g/cm^3", "a^3", "nm^3", "%"),
+    *("m", "m/s", "rad", "rad/s", "deg", "n", "v", "v/m"),
+)
 MAX_NAME = 100  # characters
 _KNOWN = {"time": NANOSECONDS, "energy": BOLTZMANN}
 _PER_MOLE = r"(/?mole?|[\s.·]mol\^?(-1|⁻¹))"

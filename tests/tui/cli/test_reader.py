@@ -102,7 +102,7 @@ def columns(series: Series) -> str | None:
         ("t,a,e", "{t},1,{e}", None),  # eccentricity
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
-        ("t,energy (ps)", "{t},{e}", None),
+        ("t,energy error (%)", "{t},{e}", None),
         ("t,E (V/m)", "{t},{e}", None),
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
         ("  t     E", "{n:<4} {t} {e}", "t, E"),  # pandas
