@@ -167,8 +167,8 @@ def golden_names() -> list[str]:
 
 
 def _is_recording(path: Path) -> bool:
-    """Return whether a file has the name and the profile of our recordings."""
-    if not path.name.endswith((SUFFIX, SUFFIX + PART)):
+    """Return whether a file, not a pipe, has the name and the profile of our recordings."""
+    if not (path.name.endswith((SUFFIX, SUFFIX + PART)) and path.is_file()):
         return False
     profile = len(PROFILE).to_bytes(4, "little") + PROFILE.encode()
     with path.open("rb") as file:

@@ -233,7 +233,7 @@ class Recording:
             return entries
         except (RecordingError, OSError) as error:
             self.damaged = True
-            self.reason = str(error)
+            self.reason = self.reason or str(error)
             return gap
 
     def _decoded(self, groups: list[Group], only_events: bool) -> Iterator[Entry]:

@@ -8,6 +8,7 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from mcap.writer import Writer
@@ -59,6 +60,8 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
     (library / "notes.txt").write_bytes(old.read_bytes())
     (library / "folder.mcap").mkdir()
     (library / "empty.mcap.part").touch()
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(library / "pipe.mcap")  # to open it would wait for a writer
     for name, profile in (
         ("robot.mcap", "ros2"),
         ("robot.mcap.part", "ros2"),  # a browser's download is called so, too
@@ -143,3 +146,49 @@ def test_processes_are_ended_stopped_and_put_last(monkeypatch, platform):
     linux = [(7, signal.SIGKILL), (10,), (os.getpid(), signal.SIGSTOP)]
     linux += [(each, signal.SIG_DFL) for each in (signal.SIGTSTP, signal.SIGCONT)]
     assert calls == {"linux": linux, "win32": [(7, 3)]}[platform]
+
+
+def test_windows_locks_a_byte_behind_all_data_and_renames_without_links(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(os, "link", None)
+    locked = []
+
+    def locking(number, mode, size):
+        locked.append((os.lseek(number, 0, os.SEEK_CUR), mode, size))
+
+    windows = SimpleNamespace(LK_LOCK="lock", LK_NBLCK="probe", locking=locking)
+    monkeypatch.setattr(system, "msvcrt", windows, raising=False)
+    with (tmp_path / "a").open("wb") as file:
+        file.write(b"data")
+        file.flush()
+        system.lock(file)
+        system.lock(file, probe=True)
+        assert os.lseek(file.fileno(), 0, os.SEEK_CUR) == 4
+    assert locked == [(0x7FFFFFFF, "lock", 1), (0x7FFFFFFF, "probe", 1)]
+    system.rename(tmp_path / "a", tmp_path / "b")
+    assert (tmp_path / "b").read_bytes() == b"data"
+
+
+@pytest.mark.skipif(IS_WINDOWS, reason="has other terminals")
+def test_a_terminal_is_read_key_by_key_and_given_back_to_the_shell():
+    import termios
+
+    keyboard, screen = os.openpty()
+    stderr = os.dup(2)
+    os.dup2(screen, 2)
+    try:
+        settings = system.terminal_state()
+        with system.key_by_key(2) as is_possible:
+            assert is_possible
+            assert not termios.tcgetattr(2)[3] & (termios.ECHO | termios.ICANON)
+        system.restore_terminal(settings)  # the shell has it still
+        termios.tcsetattr(2, termios.TCSANOW, [*settings[:3], 0, *settings[4:]])
+        system.restore_terminal(settings)
+        assert termios.tcgetattr(2) == settings
+        assert os.read(keyboard, 500) == system.PLAIN_SCREEN
+        assert not system.is_gone()
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        assert system.is_gone()
+        assert system.terminal_state() is None
+    finally:
+        os.dup2(stderr, 2)

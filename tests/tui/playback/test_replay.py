@@ -17,6 +17,7 @@ from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from tests.own_methods import VERLET, load
 from tests.recordings.examples import samples_of
@@ -198,6 +199,18 @@ def test_the_next_event_and_the_one_before_are_found(replay):
     for place in reversed(places[:-1]):
         replay.seek_event(-1)
         assert replay.playhead.position == place
+
+
+def test_a_change_of_h_counts_from_its_moment_between_steps_and_in_a_pause(tmp_path):
+    acts = []
+    for h in (0.1, 0.2, 0.3):
+        acts += [lambda lab, h=h: lab.change(Stepping(h)), lambda lab: lab.step(1)]
+    scene = DEFAULT_SCENE.altered(h=0.5)
+    path = recorded(tmp_path / "lab.mcap", Live.mark, 0.8, *acts, scene=scene)
+    replay = Table(path).replay
+    replay.seek(0.8)
+    steps = [(replay.stepping.h, replay.step(-1).step) for _ in range(4)]
+    assert steps == [(0.3, 3), (0.3, 2), (0.2, 1), (0.5, 0)]
 
 
 @pytest.mark.parametrize("seconds", [4.7, 11.0])
