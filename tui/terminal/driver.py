@@ -18,8 +18,8 @@ from pendu_tui.tui.terminal.options import CharacterSet
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:
     """Return a replacement for each braille character, by its upper and lower dots."""
-    upper = 0x1B  # in Unicode's order
-    lower = 0xE4
+    upper = 0b00011011  # a bit for each dot, in Unicode's order
+    lower = 0b11100100
     return {
         0x2800 + dots: blank_upper_lower_both[bool(dots & upper) + 2 * bool(dots & lower)]
         for dots in range(256)
