@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.verdicts import VERDICTS
-from pendu_tui.tui.cli.checks import FIELDS, parse
+from pendu_tui.tui.cli.checks import FIELDS, Check, conclude, parse
 
 SIGNS = ["<", "<=", ">", ">=", "==", "!="]
 KEYS = [method.key for method in USUAL_CAST]
@@ -27,6 +27,16 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
 def test_a_comparison_is_that_of_python(key, field, sign, value, number):
     found = f"{key}.{field} is {value:.3g}" if eval(f"{value!r} {sign} {number!r}") else ""
     assert parse(f"{key}.{field}{sign}{number!r}")(reading(**{field: value})) == found
+
+
+def test_the_failed_checks_are_counted_and_the_first_is_told(capsys):
+    checks = [Check("a", ""), Check("b", "x is 1"), Check("c", "x is 2")]
+    assert conclude("x > 0", checks[:1]) == 0
+    assert conclude("x > 0", checks[1:2]) == conclude("x > 0", checks, "files") == 1
+    assert capsys.readouterr().err == (
+        "pendu-tui: the check failed: x > 0 (x is 1)\n"
+        "pendu-tui: the check failed in 2 of 3 files, first at b: x > 0 (x is 1)\n"
+    )
 
 
 def test_parentheses_join_as_in_python():
