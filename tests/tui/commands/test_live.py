@@ -80,12 +80,15 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path,
 
 async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
     asked = []
-    done = property(lambda pane: asked.append(pane) or len(asked) not in (1, 4))
+    done = property(lambda pane: asked.append(pane) or len(asked) not in {*range(10), 13})
     monkeypatch.setattr(CellWidget, "settled", done, raising=False)
-    still = await lab.still(DEFAULT_SCENE, 1.0, (60, 16), TerminalOptions("dark", "ascii"))
+    monkeypatch.setattr("pendu_tui.tui.playback.live.FRAME_BUDGET", 1e-9)  # it has all the time
+    look = TerminalOptions("dark", "ascii")
+    still = await lab.still(DEFAULT_SCENE, 1.0, (60, 16), look, keys="e")
     assert ">1.00" in still
+    assert "|dE/E0|" not in still  # but the next quantity
     assert not re.search("[\u2801-\u28ff]", still)
-    assert len(asked) > 4
+    assert len(asked) > 13
 
 
 @pytest.fixture
@@ -156,6 +159,17 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
     assert len(listing()) == 1
 
 
+def test_a_replay_is_told_from_its_start_to_its_end():
+    told = pendu("replay", "drift", "--plain", "--speed", 500, "--start-at", 7)
+    assert (told.code, told.err) == (0, "")
+    first, *_, size, over, gains, loses = told.out.splitlines()
+    assert first.startswith("The replay runs at 500× speed and is at 7.00 s of run 1 of")
+    assert size == "The recording drift.mcap is 15.00 s long."
+    assert over == "7.15 s: Explicit Euler over the top, 5.1 E0."
+    assert gains == "8.75 s: Explicit Euler: + grows."
+    assert loses == "8.75 s: RK4: - loses."
+
+
 class App(SimpleNamespace):
     def run(self, mouse: bool):
         return self.result
@@ -165,8 +179,9 @@ class App(SimpleNamespace):
 
 
 def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_command(monkeypatch):
-    def shown(result: object = None, code: int | None = None, **environment: str) -> int:
+    def shown(result: object = None, code: int | None = None, theme="auto", **environment: str):
         nonlocal app
+        options = parser_of("live").parse_args(["--theme", theme])
         monkeypatch.setattr(lab, "environment", lambda: {"TERM": "xterm-256color"} | environment)
         app = App(result=result, return_code=code)
         return lab.show(LabScreen(Live(DEFAULT_SCENE)), options)
@@ -176,15 +191,16 @@ def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_comm
         return app
 
     app = App()
-    options = parser_of("live").parse_args([])
-    monkeypatch.setattr(lab, "background", lambda: "light")
     monkeypatch.setattr(lab, "PenduApp", made)
-    for environment, theme in (
-        ({}, "light"),
-        ({"COLORFGBG": "15;0"}, "dark"),
-        ({"NO_COLOR": "1"}, "ansi"),
+    for asked, found, theme in (
+        ({}, "light", "light"),
+        ({}, None, "dark"),
+        ({"theme": "dark"}, "light", "dark"),
+        ({"COLORFGBG": "15;0"}, "light", "dark"),
+        ({"NO_COLOR": "1"}, "light", "ansi"),
     ):
-        assert shown(**environment) == 0
+        monkeypatch.setattr(lab, "background", lambda found=found: found)
+        assert shown(**asked) == 0
         assert (app.theme, app.finished) == (theme, True)
     assert (shown(130), shown(code=1)) == (130, 1)
     with pytest.raises(ZeroDivisionError):

@@ -3,17 +3,20 @@
 import argparse
 import asyncio
 import logging
+import os
 import pickle
 import signal
 import socket
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import AsyncMock, Mock
 
 import aiohttp
 import pytest
 from aiohttp import web
 
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.commands import serve, served
 from pendu_tui.tui.terminal.options import TerminalOptions
 from tests.tui.command_line import IS_WINDOWS, own_method, pendu
@@ -99,6 +102,25 @@ async def test_its_pages_are_where_it_says_and_load_nothing_from_elsewhere(
             pass
 
 
+async def test_the_lab_of_a_tab_that_closes_ends_and_is_free_again(monkeypatch):
+    server = server_at("127.0.0.1")
+    labs = []
+
+    async def cut(*_):
+        labs.append(server._labs)
+        raise ConnectionResetError
+
+    monkeypatch.setattr(serve.Server, "handle_websocket", cut)
+    monkeypatch.setattr(serve.Server, "_process_messages", cut)
+    lab = SimpleNamespace(terminate=Mock(side_effect=ProcessLookupError), wait=AsyncMock())
+    service = SimpleNamespace(_process=lab)
+    for call in (server.handle_websocket(None), server._process_messages(None, service)):
+        with pytest.raises(ConnectionResetError):
+            await call
+    assert labs == [1, 0]
+    assert (lab.terminate.call_count, lab.wait.await_count) == (1, 1)
+
+
 def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
@@ -151,3 +173,27 @@ def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(
     assert told == [("focus", {}), ("resize", {"width": 400, "height": 1})]
     driver.on_meta("resize", {"width": 80, "height": 24})
     assert len(waiting) == 2
+
+
+def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_records(tmp_path, monkeypatch):
+    file = tmp_path / "settings"
+    folder = tmp_path / "folder"
+    look = TerminalOptions("light")
+    file.write_bytes(pickle.dumps((SCENES["spin"], look, folder)))
+    monkeypatch.setattr(sys, "argv", ["served", str(file)])
+    monkeypatch.setenv("COLUMNS", "1000")
+    monkeypatch.setenv("ROWS", "24")
+
+    class App:
+        def __init__(self, screen, terminal):
+            assert (screen.source.scene, terminal) == (SCENES["spin"], look)
+            self.screen = screen
+
+        def run(self):
+            assert self.driver_class is served.BoundedDriver
+            assert (os.environ["COLUMNS"], os.environ["ROWS"]) == ("400", "24")
+            self.screen.record(self.screen.source)
+
+    monkeypatch.setattr(served, "PenduApp", App)
+    served.main()
+    assert [path.suffix for path in folder.iterdir()] == [".mcap"]  # and no .part
