@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
-from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError
+from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError, TooLongError
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.engine.studies.stability import Grid, Part
@@ -39,6 +39,7 @@ def refusal(source):
         load(source)
     text = str(refused.value)
     assert text.startswith("mine.py")
+    assert text.count("mine.py") == 1
     assert text.endswith(".")
     assert text.isprintable()
     assert len(text) < 400
@@ -72,6 +73,7 @@ def mine(rates, phase, h):
 def test_a_method_that_takes_rates_integrates_friction_too():
     mine = load(RATES)
     assert (mine.order, mine.force_evaluations) == (1, 1)
+    assert mine.models == ("pendulum", "linear", "damped")
     assert pickle.loads(pickle.dumps(mine)) is mine
     for name in ("damped", "drift"):
         lockstep = Lockstep(SCENES[name].with_cast((mine, method_of("explicit_euler"))))
@@ -96,8 +98,10 @@ WRONG = {
         "mine is not a generator function; make it one that takes (force, phase, h)",
     ),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
-    "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run"),
+    "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run goes on; write `while True:`"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
+    "more than a phase": (euler(yields="1, 2, *range(9)"), "mine yields (1, 2, 0, 1, 2, 3, ...); write `while True:`"),
+    "no numbers of its start": (euler(yields="0.5, 0.5"), "mine yields (0.5, 0.5); write"),
     "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
     "an array changed in place": (
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
@@ -106,8 +110,9 @@ WRONG = {
     ),
     "one number of an array": (
         euler(yields="np.mean(theta), np.mean(omega)", before="import numpy as np"),
-        "this was with NumPy arrays, which stability needs",
+        "`yield theta, omega`; this was with NumPy arrays, which stability needs",
     ),
+    "one omega of an array": (euler(yields="theta, sum(omega) / 3 if hasattr(omega, 'shape') else omega"), "`yield theta, omega`; this was"),
     "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
@@ -115,9 +120,11 @@ WRONG = {
         "mine gives other numbers when it begins again after 37 of 80 steps",
     ),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
-    "no Python": ("def mine(:", "line 1: invalid syntax."),
-    "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
-    "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass", "has no function 'mine'; it has yours."),
+    "no Python": ("\ndef mine(:", "line 2: invalid syntax."),
+    "a SyntaxError of its own": ("raise SyntaxError('too new')", "line 1: too new."),
+    "an exception when loaded": ("def f(x):\n    return x / 0\nf(1)", "line 2: `return x / 0` raises ZeroDivisionError"),
+    "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass\ndef hers(): pass", "has no function 'mine'; it has yours, hers."),
+    "another function": ("mine = print", "print is not a generator function"),
     "just enough text": ("#" * MAX_SOURCE, "mine.py has no function 'mine'."),
     "too much text": ("#" * (MAX_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
@@ -137,22 +144,91 @@ def test_any_text_gets_a_sentence(text, around):
 
 def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     source = euler(
-        "print('here'); __import__('sys').stdout.write('there')", yields="[theta, omega]"
+        before="import numpy as np",
+        step="print('here'); __import__('sys').stdout.write('there')",
+        yields="[*np.multiply((theta, omega), 1)]",
     )
-    assert load(source).order == 1
-    more = euler("np.max(np.abs(theta)) > 0.5 and force(theta)", "import numpy as np")
-    assert load(more).force_evaluations == 2  # 1.6 a step
+    mine = load(source)
+    assert mine.order == 1
+    assert [type(number) for number in mine.step(np.sin, (1.0, 0.0), 0.1)] == [float, float]
+    more = euler("np.max(np.abs(theta)) < 0.5 and force(theta)", "import numpy as np")
+    assert load(more).force_evaluations == 2  # 1.2 a step
     wrong = load(euler(before="force = lambda theta: 0 * theta"))
     assert (wrong.order, wrong.force_evaluations) == (0, 1)
     printed = capsys.readouterr()
     assert not printed.out
     assert "here\nthere" in printed.err
+    begun = USER_CODE.count
     with USER_CODE:
         with USER_CODE:  # as one's own method that calls another
             pass
         print("still there")
     print("here again")
     assert capsys.readouterr() == ("here again\n", "still there\n")
+    assert USER_CODE.count == begun + 1
+
+
+NAMED = '''
+import functools
+print(__name__, __file__)
+
+def spoken(function):
+    @functools.wraps(function)
+    def wrapped(*given):
+        print("called")
+        return function(*given)
+    return wrapped
+
+@spoken
+def my_old_METHOD_(force, phase, h):
+    """
+    The first line.
+
+    The second.
+    """
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+'''
+
+
+def test_it_is_named_after_its_function_and_told_by_its_first_line(capsys):
+    mine = load(NAMED, "my_old_METHOD_")
+    assert (mine.label, mine.formula) == ("My old METHOD", "The first line.")
+    assert (mine.symplectic, mine.reversible) == (True, False)
+    printed = capsys.readouterr()
+    assert not printed.out
+    assert printed.err.startswith("own_method mine.py\ncalled\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (KeyboardInterrupt, KeyboardInterrupt),
+        (OverflowError, OverflowError),  # it diverges
+        (ValueError, ValueError),
+        (ZeroDivisionError, ZeroDivisionError),
+        (TypeError, OwnMethodError),
+        (TooLongError, OwnMethodError),
+    ],
+)
+def test_an_interrupt_and_the_end_of_a_motion_are_no_faults_of_a_method(error, told):
+    def force(_):
+        raise error
+
+    mine = load(euler())
+    with pytest.raises(told) as raised:
+        mine.step(force, (1.0, 0.0), 0.1)
+    if told is OwnMethodError:
+        assert str(raised.value).startswith(f"mine.py, line 6: `{EULER}` ")
+        assert str(raised.value).endswith((" raises TypeError.", " takes more than 3 s."))
+    with pytest.raises(KeyboardInterrupt):
+        load("raise KeyboardInterrupt")
+    begun = mine.phases(np.sin, (1.0, 0.0), 0.1)
+    next(begun)
+    begun.close()
 
 
 def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
