@@ -21,7 +21,7 @@ from mcap.stream_reader import StreamReader
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Event, simulate, steps_for
-from pendu_tui.recordings.files import DiskError, in_use
+from pendu_tui.recordings.files import DiskError, in_use, publish
 from pendu_tui.recordings.format import EVENTS
 from pendu_tui.recordings.recorder import LiveRecorder, Recorder
 from pendu_tui.recordings.recording import Recording
@@ -91,11 +91,20 @@ def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_writ
         recorder.add(Event("mark", 1, 0, float("inf")), 0.0)
     for step in (5, 4, 5):
         recorder.add(stepped(step), 0.5)
-    synced = []
-    monkeypatch.setattr(os, "fsync", lambda _: synced.append(recorder.part.exists()))
+    before = []
+    monkeypatch.setattr(os, "fsync", lambda _: before.append(recorder.part.stat().st_size))
+
+    def renamed(*each):
+        before.append(in_use(recorder.part))
+        publish(*each)
+
+    monkeypatch.setattr("pendu_tui.recordings.recorder.publish", renamed)
     for _ in range(2):
         recorder.close()
-    assert synced == [True]  # on disk before it has its name
+    assert before == [
+        recorder.path.stat().st_size,
+        False,
+    ]  # on disk and closed before it has its name
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
         assert [clock for clock, _ in recording.entries()] == [0.0, 0.0, 0.5, 0.5]
@@ -159,6 +168,8 @@ def test_a_writer_that_waits_for_the_disk_does_not_hang_the_close(tmp_path, monk
     assert writer.is_alive()
     assert recorder.failed == f"{recorder.part}: the disk does not answer"
     writer.join()
+    recorder.add(stepped(2), 0.1)
+    assert recorder.samples == 1  # it has ended
 
 
 def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_path):
@@ -218,7 +229,7 @@ from pendu_tui.recordings.recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 recorder = LiveRecorder(Path(sys.argv[1]))
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
-samples = list(simulate(SCENE, 8.0, recorder.add))
+samples = list(simulate(SCENE, 20.0, recorder.add))
 recorder.close()
 print(len(samples), recorder.failed, in_use(recorder.part))
 """
@@ -229,7 +240,7 @@ def test_a_real_file_size_limit_is_survived(tmp_path):
     command = [sys.executable, "-B", "-c", LIMITED, str(tmp_path / "lab.mcap")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.stderr == ""
-    assert done.stdout.startswith("81 ")
+    assert done.stdout.startswith("201 ")
     assert "File too large" in done.stdout
     assert done.stdout.endswith(" False\n")  # another may have it
     assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap.part"]
