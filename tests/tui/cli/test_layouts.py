@@ -67,7 +67,7 @@ CASES = {
         " NSTEP ={n:9}   TIME(PS) ={t:12.3f}  TEMP(K) =   300.00  PRESS =     0.0\n"
         " Etot   ={e:14.4f}  EKtot   ={k:14.4f}  EPtot      ={p:14.4f}",
         "      A V E R A G E S   O V E R    1000 S T E P S\n"
-        " Etot   =        1.0000  EKtot   =       20.0000  EPtot      =      -19.0000\n",
+        " Etot   =     -300.0000  EKtot   =       20.0000  EPtot      =     -320.0000\n",
     ),
     "CP2K's output": (
         "Time fs, Conserved quantity hartree",
@@ -182,7 +182,12 @@ def test_the_words_before_a_number_are_its_name_which_is_not_certain_twice_in_a_
     assert found is None or series.energies == pytest.approx(ENERGIES)
 
 
-MORE = [("", "Start\n" + LOOP, "t = {t}, E = {e}"), ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,")]
+MORE = [
+    ("", "Start\n" + LOOP, "t = {t}, E = {e}"),
+    ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,"),
+    ("", "t,E\n", "t,E\n{t},{e}\n{t}1,{e}\n{t}2,{e}"),
+    ("", "t,E\n", "{t},{e}\nsaved as file"),
+]
 
 
 @pytest.mark.parametrize("case", [*CASES.values(), *MORE])

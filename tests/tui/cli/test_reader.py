@@ -109,6 +109,7 @@ def columns(series: Series) -> str | None:
         ("Time Etot", "{t} {e} {k}", None),
         ("", "{e}", "row, column 1"),
         ("", "{t} {e}", "column 1, column 2"),
+        ("seed 7;", "{t} {e}", "column 1, column 2"),
         ("", "{k} {p}", None),
         ("", "{t} {k} {e}", None),
         ("", '{{"t": {t}, "a": {{"E": {k}}}, "b": {{"E": {e}}}}}', None),
@@ -212,6 +213,7 @@ def array(*unnamed: object, **named: object) -> bytes:
     [
         "\ufeff" + json.dumps({"run": {"h": [], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
+        json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
         array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
@@ -257,6 +259,8 @@ def test_columns_of_inner_arrays_have_numbers():
         (series,) = tables(data, energy="3")
         assert columns(series) == "t, e_2"
         assert list(series.energies) == ENERGIES
+    (series,) = tables(json.dumps({"e": pairs}), energy="2")
+    assert list(series.energies) == ENERGIES
 
 
 @pytest.mark.parametrize(
@@ -353,6 +357,7 @@ OBJECTS = rows('{{"t": {t}, "E": {e}}}')
         ("t,E\n" + rows("{t},{e}"), ",7", 2),
         ("t,E\n" + rows("{t},{e}"), "t,E", 0),
         ("t E\n" + rows("{t} {e}"), "a note", 0),
+        ("t E\n" + rows("{t} {e}"), "#NUM! #NUM!", 2),
     ],
 )
 def test_lines_that_look_like_rows_are_counted(text, odd, skipped):
@@ -560,6 +565,8 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
 def test_steps_and_units_of_the_owner_are_applied():
     (series,) = tables(rows("{e}"), step=(2.0, "ps"))
     assert (series.times[1], series.units) == (2.0, ("ps", ""))
+    *_, series = tables(TABLE + "time,energy\n[ps],[eV]\n" + rows("{t},{e}"))
+    assert (series.units, series.skipped) == (("ps", "eV"), 0)
 
 
 def test_a_span_has_units_and_keeps_the_rows_at_its_ends():
@@ -575,7 +582,11 @@ def test_long_lines_take_no_longer_than_short_ones(part):
 
 
 @pytest.mark.parametrize(
-    "text", ["{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null", "- [ ]\n", "t,E\n1,\n2,\n"]
+    "text",
+    [
+        *("{}", "[]", "[[]]", '{"a": ' * 5000, "[" * 5000, "null", "- [ ]\n"),
+        *("t,E\n1,\n2,\n", "E = 1\nE = 2\nt = 1\nt = 2\nt = 3\n"),
+    ],
 )
 def test_documents_without_a_table_hold_none(text):
     assert [len(series.times) for series in tables(text)] == []
@@ -594,3 +605,10 @@ def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
     assert choose(*table, Wanted(step=(1.0, ""))).doubt == "the total energy"
     assert choose(*table, Wanted()).doubt == "the time and the total energy"
     assert [len(series.times) for series in tables(TABLE, energy="x")] == [90]
+
+
+def test_few_rows_do_not_tell_what_belongs_to_an_energy_but_where_it_ended():
+    samples = [(0, 1), (1, 2), (-1, -3), (5, 6)]
+    assert choose(("t", "KE", "PE", "x"), 4 * ("",), samples, Wanted()).energy == (1, 2)
+    (series,) = tables("t,E\n" + rows("{t},{e}", 0, 9) + "4.5,\n5.0\n")
+    assert (series.diverged_at, series.skipped) == (4.5, 0)

@@ -117,6 +117,7 @@ def test_answers_as_they_are_stored(snapshot, monkeypatch):
 
 
 UNITS = "t,E [kJ/mol],K [kcal/mol]\n" + lines("{t},{e},5")
+UNIT_GIVEN = "t E --scale kinetic:K --units energy=kJ/mol"
 WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
 
 
@@ -127,10 +128,12 @@ WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
         (WIDE, f"t {50 * 'x'}", 2, f"{39 * 'x'}…'; choose from t, {39 * 'E'}…{18 * ', n'}."),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
         ("1 2\n", "1 2+", 2, "there is no column ''"),
+        ("1 2\n", "1 3", 2, "there is no column '3'; choose from 1, 2."),
         (TABLE, "t E --table 2", 2, "no table 2; the input has 1"),
         (TABLE, "t E --atoms 10", 2, "--step 0.5fs"),
         ("t,E\n0,0\n1,1\n", "t E", 2, "give a typical energy with --scale"),
         (UNITS, "t E --scale kinetic:K", 2, "of K and the energy differ (kJ/mol, kcal/mol)"),
+        (UNITS.replace(" [kJ/mol]", ""), UNIT_GIVEN, 2, "(kJ/mol, kcal/mol)"),
     ],
 )
 def test_what_cannot_be_judged_is_one_sentence(data, names, code, words):
