@@ -11,20 +11,15 @@ from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FRAME
 from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
-from pendu_tui.tui.drawing.time_chart import (
-    CROSSING,
-    MIN_COLUMNS,
-    MIN_ROWS,
-    _crossings,
-    time_chart,
-)
+from pendu_tui.tui.drawing.time_chart import MIN_COLUMNS, MIN_ROWS, _crossings, time_chart
 from pendu_tui.tui.playback.rows import Window
-from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.shown import Shown, Stretch
 from tests.tui.drawn import cells, look, size
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)
 TIMES = np.arange(0.05, 20.0, 0.05)
+NAMES = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
 
 
 def window(x, low, high=None, repeats=0.0, turned=False):
@@ -51,7 +46,6 @@ def test_charts_as_they_are_stored(snapshot):
     rates = np.array([3.1, 0.31, 0.031, 3.1e-16])
     grows = np.exp(t[:, None] * rates) - 0.99
     waves = np.sin(3 * t)[:, None] * rates
-    names = ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     ghost = (window(t, 1.7 * grows), USUAL_CAST)
     changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
     limit = {"line": Line("energy_error", -2.0, "limit")}
@@ -59,15 +53,15 @@ def test_charts_as_they_are_stored(snapshot):
     long = window(60 * t, grows, repeats=1.1)
     pictures = [
         plot(window(t, grows, repeats=1.1), ghost=ghost, changes=changes, seconds=20, **limit),
-        plot(window(t, grows), 60, 9, names=names),
-        plot(window(t, grows), 59, 8, names=names, places=[1, 2, 3]),
-        plot(window(t, grows), 59, 10, names=names),
+        plot(window(t, grows), 60, 9, names=NAMES),
+        plot(window(t, grows), 59, 8, names=NAMES, places=[1, 2, 3]),
+        plot(window(t, grows), 59, 10, names=NAMES),
         plot(window(t, grows[:, :1] ** 10 * [1, 0, 0, 0] + grows), 60, 10, places=[0, 2]),
         plot(mixed, 60, 16, log=False, changes=changes, seconds=10, **limit),
-        plot(window(t, -grows, -grows / 2, turned=True), 72, 12, log=False, names=names),
-        plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=names),
+        plot(window(t, -grows, -grows / 2, turned=True), 72, 12, log=False, names=NAMES),
+        plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=NAMES),
         plot(window(t, grows[:, 2]), 40, 5),
-        plot(window(t[-9:], grows[-9:]), 72, 9, names=names, seconds=20),  # nothing before
+        plot(window(t[-9:], grows[-9:]), 72, 9, names=NAMES, seconds=20),  # nothing before
         # no error is torn by zeros, and neither the first nor the smallest fortieth is on the axis
         plot(window(t, np.sin(6 * t) ** 2, repeats=1.0), 60, 8, places=[0], seconds=20),
         plot(window(np.arange(41), [0, 1e-12, 1e-8, *[0.1] * 38]), 51, 8, places=[0], seconds=41),
@@ -75,7 +69,7 @@ def test_charts_as_they_are_stored(snapshot):
         *(plot(window(60 * t, grows, repeats=r), 60, 8, log_time=True) for r in (0.9, 500.0)),
         plot(window(t, grows), 59, 8, line=Line("theta_error", 0.011, "of another quantity")),
         *(plot(window([], []), 40, 6, log=log) for log in (True, False)),
-        plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=names),
+        plot(long, 60, 16, log_time=True, changes=[(70.0, "h 0.1")], names=NAMES),
     ]
     series = [
         Series(0, "e", [1e2, 3e3, 2e4], [2e-1, 3e-2, 4e-4]),
@@ -91,10 +85,39 @@ def test_charts_as_they_are_stored(snapshot):
     snapshot("charts.txt", "\n".join([*texts, look(picture)]))
 
 
+def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapshot):
+    t = TIMES
+    late = np.exp(np.outer(t, (2.0, 0.9, 0.1, 0.01))) - 0.99
+    cut = window(t, late, turned=True).cut(2.0, 9.5)
+    spiky = window(t, np.where(np.arange(len(t)) % 100 == 37, 1.0, 1e-3), repeats=1.0)
+    lower = window(t, -3 * late, late)
+    plots = [
+        *(plot(cut, 60, 9, stretch=Stretch(1, 2.0, 9.5, log_time)) for log_time in (False, True)),
+        # a spike is held for half a swing, in whole columns unless time is logarithmic
+        *(plot(spiky, 60, 7, places=[0], log_time=log_time) for log_time in (False, True)),
+        *(plot(lower, 60, 12, log=log, names=NAMES) for log in (True, False)),
+        *(plot(window(t, -late, 3 * late), 60, 12, log=log) for log in (True, False)),
+        plot(window(60 * t, np.column_stack([1e-3 * t, 0 * t + 0.01] * 2)), places=[0, 1]),
+        *(
+            plot(window(t, late), 60, 9, places=[2, 3], log=log, line=line)
+            for log in (True, False)
+            for line in (Line("energy_error", 50.0, "above"), Line("energy_error", -1e-9, "low"))
+        ),
+        plot(window(t, np.where(t[:, None] > 18.5, late, np.nan)), 60, 8, log=False),
+    ]
+    for each, sign in zip(plots[4:6], (3, -3), strict=True):
+        assert each.at(40).values == pytest.approx(sign * late[278])  # the last row before 14 s
+    assert plots[1].zoomed(window(t, late), 2.0) == pytest.approx((20 / 4.75**2, 20))
+    assert plots[1].at(plots[1].left - 1) is None
+    snapshot("stretches.txt", "\n".join(look(each.picture) for each in plots))
+
+
 def test_a_column_is_read_out_farthest_from_zero_and_stays_where_it_is_in_a_zoom():
     data = window(TIMES, -3 * TIMES, TIMES)
     chart = plot(data, 60, 10, log=False)
     middle = chart.left + len(chart.times) // 2
+    for nothing in (plot(window([], []), 40, 6), plot(data, 1, 1)):
+        assert nothing.at(20) is None
     assert chart.at(middle).values[0] == pytest.approx(-30, abs=1.5)
     for factor, column, ends in (
         (0.5, None, (5, 15)),
@@ -148,21 +171,6 @@ def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
     assert "A chart needs 20×4" in " ".join(text.split())
     assert "┤" in plot(window([1, 2], [1, 2]), MIN_COLUMNS, MIN_ROWS).picture.text
-
-
-def crosses(chart):
-    return [column for (_, column), (sign, _) in cells(chart.picture).items() if sign == CROSSING]
-
-
-def test_where_one_error_passes_another_for_good_there_is_a_cross():
-    t = np.linspace(0, 20, 400)
-    errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
-    crossing = plot(window(t, errors), places=[0, 1], seconds=20)
-    (column,) = crosses(crossing)
-    assert crossing.at(column).t == pytest.approx(10, abs=0.6)
-    assert crossing.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
-    assert crossing.at(crossing.left - 1) is None
-    assert crossing.at(crossing.left).t < 0.5
 
 
 @pytest.mark.parametrize(

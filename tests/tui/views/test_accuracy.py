@@ -1,14 +1,15 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, VELOCITY_VERLET, named
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, nearest
+from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.harness import until, view_of
 
@@ -58,6 +59,14 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
         assert words(pane).endswith(front_words(cheapest, "evaluations"))
 
 
+def test_methods_of_one_order_share_a_line_a_fifth_as_high_as_the_first_ones_errors():
+    cast = VELOCITY_VERLET, named("position_verlet")
+    points = [*measured(SCENES["drift"].with_cast(cast), 5.0, RUNGS)]
+    line, first, _ = accuracy_series(points, "theta", "evaluations", cast)
+    below = [0.2 * first.y[2] * (first.x[2] / x) ** 2 for x in (first.x[0], first.x[-1])]
+    assert (line.mark, [*line.y]) == ("slope 2", pytest.approx(below))
+
+
 async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_its_own_points():
     async with accuracy_view() as (pilot, pane, live):
         before = dict(pane.points)
@@ -80,6 +89,8 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         expected = Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0])
         shown = pane.points["velocity_verlet", RUNGS[0]]
         assert shown.errors == expected.errors
+        pane.add(replace(expected, steps=7))
+        assert not pane.settled  # until it is drawn
 
 
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():

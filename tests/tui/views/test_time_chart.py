@@ -2,43 +2,25 @@
 
 import pytest
 from textual.events import MouseScrollDown, MouseScrollUp
+from textual.geometry import Size
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.time_chart import time_chart
+from pendu_tui.tui.drawing.picture import Picture
+from pendu_tui.tui.drawing.time_chart import TimePlot, time_chart
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.shown import Shown, Stretch
+from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import lab
-from tests.tui.playback.test_history import run
 
 WHOLE = SCENES["drift"]
 
 
-def chart(seconds=100.0, shown=None, **options):
-    """The chart of a run of a sample every 50 ms, and its history."""
-    history = run(WHOLE, (round(seconds / WHOLE.h), WHOLE.h))
-    between = history.window() if shown is None else history.between(*shown[1:3])
-    return time_chart(between, WHOLE.cast, Shown(stretch=shown, **options), 60, 12), history
-
-
-@pytest.mark.parametrize("log", [True, False])
-def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_the_farthest(log):
-    plot, history = chart(log=log, log_time=log)
-    column = plot.left + 35
-    begin, end = plot.zoomed(history.window(), 0.1, column)
-    nearer, _ = chart(shown=Stretch(1, begin, end, plot.log_time), log=log)
-    assert (plot.log_time, nearer.log_time) == (log, log)
-    assert nearer.times[35] == pytest.approx(plot.times[35], rel=1e-6)
-    assert plot.times[0] < nearer.times[0] < nearer.times[-1] < plot.times[-1]
-    assert nearer.zoomed(history.window(), 1e3) is None
-
-
 async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():
-    async with lab() as theatre:
+    async with lab(size=(120, 60)) as theatre:
         await theatre.run(12)
         await theatre.settled()
-        chart = theatre.stage.query(TimeChart).first()
+        chart, second = theatre.stage.query(TimeChart)
         await theatre.pilot.hover(chart, offset=(30, 4))
         text = str(chart.border_subtitle)
         assert [word for word in text.split() if word in "esvr"] == ["e", "s", "v", "r"]
@@ -78,8 +60,19 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         chart.zoom(1e3)  # which has nothing to zoom out of
         await theatre.pilot.pause()
         assert theatre.stage.shown == Shown().through(WHOLE)._replace(seconds=20.0)
-        await theatre.press("space", "+")
+        await theatre.pilot.hover(second, offset=(second.plot.left + 1, 4))
+        await theatre.press("z")  # at the left end, where the pointer is
+        assert theatre.stage.shown.stretch.begin < 0.5
+        await theatre.press("space", "+", "w")
         assert "h 0.1" in chart.text  # before the next step
+
+
+def test_where_every_method_has_a_shadow_energy_its_chart_has_keys_below():
+    pane = TimeChart()
+    pane.source = Live(WHOLE.with_cast(WHOLE.cast[1:3]))
+    pane.room = Size(44, 12)
+    told = pane._below(TimePlot(Picture()), pane.source, Shown(quantity="shadow_error"))
+    assert told == "e: quantity, w: window, z: zoom, y: axes"
 
 
 def charted(fps, scene, *, changes=False, returns=False):
