@@ -88,11 +88,11 @@ def test_charts_as_they_are_stored(snapshot):
 def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapshot):
     t = TIMES
     late = np.exp(np.outer(t, (2.0, 0.9, 0.1, 0.01))) - 0.99
-    cut = window(t, late, turned=True).cut(2.0, 9.5)
+    cut = window(t, late, turned=True).cut(2.0, 4.5)
     spiky = window(t, np.where(np.arange(len(t)) % 100 == 37, 1.0, 1e-3), repeats=1.0)
     lower = window(t, -3 * late, late)
     plots = [
-        *(plot(cut, 60, 9, stretch=Stretch(1, 2.0, 9.5, log_time)) for log_time in (False, True)),
+        *(plot(cut, 60, 9, stretch=Stretch(1, 2.0, 4.5, log_time)) for log_time in (False, True)),
         # a spike is held for half a swing, in whole columns unless time is logarithmic
         *(plot(spiky, 60, 7, places=[0], log_time=log_time) for log_time in (False, True)),
         *(plot(lower, 60, 12, log=log, names=NAMES) for log in (True, False)),
@@ -103,11 +103,11 @@ def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapsho
             for log in (True, False)
             for line in (Line("energy_error", 50.0, "above"), Line("energy_error", -1e-9, "low"))
         ),
-        plot(window(t, np.where(t[:, None] > 18.5, late, np.nan)), 60, 8, log=False),
+        plot(window(t, np.where(t[:, None] > 18.5, late, np.nan)), 60, 8, log=False, names=NAMES),
     ]
     for each, sign in zip(plots[4:6], (3, -3), strict=True):
         assert each.at(40).values == pytest.approx(sign * late[278])  # the last row before 14 s
-    assert plots[1].zoomed(window(t, late), 2.0) == pytest.approx((20 / 4.75**2, 20))
+    assert plots[1].zoomed(window(t, late), 4.0) == pytest.approx((3 / 2.25**2, 3 * 2.25**2))
     assert plots[1].at(plots[1].left - 1) is None
     snapshot("stretches.txt", "\n".join(look(each.picture) for each in plots))
 

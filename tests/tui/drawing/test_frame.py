@@ -38,7 +38,7 @@ def assert_even(axis, rows, beside=0.0):
 @given(st.floats(-17, 6), st.floats(0, 23), ROWS)
 def test_a_logarithmic_axis_covers_its_range_and_labels_evenly_spaced_rows(low, size, rows):
     axis = log_axis(low, low + size, rows)
-    assert axis.low <= low + 1e-9  # but for rounding
+    assert axis.low <= low + 1e-9
     assert low + size <= axis.high + 1e-9
     assert all(float(label) == pytest.approx(10.0**place) for place, label in axis.labels.items())
     assert_even(axis, rows, beside=0.25)
@@ -80,13 +80,12 @@ HOUR = 3600
         (log_x_axis(0.0, 0.0, 40).labels, "1 10"),
         (log_x_axis(-3.2, 1.1, 47).labels, "1e-4 1e-2 1 100"),
         (log_x_axis(-3.2, 1.1, 48).labels, "1e-4 1e-3 1e-2 1e-1 1 10 100"),
-        (linear_axis(-0.06, 4.3, 14).labels, "0 1 2 3 4"),
-        (linear_axis(-0.13, 0.19, 13).labels, "-0.2 -0.1 0 0.1 0.2"),
-        (linear_axis(2.0, 4.5, 8).labels, "1 2 3 4"),
+        (linear_axis(-0.13, 0.19, 10).labels, "0 0.2"),
+        (linear_axis(-0.13, 0.19, 9).labels, "-0.2 -0.1 0 0.1 0.2"),
         (linear_axis(4.503, 4.509, 10).labels, "4.500 4.502 4.504 4.506 4.508"),
         (linear_axis(-0.1, 0.02, 9).labels, "-0.10 -0.05 0"),
-        (linear_axis(-3e-7, 2e-7, 10).labels, "-4e-7 -2e-7 0 2e-7"),
-        (linear_axis(-3e-15, 2e-15, 9).labels, "-2e-15 0 2e-15"),
+        (linear_axis(-3e-6, 2e-6, 10).labels, "-4e-6 -2e-6 0 2e-6"),
+        (linear_axis(-3e-5, 2e-5, 9).labels, "-0.00002 0 0.00002"),
         (linear_axis(5.0, 5.0, 9).labels, "4.9995 5.0000 5.0005"),
         (time_axis(0, 4.9, 40, " run").labels, "0 2 4 s run"),
         (time_axis(0, 4.9 * HOUR, 60).labels, "0 50 100 150 200 250 min"),

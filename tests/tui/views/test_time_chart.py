@@ -39,6 +39,8 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         span = f"{stretch.begin:.5g} to {stretch.end:.5g} s"
         assert str(chart.border_title) == f"max |dE/E0|, {span}"
         await theatre.press("z")
+        await theatre.settled()
+        assert chart.plot.at(29).t == pytest.approx(t, abs=0.02)
         half = theatre.stage.shown.stretch
         assert half.end - half.begin == pytest.approx((stretch.end - stretch.begin) / 2)
         theatre.app.post_message(MouseScrollDown(*scroll))
