@@ -113,6 +113,11 @@ WRONG = {
         "`yield theta, omega`; this was with NumPy arrays, which stability needs",
     ),
     "one omega of an array": (euler(yields="theta, sum(omega) / 3 if hasattr(omega, 'shape') else omega"), "`yield theta, omega`; this was"),
+    "other numbers for arrays": (
+        euler("theta = theta + 1e-10 * hasattr(theta, 'shape')"),
+        "mine gives other numbers than for floats; this was with NumPy arrays",
+    ),
+    "a force out of bounds": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
     "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
@@ -121,7 +126,6 @@ WRONG = {
     ),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
     "no Python": ("\ndef mine(:", "line 2: invalid syntax."),
-    "a SyntaxError of its own": ("raise SyntaxError('too new')", "line 1: too new."),
     "an exception when loaded": ("def f(x):\n    return x / 0\nf(1)", "line 2: `return x / 0` raises ZeroDivisionError"),
     "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass\ndef hers(): pass", "has no function 'mine'; it has yours, hers."),
     "another function": ("mine = print", "print is not a generator function"),
@@ -145,19 +149,19 @@ def test_any_text_gets_a_sentence(text, around):
 def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     source = euler(
         before="import numpy as np",
-        step="print('here'); __import__('sys').stdout.write('there')",
+        step="print('here')",
         yields="[*np.multiply((theta, omega), 1)]",
     )
     mine = load(source)
     assert mine.order == 1
     assert [type(number) for number in mine.step(np.sin, (1.0, 0.0), 0.1)] == [float, float]
     more = euler("np.max(np.abs(theta)) < 0.5 and force(theta)", "import numpy as np")
-    assert load(more).force_evaluations == 2  # 1.2 a step
+    assert load(more).force_evaluations == 2
     wrong = load(euler(before="force = lambda theta: 0 * theta"))
     assert (wrong.order, wrong.force_evaluations) == (0, 1)
     printed = capsys.readouterr()
     assert not printed.out
-    assert "here\nthere" in printed.err
+    assert printed.err.startswith("here\n")
     begun = USER_CODE.count
     with USER_CODE:
         with USER_CODE:  # as one's own method that calls another
@@ -207,7 +211,7 @@ def test_it_is_named_after_its_function_and_told_by_its_first_line(capsys):
     ("error", "told"),
     [
         (KeyboardInterrupt, KeyboardInterrupt),
-        (OverflowError, OverflowError),  # it diverges
+        (OverflowError, OverflowError),
         (ValueError, ValueError),
         (ZeroDivisionError, ZeroDivisionError),
         (TypeError, OwnMethodError),
@@ -224,6 +228,8 @@ def test_an_interrupt_and_the_end_of_a_motion_are_no_faults_of_a_method(error, t
     if told is OwnMethodError:
         assert str(raised.value).startswith(f"mine.py, line 6: `{EULER}` ")
         assert str(raised.value).endswith((" raises TypeError.", " takes more than 3 s."))
+    with pytest.raises(OverflowError):
+        load(euler("omega ** 4")).step(float, (1.0, 1e99), 0.1)
     with pytest.raises(KeyboardInterrupt):
         load("raise KeyboardInterrupt")
     begun = mine.phases(np.sin, (1.0, 0.0), 0.1)
@@ -236,12 +242,3 @@ def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
     lockstep = Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,)))
     with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple "):
         lockstep.advance(30_000)
-
-
-@pytest.mark.parametrize("step", ["", "omega ** 4"])  # a power overflows with an exception
-def test_it_diverges_as_any_method_does(step):
-    lockstep = Lockstep(SCENES["linear"].with_cast((load(euler(step)),)))
-    lockstep.advance(10_000)
-    (reading,) = lockstep.sample().readings
-    assert reading.diverged_at is not None
-    assert np.isfinite(reading.theta)

@@ -178,10 +178,7 @@ def test_a_point_knows_its_step_in_each_unit():
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
     assert cost_at(LINES[:4], "theta", "evaluations", 1.0) == 4 * 10
-    for coarser, finer in (
-        (0.1, 0.0),
-        (math.inf, 1e-3),
-    ):
+    for coarser, finer in ((0.1, 0.0), (math.inf, 1e-3)):
         assert cost_at([at(R, 10, coarser), at(R, 20, finer)], "theta", "evaluations", 0.01) == 80
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
     assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
@@ -197,9 +194,11 @@ def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
         assert one.method is (R if rk4 < bm6 else BM6)
         assert one.cost == pytest.approx(min(rk4, bm6), rel=0.01)  # BM6 has one more in all
         assert one.saves == pytest.approx(rk4 / one.cost, rel=1e-6)
-    # an error that the coarsest run reaches is left out
-    found = front([at(R, 10, 1e-4), at(R, 100, 1e-8)], "theta", "evaluations")
-    assert [one.target for one in found] == pytest.approx([1e-5, 1e-6, 1e-7, 1e-8])
+    # an error that the coarsest run of one reaches is left out
+    lines = [at(S, 10, 1e-4), at(S, 100, 1e-17), at(V, 10, 1.0), at(V, 100, 1e-2)]
+    found = front(lines, "theta", "evaluations")
+    assert [one.target for one in found] == pytest.approx([10.0**-n for n in range(5, 16)])
+    assert {one.saves for one in found} == {None}
 
 
 def test_a_series_counts_seconds_and_no_evaluations():
@@ -215,4 +214,5 @@ def test_evaluations_that_vary_are_those_of_2000_steps_extrapolated():
     point = Study(DRIFT, 10.0, compiled).run(method, 4000)
     counted = count_evaluations(method, DRIFT.equations, (1.0, 0.0), point.h, 4000)
     assert point.force_evaluations == pytest.approx(counted, rel=0.02)
+    assert Study(DRIFT, 10.0).run(method, 100).force_evaluations == 730
     assert Study(DRIFT, 10.0, compiled).run(V, 4000).force_evaluations == 4001
