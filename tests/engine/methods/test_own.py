@@ -117,7 +117,7 @@ WRONG = {
         euler("theta = theta + 1e-10 * hasattr(theta, 'shape')"),
         "mine gives other numbers than for floats; this was with NumPy arrays",
     ),
-    "a force out of bounds": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
+    "an infinite force": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
     "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
@@ -164,7 +164,7 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     assert printed.err.startswith("here\n")
     begun = USER_CODE.count
     with USER_CODE:
-        with USER_CODE:  # as one's own method that calls another
+        with USER_CODE:
             pass
         print("still there")
     print("here again")
@@ -218,7 +218,7 @@ def test_it_is_named_after_its_function_and_told_by_its_first_line(capsys):
         (TooLongError, OwnMethodError),
     ],
 )
-def test_an_interrupt_and_the_end_of_a_motion_are_no_faults_of_a_method(error, told):
+def test_an_interrupt_and_a_divergence_are_no_faults(error, told):
     def force(_):
         raise error
 
