@@ -42,7 +42,7 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
     means = np.add.reduceat(energies, begins) / sizes
     squares = np.add.reduceat((energies - np.repeat(means, sizes)) ** 2, begins) / sizes
     return Bins(
-        times=np.add.reduceat(times, begins) / sizes,
+        times=np.add.reduceat(times - times[0], begins) / sizes,
         means=means,
         lows=np.minimum.reduceat(energies, begins),
         highs=np.maximum.reduceat(energies, begins),

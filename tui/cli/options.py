@@ -168,7 +168,7 @@ def scale(text: str) -> tuple[float | str | None, str | None]:
         return positive(text), None
     except ValueError:
         raise ValueError(
-            f"{text!r} is not first, std, kinetic:COLUMN or a positive number"
+            f"{text[:40]!r} is not first, std, kinetic:COLUMN or a positive number"
         ) from None
 
 

@@ -112,7 +112,7 @@ class _FieldError(InputError):
             found = pattern.search(text, start)
             if found:
                 start = found.end()
-        return f", line {text[:start].count(chr(10)) + 1}"
+        return f", line {text[:start].count(chr(10)) + 1}" if self.names else ""
 
 
 @contextmanager
@@ -132,8 +132,8 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     """
     text, given = _read(path)
     tables = given.pop("scene", [given])
-    is_list = isinstance(tables, list) and any(tables)
-    if not is_list or not all(isinstance(each, dict) for each in tables):
+    is_list = isinstance(tables, list) and len(tables) > 0
+    if not is_list or not all(isinstance(each, dict) and (each or given) for each in tables):
         raise unreadable(
             f"{path} describes no scene; use [[scene]], then fields as in scenes --json."
         )

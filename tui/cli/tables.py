@@ -301,13 +301,14 @@ class Sheet:
         if name not in self.places and name in self._once:
             self.places[name] = len(self.names)
             first = self._once[name]
-            self.add_column(name, first[0])
+            self.add_column(name, first[0] or unit)
             self.print(name, *first)
         if name in self.places:
             place = self.places[name]
             self.put([line], (place,), [[value]])
             own = self.units[place]
-            if len({unit, own, ""}) > 2:
+            kind = "time" if role(name)[0] == "time" else "energy"
+            if unit and shown(kind, unit) != shown(kind, own or unit):
                 why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
                 self.mixed.setdefault(place, why)
         elif len(self._once) < MAX_NAMES:

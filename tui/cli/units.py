@@ -69,7 +69,7 @@ def shown(kind: str, unit: str) -> str:
     for pattern, name in _OTHER_NAMES[kind]:
         if re.fullmatch(pattern, unit, re.IGNORECASE):
             return name
-    return unit.lower() if unit.lower() in NANOSECONDS else unit
+    return unit.lower() if kind == "time" and unit.lower() in NANOSECONDS else unit
 
 
 def plain(kind: str, unit: str) -> str:
@@ -142,9 +142,9 @@ def _unit_of_time(unit: str) -> str:
 
 def assignments(text: str) -> dict[str, str]:
     """Return the units of `time=ps,energy=kJ/mol`."""
-    pairs = [part.partition("=") for part in text.split(",")]
+    pairs = [part.partition("=") for part in text.split(",") if part]
     found = {kind.strip(): unit.strip() for kind, _, unit in pairs}
-    if not set(found) <= {"time", "energy"} or not all(found.values()):
+    if not found or not set(found) <= {"time", "energy"} or not all(found.values()):
         raise ValueError(f"{text!r} names no units; use time=ps,energy=kJ/mol")
     if "time" in found:
         _unit_of_time(found["time"])

@@ -246,7 +246,8 @@ def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | N
     """
     left = [each.fields for each in answers if each.judged.verdict in LEAVES]
     drifts = [
-        Fluctuation(abs(each["absolute_trend"]), each["absolute_uncertainty"]) for each in left
+        Fluctuation(abs(each["absolute_trend"] or 0.0), each["absolute_uncertainty"])
+        for each in left
     ]
     orders: list[Order | None] = [None, None]
     with suppress(ValueError):

@@ -90,6 +90,11 @@ def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
         assert found.slope == pytest.approx(truth.slope * unit / time, rel=1e-3)
 
 
+def test_times_that_count_from_1970_make_a_slope_no_less_exact():
+    times = 1.7e12 + T  # ms
+    assert judge_record(times, times - 1.7e12).slope == pytest.approx(1.0, rel=1e-11)
+
+
 @pytest.mark.parametrize("periods", [*range(20, 40), 50, 64, 96, 100, 128, 192, 256, 320])
 @pytest.mark.parametrize("samples", [2000, 6400])
 def test_an_oscillation_is_bounded_whatever_equal_blocks_make_of_it(periods, samples):

@@ -149,6 +149,11 @@ def test_printed_values_are_rows(form, units):
     assert list(series.energies) == ENERGIES
 
 
+def test_a_printed_unit_may_begin_late_and_be_spelled_in_two_ways():
+    (series,) = tables("t = -2 PS E = 9\n" + rows("t = {t} ps E = {e} J"))
+    assert series.units == ("ps", "J")
+
+
 @pytest.mark.parametrize("form", ["t={t} E={e} J", "t;E\n", "t={t}, KE={k}, E={e}"])
 def test_decimals_may_follow_a_comma(form):
     text = form + rows("{t};{e}") if form.endswith("\n") else rows(form)

@@ -61,9 +61,16 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("h = 0.1\nmethods = []", "line 2: no method is given"),
         ("[shot]\nlog = true\nfront = ['rk5']", "line 3: there is no method 'rk5'"),
         (f"theta = {5000 * '['}", "is not TOML"),
+        ("model = 'spring'", "mine.toml: stiffness = 0"),  # no line has the field
         *(
             (text, "no scene")
-            for text in ("# nothing", "scene = []", "scene = 1", "scene = [{h = 1}, 1]")
+            for text in (
+                "",
+                "scene = []",
+                "scene = 1",
+                "scene = [{h = 1}, 1]",
+                "scene = [{}, {h = 1}]",
+            )
         ),
         (
             "[shot]\nseconds = 9\nlog = 1",

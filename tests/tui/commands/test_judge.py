@@ -57,6 +57,7 @@ FILES = {
     + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
+    "steep.csv": "t,E\n" + lines("{t}e-99,{e}", [(t, 1e290 * (1 + t)) for t, _ in ROWS]),
     "cold.csv": "t,E,K\n" + lines("{t},{e},5") + "30,100,nan\n",
     **{
         name: "t,E\n"
@@ -101,6 +102,7 @@ table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'
 coarse.csv table.csv --steps 1,2 --energy E --fail-if 'fluctuation_order < 0'
 table.csv failed.csv --steps 1,2
+steep.csv steep.csv --steps 1,2
 falling.csv falls.csv --steps 1,2
 """
 
