@@ -37,6 +37,10 @@ MAX = 1e-3  # relative drift of a slow spiral
         (VELOCITY_VERLET, HALF, ["islands", "1 turn over the top in every 2 steps"]),
         (VELOCITY_VERLET, replace(LOST, chaotic=True, lyapunov=0.2108), ["Chaotic", "e^0.211"]),
         (VELOCITY_VERLET, LOST, ["Undecided in 4000 steps"]),
+        (VELOCITY_VERLET, replace(REGULAR, fraction=None), ["Undecided"]),
+        (VELOCITY_VERLET, replace(REGULAR, rotation=0.0), ["Undecided"]),
+        (RK4, replace(LOST, drift=0.0), ["Undecided"]),
+        (VELOCITY_VERLET, replace(REGULAR, spins=True), ["turn over the top, nearest"]),
         (VELOCITY_VERLET, replace(LOST, moves=False), ["equilibrium"]),
         (RK4, replace(LOST, drift=-0.3), ["spirals inwards", "no rotation number"]),
         (RK4, replace(REGULAR, drift=0.3), ["spirals outwards", "6.3267 steps", "1:6"]),
@@ -73,6 +77,8 @@ def test_a_point_in_a_sentence():
     assert point_words(point, "theta") == (
         f"{start}{REASONS['rounding']}) for 80 force evaluations."
     )
+    flaws["theta"] = None
+    assert point_words(point, "theta") == f"{start[:-2]} for 80 force evaluations."
 
 
 @pytest.mark.parametrize("call", TEXTS, ids=lambda call: TEXTS[call])
