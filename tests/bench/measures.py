@@ -20,11 +20,11 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 851_600,
-    "characters_of_engine": 257_500,
-    "characters_of_recordings": 68_400,
-    "characters_of_tui": 525_800,
-    "characters_of_tests": 748_000,
+    "characters": 845_600,
+    "characters_of_engine": 255_600,
+    "characters_of_recordings": 68_100,
+    "characters_of_tui": 521_800,
+    "characters_of_tests": 764_000,
     "characters_of_bench": 60_000,
     "files": 127,
     "parallel_assignments": 9,

@@ -101,10 +101,7 @@ def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_writ
     monkeypatch.setattr("pendu_tui.recordings.recorder.publish", renamed)
     for _ in range(2):
         recorder.close()
-    assert before == [
-        recorder.path.stat().st_size,
-        False,
-    ]  # on disk and closed before it has its name
+    assert before == [recorder.path.stat().st_size, False]  # on disk and closed
     with Recording.open(recorder.path, check=True) as recording:
         assert recording.complete
         assert [clock for clock, _ in recording.entries()] == [0.0, 0.0, 0.5, 0.5]
