@@ -119,6 +119,16 @@ def test_where_time_returns_the_pause_comes_at_the_start(live):
     lesson.begin(live, 0)
     lesson.forward(live)
     assert live.sample == end._replace(run=3)
+    lesson.begin(live, 0)
+    live.step(20)
+    live.change(live.stepping.reversed())
+    assert not lesson.is_astray(live)  # it turned where the page does
+    live.step(5)
+    assert lesson.forward(live)
+    assert live.sample == end._replace(run=4)
+    state = LessonState(0, "answered", 2)
+    lesson.state = state
+    assert lesson.state == state
 
 
 @pytest.mark.parametrize("choice", [1, 2, None])

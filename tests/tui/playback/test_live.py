@@ -284,6 +284,26 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     assert lab.failure is None
 
 
+def test_a_method_that_fails_while_time_runs_is_tried_once(monkeypatch):
+    looks = itertools.repeat(0.0, 3)  # two frames, and one step
+    scene = DEFAULT_SCENE.with_cast((load(FAILING.format("sys.exit()")),))
+    lab = Lab(scene, work_clock=lambda: next(looks))
+    monkeypatch.setenv("FAIL", "")
+    assert lab.run(0.2).step == 0
+    assert "raises SystemExit" in lab.live.failure
+    assert (lab.live.playhead.position, lab.live.playhead.paused) == (0.0, True)
+
+
+def test_a_milestone_is_an_event_in_the_frame_that_shows_it():
+    bench = Bench(speed=7.0)  # a frame is no row
+    lab = bench.live
+    for _ in range(2 * FPS):
+        bench.run(1 / FPS)
+        told = [each.step for each in lab.events if each.kind == "noticed"]
+        assert told == [each.step for each in lab.milestones]
+    assert told
+
+
 def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
     method, model = DEFAULT_SCENE.cast[3], DEFAULT_SCENE.equations
     start = (1.0, 0.0), 0.05, 20, math.inf
