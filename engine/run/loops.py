@@ -83,6 +83,8 @@ def advance(take: Take, phase: Phase, h: float, n: int, limit: float) -> Advance
         return Advanced(0, phase, math.nan, math.inf, -math.inf)
     half = n // 2
     first = advance(take, phase, h, half, limit)
+    if first.done < half:
+        return first
     second = advance(take, first.phase, h, n - half, limit)
     if not second.done:
         return first

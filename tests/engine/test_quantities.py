@@ -1,5 +1,7 @@
 """Each quantity is named once, and what is read off the list agrees with it."""
 
+import re
+
 from pendu_tui.engine.models import MODELS
 from pendu_tui.engine.quantities import CHARTED, EXTREMES, QUANTITIES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading
@@ -50,3 +52,6 @@ def test_quantities_have_the_units_of_their_equations():
     angles = {"theta": "rad", "omega": "rad/s", "theta_error": "rad"}
     known = {**angles, "energy": "s⁻²", "diverged_at": "s", **per_second}
     assert known.items() <= found.items()
+    for each in QUANTITIES:
+        told = f"{each.head.wide} {each.label} {each.sentence} {each.chart}"
+        assert {*re.findall(r"\[(.+?)\]", told)} <= {each.unit, "1/s²"}

@@ -321,6 +321,8 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
 def test_a_name_of_no_or_of_several_methods_is_refused(names, why):
     with pytest.raises(InputError, match=why):
         all_named(names.split(), model="damped")
+    with pytest.raises(InputError, match=", ".join(method.key for method in METHODS)):
+        all_named(["xyzzy"])
 
 
 def test_what_was_measured_is_told_in_words():

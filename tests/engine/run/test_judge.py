@@ -2,6 +2,7 @@
 
 import math
 import random
+from dataclasses import replace
 from statistics import median
 
 import numpy as np
@@ -442,6 +443,14 @@ def test_a_method_fails_once_and_for_good():
     assert [each.method for each in milestones(lockstep, "failed")] == [S, V, E, R]
     lockstep.set_stepping(Stepping(0.5, cast=USUAL_CAST))
     assert words(lockstep) == ["failed"] * 4
+
+    def jumping(force, phase, h):
+        yield 4.0, 0.0  # over the top
+        yield math.nan, 0.0
+
+    lost = moved(DRIFT.with_cast((replace(V, key="jumping", phases=jumping),)), [400])
+    noted = [(each.kind, each.step, each.t) for each in lost.milestones]
+    assert noted == [("failed", 2, 2 * DRIFT.h)]
 
 
 @pytest.mark.parametrize(
