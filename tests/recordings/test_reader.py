@@ -1,5 +1,6 @@
 """The reader: its limits, and what is read and saved of a damaged file."""
 
+import io
 import os
 import random
 import struct
@@ -8,6 +9,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
+import zstandard
 
 from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.scenes import MAX_METHODS
@@ -61,6 +63,26 @@ def limits(path):
         "MAX_TIME": max(head[3] for head in heads),
         "MAX_EVENTS": 10,  # that they are, with the stop
     }
+
+
+def test_a_chunk_whose_frame_is_larger_than_it_says_is_not_unpacked(monkeypatch):
+    packed = zstandard.ZstdCompressor().compress(bytes(5000))
+    named = b"\x04\x00\x00\x00zstd"
+    numbers = (
+        6,
+        HEAD.size - 9 + len(packed),
+        0,
+        0,
+        1000,
+        zlib.crc32(bytes(5000)),
+        named,
+        len(packed),
+    )
+    unpacked = []
+    monkeypatch.setattr(zstandard, "ZstdDecompressor", lambda: unpacked.append(1))
+    with pytest.raises(RecordingError):
+        reader.read_chunk(io.BytesIO(HEAD.pack(*numbers) + packed), 0)
+    assert not unpacked
 
 
 @pytest.mark.parametrize(

@@ -255,6 +255,7 @@ def test_the_energy_wobbles_by_the_order_and_the_modified_energy_by_h4(method):
 
 def test_a_family_is_listed_by_its_name():
     known = {"rk4": "Runge-Kutta", "respa": "fast and slow parts", "learned_map": "learned"}
+    known |= {"halving_verlet": "step doubling", "verlet_float32": "precision"}
     assert {key: family_of(key) for key in known} == known
 
 

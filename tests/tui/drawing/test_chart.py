@@ -11,7 +11,7 @@ from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FRAME
 from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
-from pendu_tui.tui.drawing.time_chart import MIN_COLUMNS, MIN_ROWS, _crossings, time_chart
+from pendu_tui.tui.drawing.time_chart import MIN_COLUMNS, MIN_ROWS, TimePlot, _crossings, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown, Stretch
 from tests.tui.drawn import cells, look, size
@@ -119,6 +119,10 @@ def test_a_column_is_read_out_farthest_from_zero_and_stays_where_it_is_in_a_zoom
     for nothing in (plot(window([], []), 40, 6), plot(data, 1, 1)):
         assert nothing.at(20) is None
     assert chart.at(middle).values[0] == pytest.approx(-30, abs=1.5)
+    values = np.array([[1.0, math.nan], [2.0, math.nan], [math.nan, math.nan]])
+    known = TimePlot(chart.picture, times=(5.0, 6.0, 7.0), values=values).at(2)
+    assert known.t == 6.0  # where one of them is known
+    assert known.values == pytest.approx([2.0, math.nan], nan_ok=True)
     for factor, column, ends in (
         (0.5, None, (5, 15)),
         (0.5, 0, (0, 10)),

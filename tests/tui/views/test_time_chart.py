@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.drawing.time_chart import TimePlot, time_chart
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.shown import Shown, Stretch
 from pendu_tui.tui.views.lab import TimeChart
 from tests.tui.harness import lab
 
@@ -21,6 +21,8 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.run(12)
         await theatre.settled()
         chart, second = theatre.stage.query(TimeChart)
+        titles = [str(each.border_title) for each in (chart, second)]
+        assert [title[:9] for title in titles] == ["max |dE/E", "max theta"]
         await theatre.pilot.hover(chart, offset=(30, 4))
         text = str(chart.border_subtitle)
         assert [word for word in text.split() if word in "esvr"] == ["e", "s", "v", "r"]
@@ -67,6 +69,21 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert theatre.stage.shown.stretch.begin < 0.5
         await theatre.press("space", "+", "w")
         assert "h 0.1" in chart.text  # before the next step
+
+
+def test_a_ghost_beyond_the_stretch_changes_no_axis():
+    looks = []
+    for seconds in (5, 60):
+        live = Live(WHOLE)
+        live.lay_under(2 * WHOLE.h, seconds)
+        live.step(round(seconds / WHOLE.h))
+        chart = TimeChart()
+        chart.source = live
+        chart.room = Size(70, 14)
+        stretch = Stretch(live.sample.run, 0.0, 5.0, log_time=False)
+        look = Shown(log=False, stretch=stretch)
+        looks.append(chart._charted(live.sample, look).picture)
+    assert looks[0] == looks[1]
 
 
 def test_where_every_method_has_a_shadow_energy_its_chart_has_keys_below():
