@@ -575,7 +575,7 @@ class _Text:
         sheet = self._tables[-1]
         if is_row:
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
-        elif opening == self._form[2] and (opening or numbers[0] is not None):
+        elif sheet.names and opening == self._form[2] and (opening or numbers[0] is not None):
             is_below_row = sheet.last == self._line - 1
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
                 sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
@@ -652,7 +652,7 @@ class _Text:
             return known
         is_data = any(number(name) is not None for name in names)
         is_first = not self._tables[-1].names or self._begins
-        return int(is_first and not is_data and None not in (numbers or ()))
+        return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
 
     def _labelled(self, width: int) -> list[str]:
         """Return the names that lines above gave to single columns."""
