@@ -253,6 +253,12 @@ def test_the_energy_wobbles_by_the_order_and_the_modified_energy_by_h4(method):
     assert math.log2(modified / finer_modified) == pytest.approx(4, abs=0.1)
 
 
+def test_a_method_has_its_label_as_a_name_beside_the_usual_ones():
+    assert all(method.label in method.names for method in METHODS)
+    verlet = "velocity_verlet", "Velocity Verlet", "Verlet", "Störmer-Verlet", "leapfrog"
+    assert (*verlet, "kick-drift-kick") == method_of("velocity_verlet").names
+
+
 def test_a_family_is_listed_by_its_name():
     known = {"rk4": "Runge-Kutta", "respa": "fast and slow parts", "learned_map": "learned"}
     known |= {"halving_verlet": "step doubling", "verlet_float32": "precision"}

@@ -7,6 +7,7 @@ import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.loops import PlainLoops
+from pendu_tui.tui.views.accuracy import accuracy_chart
 from tests.tui.command_line import pendu
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -90,7 +91,15 @@ def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_th
     monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
     seconds = ("accuracy", "--cost", "seconds", "--time", "1", "--h-values", "0.1:0.05:2")
     asked = (*seconds, "--methods", "taylor_20,verlet,rk4", "--target", "1e-3")
+    drawn = []
+
+    def chart(series, *rest):
+        drawn.extend(x for each in series if not each.dotted for x in each.x)
+        return accuracy_chart(series, *rest)
+
+    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.accuracy_chart", chart)
     out = pendu(*asked[:-2]).out
+    assert all(0 < x < 1 for x in drawn)  # s, not evaluations
     assert timed == ["taylor_20", "velocity_verlet", "rk4"] * 2
     assert re.search(r" in \d+(\.\d+)? [µm]s +\d", out)
     assert re.search(r" evaluations +seconds +theta error +times the cheapest", pendu(*asked).out)

@@ -103,3 +103,12 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
         assert not theatre.stage.query_one(TooSmall).is_on_screen
+
+
+@pytest.mark.parametrize("key", ["d", "E", "question_mark"])
+async def test_the_key_that_opens_a_text_closes_it(key):
+    async with lab() as theatre:
+        await theatre.press(key)
+        assert isinstance(theatre.app.screen, TextScreen)
+        await theatre.press(key)
+        assert not isinstance(theatre.app.screen, TextScreen)
