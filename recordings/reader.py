@@ -126,7 +126,7 @@ def _read_index(data: bytes) -> Contents:
     """Unpack a summary, chunk indexes without mcap because a day has 108 000 of them."""
     contents = Contents()
     chunk_index = int(Opcode.CHUNK_INDEX)
-    events: set[int] = set()  # their channels, the first of a file, whose numbers are a byte
+    events: set[int] = set()  # channels; a recorder opens them first, so each number is a byte
     chunks_end = 0  # chunks that overlap could take for ever
     at = 0
     while at < len(data):

@@ -244,7 +244,8 @@ def blocks_of(values: Any, size: int) -> Any:
 def is_like(value: float, others: Any, level: float) -> bool:
     """Return whether a value may come from the distribution of the others: Student's t."""
     count = len(others)
-    deviation = max(others.std(), 1e-150) * math.sqrt((count + 1) / (count - 1))
+    spread = max(others.std(), 1e-150)  # that of equal ones; t**2 must stay within doubles
+    deviation = spread * math.sqrt((count + 1) / (count - 1))
     below = student(value - others.mean(), deviation, count - 1)
     return 2 * min(below, 1 - below) > level
 

@@ -94,7 +94,9 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     for phase in path[:-_CHUNK:_CHUNK]:
         neighbours.carry(phase, _CHUNK)
     # neighbours on regular orbits separate in proportion to the steps, and fast near upright
-    from_upright = min(max(abs(model.level(*path[0])), 1e-16), 1.0)
+    from_upright = 1.0
+    if model.turns:
+        from_upright = min(max(abs(model.level(*path[0])), 1e-16), 1.0)
     separated = neighbours.log > CHAOTIC_SEPARATION + math.log(max(steps, 1) / from_upright)
     chaotic = method.symplectic and separated  # neighbours on spirals separate, too
     rotation = None

@@ -152,10 +152,12 @@ def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> 
 
 def _number(node: ast.expr) -> float:
     text = ast.unparse(node)
+    value = math.nan
     with suppress(ValueError):
-        if math.isfinite(value := float(text)):
-            return value
-    raise InputError(f"{_quoted(text)} is not a finite number; use for example 1e-2.")
+        value = float(text)
+    if not math.isfinite(value):
+        raise InputError(f"{_quoted(text)} is not a finite number; use for example 1e-2.")
+    return value
 
 
 def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:

@@ -174,7 +174,7 @@ def _records(document: Any) -> list[str]:
         if isinstance(item, dict):
             lines.append(_encoded(_flat(item)))
         else:
-            lines.append(str(item).strip("[]"))
+            lines.append(" ".join(map(str, item if isinstance(item, list) else [item])))
     return lines
 
 

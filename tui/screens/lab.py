@@ -179,7 +179,9 @@ class LabScreen(SizedScreen[None]):
         """Pause at the moment of a page, and where reversed time is back at 0."""
         if self.lesson.follow(live, before):
             self.show_now()
-        elif (at := live.history.returned) and before.step < at.step == live.sample.step:
+            return
+        returned = live.history.returned
+        if returned is not None and before.step < returned.step == live.sample.step:
             live.pause(True)
             live.mark("Back at the start")
             self.show_now()

@@ -373,5 +373,6 @@ class Stage(Pane):
         if look.rigid:
             out = hypot(x - found.x, y - found.y)
             far = [abs(out - radius) for radius in found.radii]
-        distance, place = min(zip(far, self.places, strict=True), default=(nan, 0))
-        return place if distance <= 2 * found.bob + 2 else None
+        reach = 2 * found.bob + 2
+        near = [each for each in zip(far, self.places, strict=True) if each[0] <= reach]
+        return min(near)[1] if near else None
