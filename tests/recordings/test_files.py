@@ -37,7 +37,7 @@ def test_the_library_is_set_by_the_environment_or_in_the_users_data(library, mon
         no_folders.append("~nosuchuser/runs")
     for no_folder in no_folders:
         monkeypatch.setenv("PENDU_RECORDINGS", no_folder)
-        with pytest.raises(DiskError, match=f"^{no_folder}: PENDU"):
+        with pytest.raises(DiskError, match=f"^{re.escape(no_folder)}: PENDU"):
             files.folder()
 
 

@@ -12,6 +12,7 @@ from textual.strip import Strip
 
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.drawing.picture import NOBODY, PALETTES, TEXT, Picture
+from tests.tui.harness import until
 
 
 class Drawn(CellWidget):
@@ -45,10 +46,9 @@ class CellApp(App[None]):
 async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew():
     app = CellApp()
     async with app.run_test(size=(8, 6)) as pilot:
-        await pilot.resize_terminal(4, 4)
-        await pilot.pause()
         cells = app.query_one(Drawn)
-        assert cells.text == "4x4"
+        await pilot.resize_terminal(4, 4)
+        await until(pilot, lambda: cells.text == "4x4")
         cells.show(Picture([[(letter, TEXT)] for letter in "abcd"]))
         await pilot.pause()
         before = cells.painted
