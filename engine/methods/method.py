@@ -41,7 +41,7 @@ def _modified(moving: float, pulled: float) -> ModifiedEnergy:
 
     def modified_energy(model: Model, phase: Phase, h: float) -> float:
         theta, omega = phase
-        force = float(model.force()(theta))
+        force = model.force()(theta)
         parts = moving * omega * omega * model.slope(theta) + pulled * force * force
         modified: float = model.energy()(phase) + h * h / 24 * parts
         return modified
@@ -60,7 +60,7 @@ def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> fl
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
+@dataclass(frozen=True, kw_only=True)
 class Method:
     """A method and its properties, which tests/engine/methods measure."""
 

@@ -3,12 +3,11 @@
 import hashlib
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 
 import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
@@ -56,6 +55,7 @@ def test_verlet_written_again_is_measured_to_be_verlet():
         assert getattr(mine, field) == getattr(verlet, field)
     assert family_of("mine") == "your own"
     assert (mine.key, mine.label, mine.letter) == ("mine", "Mine", "m")
+    assert repr(mine) == "OwnMethod(mine)"
     assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
 
 
@@ -75,6 +75,8 @@ def test_a_method_that_takes_rates_integrates_friction_too():
     assert (mine.order, mine.force_evaluations) == (1, 1)
     assert mine.models == ("pendulum", "linear", "damped")
     assert pickle.loads(pickle.dumps(mine)) is mine
+    with pytest.raises(OwnMethodError, match="the file of the method mine: give it with --method"):
+        pickle.dumps(replace(VELOCITY_VERLET, key="mine"))
     for name in ("damped", "drift"):
         lockstep = Lockstep(SCENES[name].with_cast((mine, method_of("explicit_euler"))))
         lockstep.advance(300)
@@ -125,6 +127,9 @@ WRONG = {
         "mine gives other numbers when it begins again after 37 of 80 steps",
     ),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
+    "a control character": ("A#\x1b", "line 1: `A#` raises NameError: name 'A' is not defined."),
+    "a character that ends a text": ("\0", "source code string cannot contain null bytes."),
+    "a character that cannot be encoded": ("'\ud800'", "mine.py raises UnicodeEncodeError: "),
     "no Python": ("\ndef mine(:", "line 2: invalid syntax."),
     "an exception when loaded": ("def f(x):\n    return x / 0\nf(1)", "line 2: `return x / 0` raises ZeroDivisionError"),
     "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass\ndef hers(): pass", "has no function 'mine'; it has yours, hers."),
@@ -138,12 +143,6 @@ WRONG = {
 def test_a_wrong_method_gets_one_sentence_that_says_where(wrong):
     source, said = WRONG[wrong]
     assert said in refusal(source)
-
-
-@example("A#\x1b", "{}")
-@given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
-def test_any_text_gets_a_sentence(text, around):
-    assert refusal(around.replace("{}", text))
 
 
 def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
@@ -226,8 +225,8 @@ def test_an_interrupt_and_a_divergence_are_no_faults(error, told):
     with pytest.raises(told) as raised:
         mine.step(force, (1.0, 0.0), 0.1)
     if told is OwnMethodError:
-        assert str(raised.value).startswith(f"mine.py, line 6: `{EULER}` ")
-        assert str(raised.value).endswith((" raises TypeError.", " takes more than 3 s."))
+        what = {TypeError: "raises TypeError", TooLongError: "takes more than 3 s"}[error]
+        assert str(raised.value) == f"mine.py, line 6: `{EULER}` {what}."
     with pytest.raises(OverflowError):
         load(euler("omega ** 4")).step(float, (1.0, 1e99), 0.1)
     with pytest.raises(KeyboardInterrupt):
