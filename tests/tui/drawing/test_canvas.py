@@ -140,7 +140,8 @@ def test_a_letter_stands_where_no_other_method_is():
     canvas.points([(0, 0)], 1)
     canvas.points([], 2)
     canvas.points([(2, 0)], 0)
-    canvas.points([(2, 1)], faint(1))
+    for ink in (faint(1), FRAME):
+        canvas.points([(2, 1)], ink)
     canvas.label_near([(0, 0), (1, 0), (2, 0)], "e", 0)
     assert canvas.picture().text == "⠁e"
     canvas.points([(4, 0)], 1)
@@ -248,5 +249,6 @@ def test_pictures_are_compared_row_by_row():
     longer = Picture(((("abc", 1), ("xyz", 2), ("ef", 3)),))
     assert list(longer.changes(old, 8)) == [(0, 8, 0)]  # the end moves
     assert Canvas(0, 2).picture().text == "\n"
-    assert Picture.of_text("a b", 2, 7).text == "\n\na\nb\n\n\n"
+    page = Picture.of_text("abc d", 4, 7)
+    assert (page.text, inks_of(page)) == ("\n\nabc\n d\n\n\n", {TEXT})
     assert Picture.of_text("a b", 0, 1).text == "a"  # before it is laid out
