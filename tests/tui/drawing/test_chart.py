@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -156,6 +156,7 @@ def test_any_numbers_and_any_size_make_a_chart(data):
 
 
 @settings(max_examples=100)
+@example([([(1.0, 5e-324), (1.0, 1e308)], False)], 20, 6)
 @given(
     st.lists(st.tuples(st.lists(st.tuples(ANY, ANY), max_size=8), st.booleans()), max_size=5),
     st.integers(1, 70),
