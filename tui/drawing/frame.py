@@ -102,7 +102,7 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
         low = low - least
         high = high + least
     power = 10.0 ** math.floor(math.log10((high - low) / rows))
-    steps = [part * power for part in (1, 2, 5, 10, 20, 50, 100)]
+    steps = [part * power for part in (5, 10, 20, 50)]
     most = 5 if rows >= 10 else 4  # or one label might stand alone
     sizes = sorted((step / apart, step) for step in steps for apart in range(2, most + 1))
     row, step = next(
@@ -176,8 +176,8 @@ def _multiples(low: float, high: float, step: float) -> list[float]:
 
 def _written(multiples: Iterable[float], step: float) -> dict[float, str]:
     """Write multiples of a step with the same decimals: "-0.10", "-0.08", "0"; or "-2e-7"."""
-    decimals = -math.floor(math.log10(step) + 1e-9)
-    if 0 < decimals <= 5:
+    decimals = -math.floor(math.log10(step))
+    if 0 <= decimals <= 5:
         return {value: f"{value:.{decimals}f}" if value else "0" for value in multiples}
     texts = {value: f"{value:.6g}" for value in multiples}
     return {value: re.sub(r"e\+?(-?)0?", r"e\1", text) for value, text in texts.items()}
