@@ -331,7 +331,7 @@ class Model(ABC):
             return EnergyReference(start, scale)
         least = max(1e-24 * min(self.w0_squared, scale), 1e-300)  # of 1e-12 rad
         return EnergyReference(
-            start, scale, lambda t: float(energy(self.exact_phase(theta, omega, t))), least
+            start, scale, lambda t: energy(self.exact_phase(theta, omega, t)), least
         )
 
     def exact(self, theta: float, omega: float) -> ExactMotion:

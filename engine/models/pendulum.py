@@ -74,7 +74,7 @@ def exact_pendulum(w0_squared: float, theta: float, omega: float) -> ExactMotion
         k = float(k_squared.sqrt())
         k_prime = float(abs(d).sqrt())
     if k == 0:
-        return ExactMotion(lambda t: State(theta, omega), "equilibrium")
+        return ExactMotion(lambda t: State(0.0, 0.0), "equilibrium")
     if d > 0:
         return _libration(start, k, k_prime)
     if d < 0:
@@ -198,7 +198,7 @@ def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float
     b = k_prime
     while True:
         means.append((a, b))
-        a, b, gap = (a + b) / 2, math.sqrt(a * b), abs(a - b)
+        a, b, gap = (a + b) / 2, math.sqrt(a * b), a - b
         if gap <= 1e-8 * a:  # convergence is quadratic
             break
     ordered = tuple(reversed(means))
