@@ -96,7 +96,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         others=others,
         models=("pendulum", "linear", "damped") if others else ("pendulum", "linear"),
         formula=(function.__doc__ or "").strip().partition("\n")[0],
-        order=round(measured.order or 0),
+        order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),
         first_same_as_last=measured.more_at_the_start > 0,
         symplectic=measured.symplectic,

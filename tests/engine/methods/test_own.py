@@ -158,6 +158,8 @@ def test_it_may_yield_a_list_and_what_it_prints_goes_to_stderr(capsys):
     assert load(more).force_evaluations == 2
     wrong = load(euler(before="force = lambda theta: 0 * theta"))
     assert (wrong.order, wrong.force_evaluations) == (0, 1)
+    braked = load(euler("omega *= 0.9999"))
+    assert braked.measured.order < -1 < braked.order == 0
     printed = capsys.readouterr()
     assert not printed.out
     assert printed.err.startswith("here\n")
