@@ -333,9 +333,7 @@ class LabScreen(SizedScreen[None]):
     @property
     def lesson(self) -> Lesson:
         """The pages that key p leads through: those of the guide, or all scenes."""
-        if self.is_guided and self.guide is not None:
-            return self.guide
-        return self.scenes
+        return (self.is_guided and self.guide) or self.scenes
 
     async def action_next_scene(self) -> None:
         await self._turn_to((self.lesson.index + 1) % len(self.lesson.pages))

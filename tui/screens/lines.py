@@ -241,7 +241,7 @@ class SeekBar(Pane):
         self.release_mouse()
 
     async def _seek(self, event: events.MouseEvent) -> None:
-        column = event.screen_x - self.content_region.x - 1  # a drag may leave the bar
+        column = event.screen_x - 1  # a drag may leave the bar
         position = (column + 0.5) / self._columns * self.source.length
         await self.run_action(f"screen.seek({position - self.source.playhead.position})")
 
