@@ -358,11 +358,13 @@ class LabScreen(SizedScreen[None]):
         if self.is_guided:
             self._leave_lesson()
             return
-        self._before_lesson = (self.state, self.view, self._undo)
+        before = self.state
+        self._before_lesson = (before, self.view, self._undo)
         self.guide = self.guide or tour()
         self.is_guided = True
         self.is_guided = await self._turn_to(self.guide.index)
         if self.is_guided:  # u does not leave it
+            self._undo[-1] = before  # among all scenes
             self._undo = deque(maxlen=self._undo.maxlen)
 
     async def action_turn(self, way: str) -> None:
