@@ -131,22 +131,17 @@ def test_where_time_returns_the_pause_comes_at_the_start(live):
     assert lesson.state == state
 
 
-@pytest.mark.parametrize("choice", [1, 2, None])
-def test_an_answer_is_right_or_wrong_and_the_truth_is_the_same(lesson, live, choice):
-    lesson.forward(live)
-    lesson.answer(choice)
-    result, truth = lesson.text
-    assert (result.startswith("Right."), "Not" in result) == (choice == 1, choice == 2)
-    assert truth == QUESTION.truth
-
-
-def test_back_goes_from_the_truth_to_the_question_and_from_there_to_the_page_before(lesson, live):
+def test_an_answer_is_judged_and_back_goes_to_the_question_and_from_there_to_the_page_before(
+    lesson, live
+):
     lesson.begin(live, 1)
     lesson.back(live)
     lesson.forward(live)
-    lesson.forward(live)
-    lesson.back(live)
-    assert (lesson.index, lesson.stage) == (0, "asked")
+    for choice, result in ((1, "Right. "), (2, "Not quite. "), (None, "")):
+        lesson.answer(choice)
+        assert lesson.text == (f"{result}1: Neither.", QUESTION.truth)
+        lesson.back(live)
+        assert (lesson.index, lesson.stage) == (0, "asked")
     lesson.back(live)
     assert (lesson.index, lesson.stage, live.sample.step) == (0, "watching", 0)
     assert not live.playhead.paused

@@ -30,8 +30,11 @@ async def test_a_theme_changes_all_colours_and_no_character():
             await theatre.settled()
             await theatre.pilot.pause()
             seen[theme] = screen(theatre.app)
-            assert theatre.app.current_theme.error == PALETTES[theme].warn
-            assert theatre.app.current_theme.dark == (theme == "dark")
+            used = theatre.app.current_theme
+            own = PALETTES[theme]
+            assert used.dark == (theme == "dark")
+            assert (used.primary, used.error) == (own.exact, own.warn)
+            assert {used.background, used.surface, used.panel} == {own.background}
             palette = {Color.parse(PALETTES[theme].colour(ink)) for ink in inks}
             assert {style.color for row in seen[theme] for _, style in row} >= palette
         for dark, light in zip(*map(chain.from_iterable, seen.values()), strict=True):
@@ -50,7 +53,7 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
     async with lab() as theatre:
         theatre.app.action_use_theme("ansi")
         await theatre.run(1)
-        for key in (*map(key_of, VIEWS), "i"):
+        for key in (*map(key_of, VIEWS), "i", "escape", "ctrl+p"):
             await theatre.press(key)
             found = colours(theatre.app)
             assert len(found) > 3
@@ -64,6 +67,9 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_color_none(m
 
 
 async def test_the_app_has_what_was_asked_for_and_ends_with_the_first_error(monkeypatch):
+    with pytest.raises(ZeroDivisionError):  # without a terminal there is nobody to read it
+        async with lab() as theatre:
+            theatre.app.call_later(lambda: 1 / 0)
     monkeypatch.setenv("NO_COLOR", "")  # which means nothing
     monkeypatch.setattr(web_driver, "XTermParser", None)
     screen = LabScreen(Live(DEFAULT_SCENE))

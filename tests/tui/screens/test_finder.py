@@ -9,6 +9,7 @@ from pendu_tui.tui.cli.scene import read_scenes
 from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.screens.dialogs import Choices
 from pendu_tui.tui.terminal.options import CHARACTER_SETS
+from tests.tui.drawn import screen
 from tests.tui.harness import Theatre, lab, until
 
 SIZE = (100, 30)
@@ -48,7 +49,12 @@ async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
             texts = await found(theatre, words)
             assert number in (None, len(texts))
             assert first in (None, *texts[:1])
-            await theatre.press("escape")
+            await theatre.press("ctrl+p")
+            assert theatre.app.screen is theatre.stage
+        await found(theatre, "larger step")
+        row = "".join(cell for cell, _ in screen(theatre.app)[3])
+        assert row.startswith("│ larger step h  ")
+        assert row.endswith("  + │")
 
 
 async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatch):

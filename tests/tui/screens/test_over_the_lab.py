@@ -1,6 +1,8 @@
 """What lies over the lab: dialogs that close once, notices that cover no number, and "too small"."""
 
 import asyncio
+from contextlib import ExitStack
+from itertools import product
 
 import pytest
 from textual.events import Resize
@@ -14,6 +16,7 @@ from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import TextScreen
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import InsightLine, StatusLine, TooSmall
+from tests.tui.drawn import screen
 from tests.tui.harness import lab, until
 
 
@@ -22,8 +25,9 @@ async def test_a_text_closes_only_itself_however_often_it_is_dismissed():
         await theatre.press("question_mark")
         help_screen = theatre.app.screen
         assert "\n\n\n" not in help_screen.text  # panes without keys are not in it
-        above = TextScreen("Above", "it")
+        above = TextScreen("Above", "[b]it")
         await theatre.app.push_screen(above)
+        assert "[b]it" in "".join(cell for row in screen(theatre.app) for cell, _ in row)
         help_screen.dismiss()
         await theatre.pilot.pause()
         assert theatre.app.screen is above
@@ -105,10 +109,31 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         assert not theatre.stage.query_one(TooSmall).is_on_screen
 
 
-@pytest.mark.parametrize("key", ["d", "E", "question_mark"])
-async def test_the_key_that_opens_a_text_closes_it(key):
+async def test_a_text_is_closed_by_the_key_that_opens_it_and_by_what_closes_other_texts():
+    texts = ("d", "E", "question_mark")
     async with lab() as theatre:
-        await theatre.press(key)
-        assert isinstance(theatre.app.screen, TextScreen)
-        await theatre.press(key)
-        assert not isinstance(theatre.app.screen, TextScreen)
+        for opening, closing in (
+            *zip(texts, texts, strict=True),
+            *product("d", ("q", "space", "enter")),
+        ):
+            await theatre.press(opening)
+            assert isinstance(theatre.app.screen, TextScreen)
+            await theatre.press(closing)
+            assert theatre.app.screen is theatre.stage
+        assert not theatre.source.playhead.paused
+
+
+async def test_ctrl_z_stops_the_program_while_the_terminal_is_the_shells_but_not_a_visitors(
+    monkeypatch,
+):
+    acts = []
+    suspended = ExitStack()
+    suspended.callback(acts.append, "back")
+    monkeypatch.setattr(PenduApp, "suspend", lambda app: suspended)
+    monkeypatch.setattr("pendu_tui.tui.screens.app.stop", lambda: acts.append("stopped"))
+    monkeypatch.setattr("pendu_tui.tui.screens.app.CAN_STOP", True)
+    async with lab() as theatre:
+        for is_web in (False, True):
+            monkeypatch.setattr(PenduApp, "is_web", is_web)
+            await theatre.press("i", "ctrl+z")
+            assert acts == ["stopped", "back"]

@@ -2,16 +2,19 @@
 
 import asyncio
 import itertools
+import re
 from pathlib import Path
 
 import pytest
 
-from pendu_tui.engine.scenes import SCENES
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.recordings.events import remember
 from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.commands.lab import start_recording
 from pendu_tui.tui.screens.lines import SeekBar, StatusLine
 from pendu_tui.tui.views.lab import EventList
+from tests.own_methods import VERLET, load
 from tests.tui.harness import eventful, player, recorded
 
 
@@ -91,6 +94,10 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         verdicts = [judgement.verdict for judgement in theatre.source.judgements]
         assert verdicts == ["grows", "bounded", "bounded", "loses"]
         assert "over the top" in theatre.text(EventList)
+        assert "not recorded" in theatre.notices[-1]
+        for key, is_there in (("m", True), ("u", False)):
+            await theatre.press(key)
+            assert ("mark" in theatre.text(EventList)) == is_there
 
 
 async def test_where_the_lab_could_not_record_the_replay_stays_and_ctrl_c_closes_what_it_records(
@@ -144,7 +151,8 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         assert " LIVE " in theatre.text(StatusLine)
         assert changed(theatre.source)
         said = f"Live from 1.00 s on, recorded as {path.with_name('new.mcap')};"
-        assert any(each.startswith(said) for each in theatre.notices)
+        (told,) = [each.message for each in theatre.app._notifications if each.timeout == 8]
+        assert told.startswith(said)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
         assert replay.playhead.paused
@@ -153,3 +161,24 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         assert theatre.source.sample.step > here.step  # it is still open
     assert path.read_bytes() == before
     assert verify(path.with_name("new.mcap")).identical
+
+
+OWN = VERLET.replace(
+    "    while", "    assert threading.current_thread() is threading.main_thread()\n    while"
+)
+
+
+@pytest.mark.parametrize(("step", "told"), [(100_000, []), (100_001, ["100001 steps"])])
+async def test_a_users_method_goes_on_where_it_can_be_stopped_and_a_wait_for_many_steps_is_told(
+    tmp_path, step, told
+):
+    own = load(f"import threading\n{OWN}")
+    remember([own])
+    path = recorded(tmp_path / "own.mcap", 2.0, scene=DEFAULT_SCENE.with_cast((own,)))
+    async with player(path) as theatre:
+        await theatre.press("right")
+        history = theatre.source.history
+        history.sample = history.sample._replace(step=step)
+        await theatre.press("f")
+        assert theatre.source.kind == "LIVE"
+        assert re.findall(r"\d+ steps", "".join(theatre.notices)) == told
