@@ -154,7 +154,11 @@ class Recording:
         return self.beside(SamplePlace(chunk, entry), -1) or self.beside(SamplePlace(0, -1), 1)
 
     def sample(self, place: SamplePlace) -> Entry:
-        return self._decode(place.chunk)[place.entry]
+        """Return a sample.  Raises RecordingError if the file has lost it since it was found."""
+        entries = self._decode(place.chunk)
+        if entries[-1].value is None:
+            raise RecordingError(f"{self.path}: it was changed while it was read.")
+        return entries[place.entry]
 
     def beside(self, place: SamplePlace, direction: int) -> SamplePlace | None:
         """Return the next sample (1) or the one before (-1); None where there is none."""

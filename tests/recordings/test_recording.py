@@ -1,5 +1,6 @@
 """Reading: any moment of a recording, complete or not."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -8,9 +9,9 @@ from hypothesis import strategies as st
 from mcap.writer import Writer
 
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
-from pendu_tui.recordings.files import RecordingError
+from pendu_tui.recordings.files import GOLDEN, RecordingError
 from pendu_tui.recordings.format import without_extremes
-from pendu_tui.recordings.recording import Recording, Run
+from pendu_tui.recordings.recording import Recording, Run, SamplePlace
 from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 
@@ -98,8 +99,22 @@ def test_a_file_of_another_program_is_called_so(tmp_path):
     with pytest.raises(RecordingError, match="not a recording of pendu-tui"):
         Recording.open(path)
     path.write_bytes(b"")
-    with pytest.raises(RecordingError, match="its end is missing"):
-        Recording.open(path)
+    for name, why in ((path, "its end is missing"), (os.devnull, "a device or a pipe")):
+        with pytest.raises(RecordingError, match=why):
+            Recording.open(Path(name))
+
+
+def test_a_file_that_is_emptied_while_it_is_read_is_one_sentence(tmp_path):
+    copy = tmp_path / "copy.mcap"
+    copy.write_bytes((GOLDEN / "drift.mcap").read_bytes())
+    with Recording.open(copy) as recording:
+        places = [SamplePlace(chunk, 1 - chunk) for chunk in (0, 1)]
+        assert [recording.sample(place).value.step for place in places] == [0, 2]
+        recording._decode.cache_clear()
+        copy.write_bytes(b"")
+        for place in places:
+            with pytest.raises(RecordingError, match="it was changed while it was read"):
+                recording.sample(place)
 
 
 def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
