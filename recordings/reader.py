@@ -31,9 +31,8 @@ _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish 
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
 _INDEX = struct.Struct("<QQQQI")  # start, end [ns], offset, size, that of its map
 _IN_MAP = 10  # bytes of a channel's number, of which the lowest is the first, and its offset
-_CHUNK = struct.Struct(
-    "<BQQQQI8sQ"
-)  # opcode, length, start, end [ns], size, CRC, _ZSTD, packed size
+# opcode, length, start, end [ns], size, CRC, _ZSTD, packed size
+_CHUNK = struct.Struct("<BQQQQI8sQ")
 _ZSTD = b"\x04\x00\x00\x00zstd"
 _BEFORE_ZSTD = 37  # bytes of a chunk's record
 _MAX_HEAD = _CHUNK.size + 18  # with the largest head of a zstd frame
@@ -107,8 +106,8 @@ def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | No
     """
     stream.seek(max(0, size - _FOOTER.size))
     try:
-        opcode, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
-        if (opcode, magic) != (Opcode.FOOTER, MAGIC) or size - start > MAX_SUMMARY:
+        _, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
+        if magic != MAGIC or size - start > MAX_SUMMARY:
             return None
         stream.seek(start - 4)
         data = stream.read()
@@ -175,8 +174,7 @@ def _sizes_in(head: bytes) -> tuple[int, int]:
     is_possible = (
         opcode == Opcode.CHUNK
         and compression == _ZSTD
-        and length == _CHUNK.size - _RECORD.size + packed
-        and length <= MAX_RECORD
+        and _CHUNK.size - _RECORD.size + packed == length <= MAX_RECORD
         and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
     )
     # what zstandard allocates

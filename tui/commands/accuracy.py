@@ -217,8 +217,7 @@ def _rungs(scene: Scene, options: argparse.Namespace) -> tuple[float, list[int]]
     """Return the time [s] and the numbers of steps to chart.  Raises InputError."""
     seconds, rungs = usual(scene, options.all, options.time)
     if options.h_values:
-        largest, smallest, _ = options.h_values
-        for h in (largest, smallest):
+        for h in options.h_values[:2]:
             check_h(h, scene.w0)
         rungs = ladder(seconds, *options.h_values)
     return seconds, rungs

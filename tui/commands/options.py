@@ -34,12 +34,7 @@ from pendu_tui.tui.cli.options import (
     values,
 )
 from pendu_tui.tui.drawing.picture import PALETTES
-from pendu_tui.tui.terminal.options import (
-    CALM_FPS,
-    CHARACTER_SETS,
-    FPS,
-    cells,
-)
+from pendu_tui.tui.terminal.options import CALM_FPS, CHARACTER_SETS, FPS, cells
 
 Settings = dict[str, Any]  # of an option, as argparse takes them
 

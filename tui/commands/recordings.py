@@ -125,6 +125,9 @@ def _recover(options: argparse.Namespace) -> Report:
     return Report(name="recordings-recover", fields=result, notes=notes)
 
 
-REPORTS = {"list": (_list, (False, False)), "show": (_show, (True, False))}
-REPORTS |= {"recover": (_recover, (True, True))}
+REPORTS = {
+    "list": (_list, (False, False)),
+    "show": (_show, (True, False)),
+    "recover": (_recover, (True, True)),
+}
 """The report of each verb, and whether it takes FILE and -o."""

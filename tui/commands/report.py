@@ -225,8 +225,7 @@ def check_output(options: argparse.Namespace) -> Form:
     if options.output:
         check_target(options.output, options.force)
     if form == "figure" and find_spec("matplotlib") is None:
-        suffix = options.output.suffix
-        raise UserError(f"{suffix} files need an extra: install pendu-tui[plot].")
+        raise UserError(f"{options.output.suffix} files need an extra: install pendu-tui[plot].")
     return form
 
 
