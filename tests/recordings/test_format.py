@@ -94,6 +94,7 @@ def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(title, schema):
     told = {name: each.get("description") for name, each in schema["properties"].items()}
     units = {"t": "s", "theta": "rad", "trend": "s^-1", "lyapunov": "s^-1", "vx": "s^-1"}
     units |= {"speed": "times real time", "max_energy_error": "over every step so far"}
+    units |= {"gravity": "m/s2", "kind": "start set_h mark pause resume speed stop noticed"}
     assert told.items() >= {name: units[name] for name in units.keys() & told.keys()}.items()
 
 
@@ -155,7 +156,7 @@ def test_an_unexpected_message_is_refused():
 
 IMPOSSIBLE = {
     start(): {
-        "kind": ["explode", ...], "h": [0.0, -0.1], "length": [-1.0], "gravity": [1e300],
+        "kind": ["x" * 300, ...], "h": [0.0, -0.1], "length": [-1.0], "gravity": [1e300],
         "theta": [None, ...], "scene": [3], "numerics": [...], "model": [1, "kepler"],
         "methods": [[], "rk4", [["rk4"]], ["\x1b[2J"], ["rk4", "rk4"], [m.key for m in METHODS[:7]]],
     },
@@ -177,6 +178,7 @@ def test_an_impossible_event_is_refused(event):
             with pytest.raises(RecordingError) as caught:
                 decode_event(json.dumps(message).encode())
             assert str(caught.value).isprintable()
+            assert len(str(caught.value)) < 300
 
 
 @pytest.mark.parametrize(

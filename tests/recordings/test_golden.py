@@ -3,12 +3,18 @@
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
 from pendu_tui.recordings.files import GOLDEN, golden_names
 from pendu_tui.recordings.recording import Recording
 from tests.recordings.make_golden import make
 
 ROOM = 64_000  # bytes; they are in every installation
+
+
+def messages(path):
+    with path.open("rb") as file:
+        return [(each.log_time, each.data) for *_, each in make_reader(file).iter_messages()]
 
 
 @pytest.mark.parametrize("name", golden_names())
@@ -19,9 +25,9 @@ def test_making_a_golden_recording_again_gives_the_same(name, tmp_path):
     assert again.read_bytes() == other.read_bytes()
     golden = GOLDEN / f"{name}.mcap"
     assert golden.stat().st_size < ROOM
-    with Recording.open(golden) as was, Recording.open(again) as made:
+    with Recording.open(golden) as was:
         if not was.runs[0].arithmetic.other_functions():  # bytes depend on zstd's version, too
-            assert list(was.entries()) == list(made.entries())
+            assert messages(golden) == messages(again)
 
 
 @pytest.mark.parametrize(
