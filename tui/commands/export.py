@@ -2,9 +2,8 @@
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
-from operator import attrgetter
 
-from pendu_tui.recordings.format import EXTRA, MOMENT, READING, Field
+from pendu_tui.recordings.format import EXTRA, MOMENT, READING, Field, values_of
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.cli.errors import Exit, progress, warn
 from pendu_tui.tui.cli.files import text_file
@@ -39,14 +38,14 @@ def _column(field: Field) -> str:
 def _rows(
     recording: Recording, show: Callable[[float, float], None]
 ) -> Iterator[tuple[object, ...]]:
-    extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])
-    scalars_of = attrgetter(*(field.name for field in READING))
+    models = [run.scene.model for run in recording.runs]
+    names = dict.fromkeys(field.name for model in models for field in (*READING, *EXTRA[model]))
     for clock, sample in recording.samples_between():
         show(clock, recording.length)
         cast = recording.run_of(sample.run).scene.cast
         for method, reading in zip(cast, sample.readings, strict=True):
             place = (clock, sample.run, sample.step, sample.t, method.key)
-            values = [*scalars_of(reading), *map(reading.extra.get, extra)]
+            values = [*map(values_of(reading).get, names)]
             if reading.diverged_at is not None:  # a recording repeats the last finite numbers
                 values = [value if value == reading.diverged_at else None for value in values]
             # NaN, because readers take an empty column for text
