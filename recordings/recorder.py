@@ -69,6 +69,7 @@ class Recorder:
         self._topics: tuple[str, ...] = ()  # of the run's methods
         self._entries = 0
         self._unflushed = 0  # bytes
+        self._is_empty = True  # until something was flushed
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
         check_target(path, overwrite)
@@ -121,6 +122,7 @@ class Recorder:
         with writing(self.path):
             self._writer.flush()  # type: ignore[no-untyped-call]
         self._unflushed = 0
+        self._is_empty = False
 
     def close(self) -> None:
         """Finish the recording with a stop, the summary and its final name.
@@ -153,13 +155,13 @@ class Recorder:
         publish(self.part, self.path, self._overwrite)
 
     def abandon(self, delete: bool = False) -> None:
-        """Leave what was flushed in NAME.mcap.part, or delete the file without a start."""
+        """Leave what was flushed in NAME.mcap.part, or delete the file if that is nothing."""
         if self._file.closed:
             return
         with suppress(OSError):
             self._file.close()  # Windows removes no open file
         with suppress(OSError):
-            if delete or not self._channels:
+            if delete or self._is_empty:
                 self.part.unlink()
 
     def __enter__(self) -> Self:

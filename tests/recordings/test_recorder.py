@@ -206,6 +206,13 @@ def test_a_recording_is_overwritten_only_on_request_and_by_a_finished_one(tmp_pa
         Recorder(Path(os.devnull), overwrite=True)
 
 
+def test_a_recording_of_which_nothing_reached_the_disk_leaves_its_name_free(tmp_path):
+    recorder = Recorder(tmp_path / "a.mcap")
+    recorder.add(start(), 0.0)
+    recorder.abandon()
+    assert not recorder.part.exists()
+
+
 def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(tmp_path, monkeypatch):
     for module in ("recorder", "recording"):
         monkeypatch.setattr(f"pendu_tui.recordings.{module}.MAX_EVENTS", 30)
