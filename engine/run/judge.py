@@ -40,9 +40,9 @@ class LookPoint(NamedTuple):
     error: float  # relative, signed
     low: float  # smallest and largest error since the previous look point
     high: float
-    theta: float = 0.0  # rad, perhaps reduced by whole turns
-    omega: float = 0.0  # rad/s
-    energy: float = 1.0  # s⁻²
+    theta: float  # rad, perhaps reduced by whole turns
+    omega: float  # rad/s
+    energy: float  # s⁻²
 
 
 def stride(period: float, h: float, model: Model) -> int:
@@ -234,9 +234,9 @@ class Judge:
         swings = step * self._h / self._period
         need = levels.LONG * self._h / self._period
         if self._orbit and self._orbit.is_regular:
-            need = float(levels.MIN_PERIODS)
+            need = levels.MIN_PERIODS
         elif not self._orbit and not self._may_beat and swings < levels.MIN_SWINGS:
-            need = float(levels.MIN_SWINGS)
+            need = levels.MIN_SWINGS
         if swings >= need:
             return None
         return Progress(int(swings), math.ceil(need), "swings")

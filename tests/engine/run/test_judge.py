@@ -3,6 +3,7 @@
 import math
 import random
 from dataclasses import replace
+from functools import partial
 from statistics import median
 
 import numpy as np
@@ -129,13 +130,16 @@ def test_other_models_have_their_verdicts(name, seconds, expected):
     assert {each.method.key: each.verdict for each in found}.items() >= expected.items()
 
 
+look_point = partial(LookPoint, theta=0.0, omega=0.0, energy=1.0)
+
+
 @pytest.mark.parametrize("error", [-0.5, 0.5])
 @pytest.mark.parametrize(("share", "peak"), [(0.99, 0.0), (1.01, 0.5)])
 def test_a_damped_swing_and_the_true_one_count_from_1e5_roundings_on(error, share, peak):
     model = SCENES["damped"].equations
     energy = math.exp(max(error, 0.0)) * (share * 1e5 * R.epsilon * model.w0) ** 2
-    judge = Judge(h=0.1, period=2.0, method=R, model=model, start=LookPoint(0, 0.0, 0.0, 0.0))
-    judge.look(LookPoint(1, error, min(error, 0.0), max(error, 0.0), energy=energy))
+    judge = Judge(h=0.1, period=2.0, method=R, model=model, start=look_point(0, 0.0, 0.0, 0.0))
+    judge.look(look_point(1, error, min(error, 0.0), max(error, 0.0), energy=energy))
     assert judge.peak == peak
 
 
@@ -144,7 +148,7 @@ BAND = 0.5 - 0.5 * np.cos(math.tau * np.arange(6000) / 16)
 
 def judge_of(errors, h=0.1, model=Pendulum(1.0), method=R):  # noqa: B008
     """Return a judge of made-up errors, 16 steps of 0.1 a period."""
-    points = [LookPoint(step, error, error, error) for step, error in enumerate(errors)]
+    points = [look_point(step, error, error, error) for step, error in enumerate(errors)]
     judge = Judge(h=h, period=1.6, method=method, model=model, start=points[0])
     for point in points[1:]:
         judge.look(point)
@@ -156,20 +160,22 @@ def told(errors):
     return judgement.verdict, judgement.rests
 
 
-WALK = 32 * R.epsilon * math.sqrt(5000)  # of eight sigmas of roundings
+WALK = 32 * math.sqrt(5000)  # roundings: eight sigmas
+FLOAT32 = replace(R, epsilon=2.0**-24)
 
 
 @pytest.mark.parametrize(
-    ("scene", "error", "expected"),
+    ("scene", "method", "error", "expected"),
     [
-        ("drift", 0.3 * WALK, "undecided"),
-        ("drift", 0.9 * WALK, "grows"),
-        ("damped", 4.9e-9, "undecided"),  # five errors of the reference
-        ("damped", 5.1e-9, "grows"),
+        ("drift", R, 0.3 * WALK * 2.0**-53, "undecided"),
+        ("drift", R, 0.9 * WALK * 2.0**-53, "grows"),
+        ("damped", R, 4.9e-9, "undecided"),  # five errors of the reference
+        ("damped", R, 5.1e-9, "grows"),
+        ("damped", FLOAT32, 0.3 * WALK * 2.0**-24, "undecided"),
     ],
 )
-def test_what_roundings_may_add_up_to_is_no_growth(scene, error, expected):
-    judge = judge_of([0.0, *[error] * 5000], model=SCENES[scene].equations)
+def test_what_roundings_may_add_up_to_is_no_growth(scene, method, error, expected):
+    judge = judge_of([0.0, *[error] * 5000], model=SCENES[scene].equations, method=method)
     assert judge.judgement.verdict == expected
 
 
@@ -199,7 +205,7 @@ def test_a_judge_looks_eight_times_a_period_or_a_vibration_at_every_h():
 def test_beyond_order_2_no_theorem_holds_from_half_a_turn_a_step_on(method, turn, is_regular):
     judge = judge_of([0.0], h=-0.1, method=method)
     for step, rad in enumerate((turn, 0.0)):
-        judge.look(LookPoint(step + 1, 0.0, 0.0, 0.0, omega=rad / -0.1))
+        judge.look(look_point(step + 1, 0.0, 0.0, 0.0, omega=rad / -0.1))
     assert (judge.judgement.progress.need == 8) == is_regular
 
 
@@ -249,7 +255,7 @@ def test_with_less_than_four_steps_a_turn_an_error_beats_and_must_be_long(model,
 )
 def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, verdict):
     scene = Scene(theta=1.0, h=1 / W0)
-    start = LookPoint(0, 0.0, 0.0, 0.0)
+    start = look_point(0, 0.0, 0.0, 0.0)
     period = scene.exact().period  # times w0: 6.70
     orbit = Judge(-scene.h, period, method=V, model=scene.equations, start=start)._orbit
     orbit.steps = steps
@@ -281,7 +287,7 @@ def test_a_symplectic_method_comes_back():
 
     judge = judge_of([0.0] * 200, method=FOREST_RUTH)
     for step in range(200, 300):
-        judge.look(LookPoint(step, 0.0, 0.0, 0.0, omega=40.0))
+        judge.look(look_point(step, 0.0, 0.0, 0.0, omega=40.0))
     assert judge.judgement.verdict == "bounded"
 
 
@@ -358,6 +364,9 @@ def test_a_band_has_left_the_start_by_half_its_width(sign, word):
         assert (found.verdict, found.reason) == expected
         assert found.rests == (word == found.verdict)
         assert found.growth is None
+    errors[5000:] += 0.6 * sign  # the end is unlike the rest
+    found = judge_of([0.0, *errors[1:]]).judgement
+    assert (str(found), found.rests) == (word, True)
 
 
 @pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
@@ -375,7 +384,7 @@ def test_a_run_is_judged_when_it_is_an_eighth_longer():
     judgements = []
     for step in range(1, 160):
         slope = judge.judgement.slope
-        judge.look(LookPoint(step, step**2, 0.0, 2.0 * step**2))
+        judge.look(look_point(step, step**2, 0.0, 2.0 * step**2))
         if judge.judgement.slope != slope:
             judgements.append(step)
     assert judgements == [64, 72, 82, 94, 106, 120, 136, 156]  # with bins of 2, then 4 looks

@@ -141,9 +141,15 @@ def finite(reading):
     return all(map(math.isfinite, numbers))
 
 
-def test_a_spring_energy_is_relative_to_its_start():
+def test_a_spring_energy_is_relative_to_its_start_and_an_invariants_error_the_largest_so_far():
     stiff, *_ = Lockstep(SCENES["stiff-slow"]).sample().readings
     assert (stiff.extra["spring_energy"], stiff.max_invariant_error) == (1, None)
+    scene = EXAMPLES["mean_field"]
+    lockstep = Lockstep(scene)
+    lockstep.advance(40)
+    for index, reading in enumerate(lockstep.sample().readings):
+        off = [step.readings[index].extra["probability_error"] for step in one_by_one(scene, 40)]
+        assert reading.max_invariant_error == max(map(abs, off))
 
 
 def test_from_a_tiny_start_relative_errors_stay_finite_too():

@@ -142,24 +142,20 @@ def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model, h):
         assert fast.propagate(*start) == slow.propagate(*start)
 
 
-@pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [2, 4]), (3, [1, 2, 4])])
+@pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [4]), (3, [2, 4])])
 def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     ahead, compiled_steps, monkeypatch
 ):
     monkeypatch.setattr(loops_module, "COMPILED_FROM", 3)
-    used = []
+    plain, compiled_loops, used = PlainLoops(RK4, PENDULUM), compiled(RK4, PENDULUM), []
 
-    def fast(method, model):
-        loops = compiled(method, model)
+    def propagate(*start):
+        used.append(start[-1])
+        return compiled_loops.propagate(*start)
 
-        def propagate(*start):
-            used.append(start[-1])
-            return loops.propagate(*start)
-
-        return CompiledLoops(propagate=propagate, advance=loops.advance)
-
-    loops = TieredLoops(RK4, PENDULUM, fast, ahead)
-    plain = PlainLoops(RK4, PENDULUM)
+    # asked for at each call until they are there
+    offers = iter([None, CompiledLoops(propagate=propagate, advance=compiled_loops.advance)])
+    loops = TieredLoops(RK4, PENDULUM, lambda method, model: next(offers), ahead)
     for n in (1, 2, 4):
         start = ((2.0, 0.0), 0.05, n)
         assert loops.propagate(*start) == plain.propagate(*start)

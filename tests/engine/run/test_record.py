@@ -402,7 +402,7 @@ def test_64_samples_are_needed():
         (math.nan, 0.1, 1.0, "cannot tell: it is not known"),
         (0.0, math.inf, 1.0, "cannot tell: it is not known"),
         # the length at which white noise would tell
-        (0.0, 8.0, 1.0, "cannot tell: it is 0 ± 8 at 99 %; a record about 4 times as long"),
+        (0.0, 16.0, 2.0, "cannot tell: it is 0 ± 2e+01 at 99 %; a record about 4 times as long"),
         (0.0, 9e5, 1.0, "cannot tell: it is 0 ± 9e+05 at 99 %; a record about 9322 times"),
         (0.0, 2e6, 1.0, "cannot tell: it is 0 ± 2e+06 at 99 %; a longer record may not"),
         (1.0, 2.0, 1.0, "cannot tell: it is 1 ± 1 at 99 %; a longer record may not"),
