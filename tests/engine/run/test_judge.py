@@ -29,15 +29,7 @@ E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 W0 = Scene().w0
 CELLS = list(truths())[::47]  # 47 and the 36 steps of a line have no divisor in common
-BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
-RESONANCES = [
-    Scene(theta=theta, h=h)
-    for theta, h in ((1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757))
-]
-
-
-def course(method, scene, steps):
-    return [verdict for verdict, *_ in verdicts(method, scene, PlainLoops, steps)]
+RESONANCES = ((1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757))
 
 
 def words(lockstep):
@@ -90,11 +82,15 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number():
         (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
         (E, scene_at("theta=2.5", 1.2), 6000, ["bounded"]),  # back at its start again and again
         (E, scene_at("omega=31.4", 2.05), 6000, ["", "undecided"]),
-        *((method, scene, 6000, ["", "bounded"]) for method in (S, V) for scene in RESONANCES),
+        *(
+            (method, Scene(theta=theta, h=h), 6000, ["", "bounded"])
+            for method in (S, V)
+            for theta, h in RESONANCES
+        ),
     ],
 )
 def test_what_leaves_or_is_lost_is_told_at_the_end(method, scene, steps, ends):
-    assert ["", *course(method, scene, steps)][-1] in ends
+    assert [("",), *verdicts(method, scene, PlainLoops, steps)][-1][0] in ends
 
 
 @pytest.mark.parametrize("h", [0.02, 0.1, -0.05])
@@ -105,7 +101,7 @@ def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
         lockstep = moved(SCENES["large-swing"], [steps])
         lockstep.set_stepping(Stepping(h))
         lockstep.advance(round(120 / abs(h)))
-        assert words(lockstep) == BELOW_THE_LIMITS
+        assert words(lockstep) == ["grows", "bounded", "bounded", "loses"]
         judged.add(lockstep.judgements[1].periods)
     assert len(judged) == 1  # each from the change on
 
@@ -153,11 +149,6 @@ def judge_of(errors, h=0.1, model=Pendulum(1.0), method=R):  # noqa: B008
     for point in points[1:]:
         judge.look(point)
     return judge
-
-
-def told(errors):
-    judgement = judge_of(errors).judgement
-    return judgement.verdict, judgement.rests
 
 
 WALK = 32 * math.sqrt(5000)  # roundings: eight sigmas
@@ -340,8 +331,9 @@ def test_the_largest_errors_that_a_lockstep_gives_leave_no_nan():
 def test_a_run_with_a_certain_trend_is_not_bounded_however_small_the_trend():
     wave = np.roll(BAND, 4) - 0.5  # from 0, so that its band never leaves the start
     trend = 2e-6 * np.arange(6000)  # to a hundredth of the band
-    assert [told(wave + each)[0] for each in (0, trend)] == ["bounded", "undecided"]
-    assert told(-np.append(BAND, 4 * BAND[:2000])) == ("undecided", False)
+    widens = -np.append(BAND, 4 * BAND[:2000])
+    found = [judge_of(each).judgement.verdict for each in (wave, wave + trend, widens)]
+    assert found == ["bounded", "undecided", "undecided"]
     found = judge_of(wave[:4090] + 5).judgement
     assert found.fluctuation == pytest.approx(1 / math.sqrt(8), rel=0.01)
     assert found.reason == levels.SHORT
