@@ -14,7 +14,10 @@ _DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.]|,\d)"  # of many languages
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 NUMBER = rf"[-+]?(?:\d*\.\d+[-+]\d{{3}}(?!\d)|{_DECIMALS}|{_DIGITS})"
 """-4.52-107 is Fortran's -4.52e-107."""
-FAILED = r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}|#[A-Z/0]{3,}[!?]?"
+FAILED = (
+    r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}"
+    r"|#¡?[A-Z/0]+[!?]|#N/?[AV]\b|Err:5\d\d"
+)
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
 VALUE = rf"(?P<value>{FAILED}|{NUMBER})"
 
@@ -156,7 +159,7 @@ LAYOUTS = (
         r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
         rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
         rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s)){VALUE}"
-        rf" *[\[(]?(?P<unit>{UNIT}|[mk]J)?(?![\w/.]|:\S|,\d| +:| *=)",
+        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.]|:\S|,\d| +:| *=| ?[×x*·] ?10)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

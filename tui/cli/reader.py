@@ -57,11 +57,11 @@ _MARKED = re.compile(
 _HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
-_WITH_UNIT = re.compile(rf"({NUMBER})\s?({UNIT})", re.IGNORECASE)
+_WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
-_COMMENTS = "#@!%;"
+_COMMENT = re.compile(rf"\s*(?!{FAILED})[#@!%;]", re.IGNORECASE)
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
     r"\s{2,}",  # names may contain single blanks
@@ -81,7 +81,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
             except (EOFError, OSError, lzma.LZMAError, zlib.error):
                 raise unreadable("it cannot be unpacked; is it whole?") from None
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return _Text(wanted, file).read([_records(_arrays(stream))])
+        return _Text(wanted, file).read(map(_records, _lists(_arrays(stream))))
     encoding = "utf-8-sig"
     if start.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
@@ -100,7 +100,7 @@ def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
     rest = ""
     above: list[str] = []
     while chunk := text.read(BLOCK):
-        *lines, rest = (rest + chunk).split("\n")
+        *lines, rest = (rest + chunk.replace("−", "-")).split("\n")
         count += len(lines)
         if count > MAX_LINES:
             raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
@@ -144,7 +144,8 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
     if document is not whole:
-        yield _records(document)
+        for items in _lists(document):
+            yield [*_records(items), "&"]  # as between sets of xmgrace
         return
     for lines in _blocks(io.StringIO(whole)):
         joined = "".join(lines)
@@ -167,10 +168,10 @@ def _is_broken(line: str) -> bool:
     return not bare.endswith((",", "{", "[")) and _parsed(bare) is bare
 
 
-def _records(document: Any) -> list[str]:
-    """Return a line for each object or row in a document."""
+def _records(items: list[Any]) -> list[str]:
+    """Return a line for each object or row."""
     lines = []
-    for item in _items(document):
+    for item in items:
         if isinstance(item, dict):
             lines.append(_encoded(_flat(item)))
         else:
@@ -187,12 +188,12 @@ def _encoded(record: dict[str, Any]) -> str:
     return json.dumps(record, ensure_ascii=False, default=str)
 
 
-def _items(document: Any) -> list[Any]:
-    """Return the objects or rows in a document: those of a list, or of lists in an object."""
+def _lists(document: Any) -> Iterator[list[Any]]:
+    """Yield the objects or rows in a document: those of a list, or of lists in an object."""
     if isinstance(document, list):
-        return document
+        yield document
     if not isinstance(document, dict):
-        return []
+        return
     arrays = {}
     for name, each in document.items():
         if isinstance(each, dict) and all(map(str.isdecimal, each)):  # pandas
@@ -203,8 +204,10 @@ def _items(document: Any) -> list[Any]:
         rows = [each for each in arrays.values() if not isinstance(each[0], list)]
         size = mode(map(len, rows or arrays.values()))  # positions, for example, are more
         arrays = {name: each for name, each in arrays.items() if len(each) == size}
-        return [dict(zip(arrays, row, strict=True)) for row in zip(*arrays.values(), strict=True)]
-    return next(filter(None, map(_items, document.values())), [])
+        yield [dict(zip(arrays, row, strict=True)) for row in zip(*arrays.values(), strict=True)]
+        return
+    for each in document.values():
+        yield from _lists(each)
 
 
 def _flat(item: dict[str, Any], above: str = "") -> dict[str, Any]:
@@ -275,6 +278,11 @@ def _numbers(fields: list[str]) -> Sequence[float | None]:
     return [*map(number, fields)]
 
 
+def _units_in(fields: list[str]) -> list[str | None]:
+    """Return the unit in each field, None without one."""
+    return [match and match[2] for match in map(_WITH_UNIT.fullmatch, fields)]
+
+
 Form = tuple[str | None, int, str]
 """The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
 
@@ -308,6 +316,7 @@ class _Text:
         self._line = 0
         self._tables = [Sheet(wanted)]  # the first has no columns
         self._form: Form = (None, -1, "")  # of a row of the last table
+        self._cells: list[str | None] = []  # the units in its fields
         self._page: set[str] = set()  # its head, which may be repeated on each page
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
         self._shapes: dict[str, tuple[Group, Group]] = {}
@@ -396,9 +405,10 @@ class _Text:
         rows = {
             at: line
             for at, line in lines.items()
-            if len(_split(line, delimiter)) == width
+            if len(cells := _split(line, delimiter)) == width
+            and (not any(self._cells) or _units_in(cells) == self._cells)
             and (delimiter or "," not in line)
-            and line.lstrip()[:1] not in _COMMENTS
+            and not _COMMENT.match(line)
         }
         fields = _split((delimiter or " ").join(rows.values()), delimiter)
         if len(fields) != len(rows) * width:  # a quotation mark is left open
@@ -533,8 +543,8 @@ class _Text:
         text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
-        bare = text.lstrip(_COMMENTS + " \t")
-        is_comment = bare != text and number(text.split()[0]) is None
+        is_comment = bool(_COMMENT.match(text))
+        bare = text.lstrip("#@!%; \t") if is_comment else text
         fields, delimiter = self._fields(bare)
         is_like = (len(fields), "") == self._form[1:]
         numbers = _numbers(fields)
@@ -575,6 +585,8 @@ class _Text:
         sheet = self._tables[-1]
         if is_row:
             sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
+            for place, unit in enumerate(_units_in(fields)):
+                sheet.check_unit(place, unit, self._line)
         elif sheet.names and opening == self._form[2] and (opening or numbers[0] is not None):
             is_below_row = sheet.last == self._line - 1
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
@@ -610,6 +622,7 @@ class _Text:
             self._page.clear()
             self._shapes.clear()  # what held nothing may be a row
             self._tables.append(Sheet(self._wanted, self._line))
+            self._cells = _units_in(fields)
             for name, unit in zip(names, self._units_of(names, fields), strict=True):
                 self._tables[-1].add_column(name, unit)
         if names:
@@ -668,13 +681,9 @@ class _Text:
             if len(row) == len(names) and not any(units):
                 units = bare if any(map(is_unit, bare)) else units
         for place, field in enumerate(fields):
-            match = _WITH_UNIT.fullmatch(field)
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"
-            if match:
-                units[place] = match[2]
-            if place:
-                units[place] = units[place] or self._shared
+            units[place] = self._cells[place] or units[place] or self._shared * (place > 0)
         return units
 
 

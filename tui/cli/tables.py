@@ -30,8 +30,10 @@ NOT_LATER = (
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
-OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N"}}
-"""Columns beside which it is an eccentricity, or East."""
+OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N", "B", "I", "nu", "strain", "loss"}}
+"""Columns beside which it is an eccentricity, or East, a field, exposed, a modulus, an error."""
+WALL = 1e9  # seconds since 1970: a clock on the wall, which other times and steps precede
+MAX_TURNS = 2  # of the sign of an energy
 COUNTS = ("N", "i", "n")  # if they are whole numbers
 Group = tuple[int, ...]
 """Columns to add up."""
@@ -131,9 +133,8 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
     # T is a temperature, unless it increases
     is_hot = [_bare(name) == "t" and name[0] == "T" for name in names]
     best = _by_role(names, (n for n in range(len(names)) if n in rising or not is_hot[n]))
-    for kind in ("time", "step"):
-        if kind in best:
-            return best[kind][:1]
+    if times := best.get("time", ()) + best.get("step", ()):
+        return (min(times, key=lambda place: sum(samples[place][:1]) > WALL),)
     if not rising:
         others = (some for name, some in zip(names, samples, strict=True) if not role(name)[0])
         return None if any(map(_is_in_turn, others)) else ()
@@ -172,6 +173,7 @@ def _energy(
         name = key(bare[found[0]])
         is_total = name.startswith("tot")  # of what?
         if not units[found[0]]:
+            has_more |= bool(further) and _is_wave(_first(samples, found)[0])
             is_other |= name == "e" and has_more and not has_parts
             is_other |= is_total and bool(further) and not parts
         may_differ = bool(further) or not is_total
@@ -185,10 +187,17 @@ def _energy(
 
 
 def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
-    """Return whether e is an eccentricity, or E the east, by the columns beside it."""
+    """Return whether E is one of OTHER_E by the columns beside it."""
     values = zip(names, samples, strict=True)
     others = {each for each, some in values if each not in COUNTS or np.mod(some, 1).any()}
     return bool(others & OTHER_E.get(names[place], set()))
+
+
+def _is_wave(values: Any) -> bool:
+    """Return whether a bare E is a field, which turns its sign often, or counts."""
+    turns = np.diff(values > 0)
+    is_wave = np.count_nonzero(turns[1:] > turns[:-1]) > MAX_TURNS
+    return bool(is_wave or (len({*values}) > 2 and not np.mod(values, 1).any()))
 
 
 def _is_sum(samples: Sequence[Any], places: Group, may_differ: bool) -> bool:
@@ -245,7 +254,7 @@ class Sheet:
         self.heads: list[int] = []  # lines of its head, where it is repeated
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
-        self.mixed: dict[int, str] = {}  # columns printed in two units, and where
+        self.mixed: dict[int, str] = {}  # columns in two units, and where
         self._is_printed = is_printed
         self._once: dict[str, tuple[str, int, float]] = {}  # what was printed only once
         self._lines: list[array[int]] = []  # of the values of each column
@@ -306,13 +315,18 @@ class Sheet:
         if name in self.places:
             place = self.places[name]
             self.put([line], (place,), [[value]])
-            own = self.units[place]
-            kind = "time" if role(name)[0] == "time" else "energy"
-            if unit and shown(kind, unit) != shown(kind, own or unit):
-                why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
-                self.mixed.setdefault(place, why)
+            self.check_unit(place, unit, line)
         elif len(self._once) < MAX_NAMES:
             self._once[name] = (unit, line, value)
+
+    def check_unit(self, place: int, unit: str | None, line: int) -> None:
+        """Note that a value has another unit than those above."""
+        name = self.names[place]
+        own = self.units[place]
+        kind = "time" if role(name)[0] == "time" else "energy"
+        if unit and shown(kind, unit) != shown(kind, own or unit):
+            why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
+            self.mixed.setdefault(place, why)
 
     def _column(self, place: int) -> tuple[Any, Any]:
         """Return the lines and values of a column, in the order of the lines."""

@@ -55,6 +55,7 @@ _OTHER_NAMES = {
 UNIT = "|".join(
     [*map(re.escape, NANOSECONDS | BOLTZMANN)]
     + [pattern for names in _OTHER_NAMES.values() for pattern, _ in names]
+    + ["[kmnuµμ]J"]
 )
 """The known units, as they are written in any case."""
 _NO_UNITS = re.compile(r"kin(etic)?|pot(ential)?|tot(al)?|const", re.IGNORECASE)
@@ -104,7 +105,7 @@ def split_unit(name: str) -> tuple[str, str]:
     name = name.strip()[:MAX_NAME]
     match = _BRACKETS.fullmatch(name)
     if match and not _NO_UNITS.fullmatch(match[2]):
-        return match[1], match[2]
+        return match[1], match[2] * (match[2] != "t")  # E(t)
     match = _SUFFIX.fullmatch(name)
     kind = "time" if match and _TIME_NAME.fullmatch(match[1]) else "energy"
     if match and plain(kind, match[2]):

@@ -20,9 +20,9 @@ ENERGIES = [e for _, _, e, _ in SAMPLES]
 
 
 def rows(form: str, first: int = 0, last: int = 90) -> str:
-    """Return lines with step s = 50 n, time t, energy e = k + p, one of 20 bodies b, flag f."""
+    """Return lines with step s, time t, energy e = k + p, one of 20 bodies b, flag f, wave w."""
     return "".join(
-        form.format(n=n, s=50 * n, t=t, e=e, k=k, p=e - k, b=n % 20, f=n % 9 // 8) + "\n"
+        form.format(n=n, s=50 * n, t=t, e=e, k=k, p=e - k, b=n % 20, f=n % 9 // 8, w=k - 20) + "\n"
         for n, t, e, k in SAMPLES[first:last]
     )
 
@@ -100,6 +100,13 @@ def columns(series: Series) -> str | None:
         ("t,e,dE/E", "{t},{k},{e}", None),
         ("t,e", "{t},{e}", "t, e"),
         ("t,a,e", "{t},1,{e}", None),  # eccentricity
+        ("t,E,B", "{t},{e},{k}", None),  # fields
+        ("t,x,E", "{t},{k},{w}", None),  # a field
+        ("t,x,E", "{t},{k},{b}", None),  # a count
+        ("time,t,E", "17327000{n:02},{t},{e}", "t, E"),  # on the wall
+        ("time,step,E", "17327000{n:02},{n},{e}", "step, E"),
+        ("time,E", "17327000{n:02},{e}", "time, E"),
+        ("", "t = {t} E = {e}×10^{f}", None),
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,energy error (%)", "{t},{e}", None),
@@ -125,6 +132,7 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
     ("form", "units"),
     [
         ("t = {t} E = {e}", ", "),
+        ("t = {t}: E(t) = {e}", ", "),
         ("t = {t} E = {e} J\nw = {n} fs\nw = {n} ps", ", J"),
         ("Step {n}: time: {t} ps, energy: {e} eV", "ps, eV"),
         ("Time (ps): {t} | Energy (eV): {e} | dE = 1e-3", "ps, eV"),
@@ -219,12 +227,15 @@ def array(*unnamed: object, **named: object) -> bytes:
         "\ufeff" + json.dumps({"run": {"h": [], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
+        json.dumps({"meta": {"sizes": [3, 4]}, "run": {"t": TIMES, "E": ENERGIES}}),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
         array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
         gzip.compress(rows("{t} {e}").encode()),
         lzma.compress(rows("{t} {e}").encode()),
         rows("{t}\t{e}").encode("utf-16"),
+        ("t,E\n" + rows("{t},{e}")).replace("-", "−"),
+        rows("t = {t}, E = {e}").replace("-", "−"),
         "t;E\n" + rows("{t:};{e:}").replace(".", ","),
         "| t | E |\n|---|---|\n" + rows("| {t} | {e} |"),
         "t,E\n" + rows('"{t}","{e}",'),
@@ -272,6 +283,7 @@ def test_columns_of_inner_arrays_have_numbers():
     ("head", "form", "ends"),
     [
         ("t,E\n", "{t},{e}", ("nan", "-nan(ind)", "1.#QNAN", "#NUM!", "overflow", "")),
+        ("t;E\n", "{t};{e}", ("Err:502", "#NV", "#¡NUM!")),
         ("t E\n", "{t} {e}", ("-1.#IND", "+Infinity", "********", "overflow")),
         ("t E T\n", "{t} {e} 3", ("nan", "inf")),
         ("t\tE\n", "{t}\t{e}", ("nan", "")),
@@ -292,6 +304,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
     [
         ("t,E\n" + rows("{t},{e}") + "nan,nan\n", 44.5, 1),
         ("t,E\n" + rows("{t},{e}") + 200 * "nan,nan\n", 44.5, 200),
+        ("t,E\n" + rows("{t},{e}") + "#NUM!,#NUM!\n#N/A,#NV\n", 44.5, 2),
         ("t,E\n" + rows("{t},{e}") + "inf,-345\n", None, 1),
         ("t,E\n" + rows("{t},{e}\nnan,nan"), None, 90),  # one row divides others
         ("t,E\n" + rows("{t},{e}").replace("\n", "\nnan,nan\n", 1) + 2 * "nan,nan\n", 44.5, 3),
@@ -303,7 +316,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", 45.0, 1),
         ("t K E\n" + rows("{t} 3 {e}") + "**********\ndone\n**********\n", None, 2),
         ("n t E\n" + rows("{n} {t} {e}") + 2 * "**********\n", 44.5, 2),
-        ("ETITLE: t B E\n" + rows("ENERGY: {t} 1 {e}") + 2 * "ENERGY: 45.0 nan\n", 44.5, 2),
+        ("ETITLE: t C E\n" + rows("ENERGY: {t} 1 {e}") + 2 * "ENERGY: 45.0 nan\n", 44.5, 2),
         ("t,E\n" + rows("{t},{e}\n{t}5,\n{t}6,"), None, 180),  # rarer
         ("t,E\n" + rows("{t},{e}") + "45.0,\n", None, 1),  # cut while it is written
         ("t,E\n" + rows("{t},{e}") + '45.0,"-345.12,5"\n', None, 1),  # no numbers
@@ -460,11 +473,12 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (rows("{e}", 0, 70) + "-1.0-1.0\n1\n1 2\n" + rows("{e}", 70), [71, 1, 20]),
         ("t,E\n" + rows("{t},{e}", 0, 40) + rows("{t},{e}"), [40, 90]),
         ("t,E\n" + rows("{t},{e}\n{t},{e}"), [1, 90]),
-        (f"Step A B E\n{rows('{s} 1 2 {e}')}Step E\n1 2 3 4\nStep E\n{rows('{s} {e}')}", [90, 90]),
+        (f"Step A C E\n{rows('{s} 1 2 {e}')}Step E\n1 2 3 4\nStep E\n{rows('{s} {e}')}", [90, 90]),
         ("a n t E\na 5 0.1-1.0\n" + rows("a 5 {t} -{k}").replace("7.0 ", "7.0"), [90]),
         ("DYNA DYN: Step  Time  E\n" + rows("DYNA> {n} {t} {e}\nAVER DYN: Step  Time  E"), [90]),
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
         (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
+        (json.dumps({name: {"t": TIMES, "E": ENERGIES} for name in "ab"}), [90, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
         (pages(rows("t E\n{s} {e}\nt K", 0, 1), "{t} {k}", 0), [1, 18] * 5),
@@ -523,6 +537,8 @@ BROKEN = (
     ("t,E\n" + rows("{t},{e}", 0, 70) + rows("3.0,{e}", 0, 8), "its last 8 rows .* thousands"),
     ("t,E\n" + rows("-0.1,inf\n{t},{e}"), "at -0.1 .* --from"),
     (rows("t = {t}, E = {e} J\nE = {e} eV"), "E is in J, but in eV in line 2;"),
+    ("t,E\n" + rows("{t},{e} mJ", 0, 70) + rows("{t},{e} J"), "E is in mJ, but in J in line 72"),
+    ("t E\n" + rows("{t}us {e}\n{t}5ms {e}"), "t is in us, but in ms in line 3;"),
 )
 MISUSED = (
     (TABLE, {"energy": "E+t"}, "t is both the time and an energy"),
