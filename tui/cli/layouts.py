@@ -158,8 +158,8 @@ LAYOUTS = (
         line=r"(?<![\w.])(?:(?:INFO|DEBUG):? +|X {2,})?"
         r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
         rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
-        rf"(?: *= *\"?|: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s)){VALUE}"
-        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.]|:\S|,\d| +:| *=| ?[×x*·] ?10)",
+        rf"(?: *= *\"?| *: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s)){VALUE}"
+        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10|[^\S\t]\d{{3}}\b)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

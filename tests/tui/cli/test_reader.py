@@ -107,6 +107,7 @@ def columns(series: Series) -> str | None:
         ("time,step,E", "17327000{n:02},{n},{e}", "step, E"),
         ("time,E", "17327000{n:02},{e}", "time, E"),
         ("", "t = {t} E = {e}×10^{f}", None),
+        ("", "t = {t} E = -42 {k:07.3f}", None),
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,energy error (%)", "{t},{e}", None),
@@ -133,6 +134,7 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
     [
         ("t = {t} E = {e}", ", "),
         ("t = {t}: E(t) = {e}", ", "),
+        ("  | Simulation time     : {t} ps\n  | Total energy (el.+nuc.)   : {e} eV", "ps, eV"),
         ("t = {t} E = {e} J\nw = {n} fs\nw = {n} ps", ", J"),
         ("Step {n}: time: {t} ps, energy: {e} eV", "ps, eV"),
         ("Time (ps): {t} | Energy (eV): {e} | dE = 1e-3", "ps, eV"),
