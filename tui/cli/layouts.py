@@ -183,6 +183,7 @@ ROLES = (
     ),
     ("error", r"(rel(ative)?)?d(elta)?ee0?|.*e0e0|(rel(ative)?)?e(nergy)?(err(or)?|drift)"),
     ("error", r"rel(ative)?err(or)?"),
+    ("run", r"method|integrator|solver|scheme|seed|run(id)?|units?"),
     ("other", r"temp(erature)?|press?(ure)?|vol(ume)?|density|epair"),
 )
 """Roles of columns and their names as `key` writes them; the best comes first."""

@@ -61,7 +61,7 @@ _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
-_COMMENT = re.compile(rf"\s*(?!{FAILED})[#@!%;]", re.IGNORECASE)
+_COMMENT = re.compile(rf"^\s*(?!{FAILED})[#@!%;][#@!%; \t]*", re.IGNORECASE)
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
     r"\s{2,}",  # names may contain single blanks
@@ -270,8 +270,10 @@ def _seconds(date: str) -> float | None:
     return None
 
 
-def _numbers(fields: list[str]) -> Sequence[float | None]:
-    """Return the number in each field."""
+def _numbers(fields: list[str], are_marks: bool = False) -> Sequence[float | None]:
+    """Return the number in each field, or for each text."""
+    if are_marks:
+        return [zlib.crc32(field.encode()) for field in fields]
     text = "\n".join(fields).replace(",", ".")  # commas may be decimal
     with suppress(ValueError):
         return [*map(float, text.split("\n"))]
@@ -413,7 +415,7 @@ class _Text:
         fields = _split((delimiter or " ").join(rows.values()), delimiter)
         if len(fields) != len(rows) * width:  # a quotation mark is left open
             return Found(sheet, [])
-        columns = [_numbers(fields[place::width]) for place in sheet.kept]
+        columns = [_numbers(fields[place::width], place in sheet.marks) for place in sheet.kept]
         return Found(sheet, [*rows], sheet.kept, columns, needed=1)
 
     def _prints_in(self, lines: dict[int, str]) -> Iterator[Found]:
@@ -543,8 +545,8 @@ class _Text:
         text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
-        is_comment = bool(_COMMENT.match(text))
-        bare = text.lstrip("#@!%; \t") if is_comment else text
+        bare = _COMMENT.sub("", text)
+        is_comment = bare != text
         fields, delimiter = self._fields(bare)
         is_like = (len(fields), "") == self._form[1:]
         numbers = _numbers(fields)
@@ -584,7 +586,8 @@ class _Text:
         is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
         sheet = self._tables[-1]
         if is_row:
-            sheet.put([self._line], sheet.kept, [[numbers[place]] for place in sheet.kept])
+            values = [_numbers([fields[place]], place in sheet.marks) for place in sheet.kept]
+            sheet.put([self._line], sheet.kept, values)
             for place, unit in enumerate(_units_in(fields)):
                 sheet.check_unit(place, unit, self._line)
         elif sheet.names and opening == self._form[2] and (opening or numbers[0] is not None):

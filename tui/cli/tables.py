@@ -31,9 +31,8 @@ NOT_LATER = (
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
 OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N", "B", "I", "nu", "strain", "loss"}}
-"""Columns beside which it is an eccentricity, or East, a field, exposed, a modulus, an error."""
-WALL = 1e9  # seconds since 1970: a clock on the wall, which other times and steps precede
-MAX_TURNS = 2  # of the sign of an energy
+"""Columns beside which it is an eccentricity, or East, a field, a modulus, a loss."""
+WALL = 1e9  # seconds since 1970 or more
 COUNTS = ("N", "i", "n")  # if they are whole numbers
 Group = tuple[int, ...]
 """Columns to add up."""
@@ -196,7 +195,7 @@ def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
 def _is_wave(values: Any) -> bool:
     """Return whether a bare E is a field, which turns its sign often, or counts."""
     turns = np.diff(values > 0)
-    is_wave = np.count_nonzero(turns[1:] > turns[:-1]) > MAX_TURNS
+    is_wave = np.count_nonzero(turns[1:] > turns[:-1]) > 2
     return bool(is_wave or (len({*values}) > 2 and not np.mod(values, 1).any()))
 
 
@@ -246,6 +245,7 @@ class Sheet:
         self.units: list[str] = []
         self.line = line  # where it begins
         self.kept: Group = ()  # the columns that are still read
+        self.marks: Group = ()  # methods, seeds
         self.choice: Choice | None = None
         self.skipped = 0  # rows of another width
         self.puts = 0
@@ -262,6 +262,8 @@ class Sheet:
 
     def add_column(self, name: str, unit: str = "") -> None:
         self.kept += (len(self.names),)
+        if role(name)[0] == "run" and not self._is_printed:
+            self.marks += (len(self.names),)
         self.names.append(name)
         self.units.append(unit)
         self._lines.append(array("q"))
@@ -340,7 +342,7 @@ class Sheet:
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
         if self.puts >= SAMPLE:
-            self.kept = (self.choice or Choice()).columns or (0,)  # to count rows
+            self.kept = (self.choice or Choice()).columns + self.marks or (0,)  # to count rows
 
     def series(self) -> Iterator["Series"]:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
@@ -362,7 +364,10 @@ class Sheet:
         seen = len(here) if self._is_printed else self.puts
         skipped = self.skipped + seen - rows
         times[~(np.abs(times) < LATEST)] = np.nan
-        runs = list(islice(_runs(times, self._again(lines[here], times)), MAX_SERIES))
+        begins = self._again(lines[here], times)
+        marks = self._sum(self.marks, lines).filled(0)[here]
+        begins[np.unique(marks, return_index=True)[1]] = True
+        runs = list(islice(_runs(times, begins), MAX_SERIES))
         if self.skipped > rows:
             why = "most of its rows differ from its head in the number of columns; keep one table."
             raise unreadable(why)
