@@ -51,6 +51,7 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
         (units.moment, "-2.5e-1ps", (-0.25, "ps")),
         (units.moment, "1e999", None),
         (units.quantity, "0fs", None),
+        *((units.quantity, f"1{unit}", f"'{unit}' is not a known unit") for unit in ("kg", "eV")),
         (units.assignments, "energy=eV,", {"energy": "eV"}),
         (units.assignments, "time=ps,energy=kJ/mol", {"time": "ps", "energy": "kJ/mol"}),
         *((units.assignments, text, None) for text in ("time=ps,mass=u", "time=,energy=eV", ",")),
