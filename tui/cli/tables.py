@@ -145,7 +145,7 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
 def _is_in_turn(sample: Any) -> bool:
     """Return whether a column counts bodies, methods or processes again and again."""
     again = np.flatnonzero(np.asarray(sample[1:]) == sample[:1]) + 1
-    if not len(again) or again[0] < 2 or len(sample) < 3 * again[0]:
+    if not len(again) or again[0] < 2 or len(sample) < 3 * again[0] or np.mod(sample, 1).any():
         return False
     is_periodic = np.array_equal(sample[again[0] :], sample[: -again[0]])
     return is_periodic and len({*sample[: again[0]]}) == again[0]
@@ -338,7 +338,8 @@ class Sheet:
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
         samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
-        if self.names[:1] == [""] and (samples[0] % 1).any():
+        falls = [np.median(np.diff(each, append=np.inf)) < 0 for each in samples[1:2]]
+        if self.names[:1] == [""] and ((samples[0] % 1).any() or any(falls)):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
         if self.puts >= SAMPLE:

@@ -77,6 +77,7 @@ def columns(series: Series) -> str | None:
         ("x,E", "{k},{e}", "row, E"),  # no column increases
         ("x,E", "{b},{e}", None),  # bodies
         ("x,E", "{f},{e}", "row, E"),
+        ("x,E", "{b}.5,{e}", "row, E"),
         ("KE,E", "{b},{e}", "row, E"),
         ("t,KE,Ekin", "{t},{k},{p}", None),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
@@ -113,6 +114,7 @@ def columns(series: Series) -> str | None:
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
         ("  t     E", "{n:<4} {t} {e}", "t, E"),  # pandas
         ("Time Etot", "{t} {e} {k}", None),
+        ("Time Etot", "{n} -{t} {e}", None),
         ("", "{e}", "row, column 1"),
         ("", "{t} {e}", "column 1, column 2"),
         ("seed 7;", "{t} {e}", "column 1, column 2"),
