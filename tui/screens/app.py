@@ -59,9 +59,9 @@ class PenduApp(App[Exit | BaseException]):
         self._last_notice = ""
         self._watchdog = watchdog()
 
-    def export_screenshot(self, *, title: str | None = None, simplify: bool = False) -> str:
+    def export_screenshot(self, **options: Any) -> str:
         """Return the screen as an SVG picture for any viewer."""
-        return portable(super().export_screenshot(title=title, simplify=simplify))
+        return portable(super().export_screenshot(**options))
 
     def get_default_screen(self) -> Screen[None]:
         return self.lab
