@@ -69,8 +69,9 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         await do("scene crossover")
         assert theatre.source.scene == SCENES["crossover"]
         assert not theatre.source.playhead.paused
-        await do("theme", "down", "pageup", "down", "down", "up")
-        assert theatre.app.theme == "light"
+        for keys, theme in (("pagedown up", "high-contrast"), ("down down pageup down", "light")):
+            await do("theme", *keys.split())
+            assert theatre.app.theme == theme
         await found(theatre, "double speed")
         await theatre.click(Choices, 3, 0)
         assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed

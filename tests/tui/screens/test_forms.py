@@ -13,7 +13,9 @@ from tests.tui.harness import lab
 async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("b", "i", *"115deg ", "tab", *"-2", *["tab"] * 3, *"0.01", "enter")
+        await theatre.press(
+            "b", "i", *"115deg ", "down", *"-2", *["down"] * 4, "up", *"0.01", "enter"
+        )
         scene = theatre.source.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
         assert theatre.source.stepping.h == 0.01  # a new run is no reversed one
@@ -35,14 +37,18 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
             await theatre.pilot.pause()
             await theatre.press("enter")
 
-        for name, value in (("stiffness", "0.5"), ("theta", "abc"), ("theta", "")):
+        verdict = form.query_one("#verdict", Label)
+        calm = verdict.styles.color
+        for name, value in (("stiffness", "0.5"), ("theta", "[abc]"), ("theta", "")):
             before = form.query_one(f"#{name}").value
             await enter(name, value)
             assert theatre.app.screen is form
-            verdict = form.query_one("#verdict", Label)
-            assert verdict.has_class("-wrong")
+            assert verdict.styles.color != calm
             assert name in str(verdict.content)
+            assert value in str(verdict.visual)
             form.query_one(f"#{name}").value = before
+            await theatre.pilot.pause()
+            assert verdict.styles.color == calm
         await enter("stiffness", "400")
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
@@ -50,6 +56,9 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
 async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen():
     own = replace(USUAL_CAST[3], key="own")
     async with lab(DEFAULT_SCENE.with_cast((*USUAL_CAST, own)), (100, 40)) as theatre:
+        for key in ("q", "M"):
+            await theatre.press("M", key)
+            assert theatre.app.screen is theatre.stage
         await theatre.press("plus", "M")
         form = theatre.app.screen
         known = [*METHODS]

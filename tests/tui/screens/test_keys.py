@@ -86,7 +86,7 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
             return source.stepping.h, source.playhead.speed, source.scene, theatre.stage.shown
 
         before = [settings()]
-        for keys in ("+", ">", "p", ("P", *"mean", "enter"), "p", ("y", "escape")):
+        for keys in ("+", ">", "p", ("P", "m", "enter"), "p", ("y", "escape")):
             await theatre.press(*keys)
             before.append(settings())
         assert before[3][2] == SCENES["gentle"]
@@ -154,6 +154,10 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         assert "run 1;" in theatre.notices[-1]
         await theatre.click("PhasePane", 5, 0)
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", 2)
+        pane = theatre.stage.query_one("PhaseView PhasePane")
+        pane.failure = "It failed."
+        await theatre.press("f2", "f3")
+        assert not pane.failure
 
 
 async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pendulum_is_held():

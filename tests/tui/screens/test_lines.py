@@ -75,7 +75,7 @@ LIVES = [
 def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_over(snapshot):
     pictures = []
     turned = taped()
-    turned.change(Stepping(-0.2, equal_cost=True))
+    turned.change(Stepping(-2.6, equal_cost=True))
     turned.set_speed(0.25)
     for live, width in product([*LIVES, turned], (60, 80, 100, 160)):
         row = status_row(live, Shown(), width)

@@ -90,10 +90,12 @@ async def test_notices_lie_on_the_insight_line_and_replace_equal_ones():
         assert app.screen.query_one(InsightLine).region.contains_region(region)
         await pilot.press("m", *["minus"] * 9)
         refused = [each for each in app._notifications if "not a usable" in each.message]
-        assert [(each.severity, each.markup) for each in refused] == [("warning", False)]
-        app.notify("\x1b[2J")
+        assert [(each.severity, each.markup, each.timeout) for each in refused] == [
+            ("warning", False, 15)
+        ]
+        app.notify("\x1b[2J" + 996 * "x")
         await pilot.pause()
-        assert not any("\x1b" in each.message for each in app._notifications)
+        assert [*app._notifications][-1].message == "\N{REPLACEMENT CHARACTER}[2J" + 996 * "x"
         assert [event.kind for event in live.events].count("mark") == 1
 
 

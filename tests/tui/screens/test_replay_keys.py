@@ -155,6 +155,7 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         assert told.startswith(said)
         await theatre.press("u")
         assert (theatre.source, theatre.source.sample) == (replay, here)
+        assert theatre.notices[-1].startswith("Back")
         assert replay.playhead.paused
         assert path.with_name("new.mcap").exists()
         await theatre.press("u", "right", "full_stop")

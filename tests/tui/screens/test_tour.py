@@ -112,3 +112,4 @@ async def test_of_a_page_that_is_too_long_the_end_is_kept():
     async with guided(Lesson("Page", [page]), page, (60, 16)) as theatre:
         assert panel(theatre).startswith("Page 1 of 1")
         assert panel(theatre).endswith("long.")
+        assert theatre.text(LessonPanel).count("\n") == 5
