@@ -11,6 +11,7 @@ import pytest
 from pendu_tui import engine
 from pendu_tui.engine import (
     METHODS,
+    SCENES,
     fluctuation_order,
     judge,
     library,
@@ -46,6 +47,7 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     assert coarse.t.tolist() == run.t[[0, 500, 1000, 1200]].tolist()
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
     assert type(simulate(h=np.float32(0.1), time=1).scene.h) is float
+    assert simulate(time=0.1).scene == SCENES["drift"]
 
 
 def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
@@ -148,7 +150,10 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: judge(TIMES[::-1], WAVE), r"times\[1\] is not later"),
         (lambda: judge(TIMES, [math.nan, *WAVE[1:]]), r"energies\[0\] is nan"),
         *((lambda t=t: judge(t, t), "times must be a list of numbers") for t in ([TIMES], [], "t")),
-        (lambda: judge(TIMES, WAVE + 1j), "energies must be a list of numbers"),
+        *(
+            (lambda e=e: judge([1, 2], e), "energies must be a list")
+            for e in ([10**400, 1], [1j, 1])
+        ),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="frist"), "no scale 'frist': did you mean first"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
@@ -175,6 +180,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: limits("damped", methods="rk4"), "no friction"),
         (lambda: limits(steps=0), "steps = 0"),
         (lambda: measure(lambda force, phase, h: phase), "is not a generator function"),
+        (lambda: measure(5), "step: it is not a generator function"),
         (lambda: fluctuation_order([(math.nan, TIMES, WAVE)]), "h = nan"),
         (lambda: fluctuation_order([(0.1, [0], [1])]), r"h = 0\.1: 1 energies are too few"),
         (
@@ -189,19 +195,28 @@ def test_what_cannot_be_used_is_refused_with_a_sentence(call, word):
 
 
 def test_limits_are_where_the_swing_is_lost():
-    found = limits(theta=2.0, methods="verlet,rk4,blanes_moan_6", steps=1000)
+    found = limits(theta=2.0, methods="verlet,rk4,blanes_moan_6")
     verlet = found["velocity_verlet"]
     assert (verlet.linear, verlet.reason) == (2, "over the top")
     assert found["rk4"].reason == "loses"
     assert (found["blanes_moan_6"].z, found["blanes_moan_6"].reason) == (None, "")
     assert limits(theta=2.0, methods="verlet", steps=5)["verlet"].z != verlet.z
     assert list(limits(steps=5)) == GENERAL
-    assert recommend(0.5, methods="rk4")[0].point.time == 20.0  # ten small swings
-    theta, energy = (recommend(1e-2, methods="rk4", time=5, error=e) for e in ("theta", "energy"))
-    assert energy[0].point.steps != theta[0].point.steps
     for share, held in [(0.98, True), (1.0, False)]:
         run = simulate(theta=2.0, h=share * verlet.h, time=1000 * verlet.h, methods="verlet")
         assert (np.abs(run["verlet"].theta).max() < math.pi) == held
+
+
+def test_the_cheapest_runs_that_are_good_enough_come_first():
+    def found(target, methods="rk4,verlet", time=5, **error):
+        attempts = recommend(target, methods=methods, time=time, **error)
+        return [(each.method.letter, each.point.steps) for each in attempts]
+
+    assert found(1e-2) == found(1e-2, error="theta") == [("r", 24), ("v", 115)]
+    assert found(1e-2, error="energy") == [("v", 76), ("r", 28)]
+    assert found(1e-2, error="final") == [("r", 24), ("v", 107)]
+    assert found(1e-9, "explicit_euler,rk4", time=1) == [("r", 185)]
+    assert recommend(0.5, methods="rk4")[0].point.time == 20.0  # ten small swings
 
 
 def test_the_order_of_a_step_and_that_of_its_fluctuations_are_measured():

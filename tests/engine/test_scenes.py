@@ -90,7 +90,8 @@ def test_a_scene_keeps_its_name_only_while_nothing_is_changed():
     assert (damped.often_said, damped.parameters) == ("", SCENES["damped"].parameters)
     fields = {"name": "spin", **scene.numbers, "watch": scene.watch, "model": "pendulum"}
     assert scene.fields() == {**fields, "methods": [method.key for method in scene.cast]}
-    assert SCENES["damped"].altered(model="pendulum", cast=scene.cast).parameters == {}
+    assert damped.altered(model="pendulum", cast=scene.cast).parameters == {}
+    assert damped.altered(model="spring", stiffness=5, cast=()).parameters == {"stiffness": 5}
 
 
 def test_a_scene_says_why_there_is_no_map_of_it_and_no_ring():
@@ -119,7 +120,7 @@ def test_every_scene_has_its_name_and_group_and_says_what_to_watch():
             known |= {"half": -0.5, "110 E0": 110, "0.48 rad": 0.48**2 / 0.1**2 - 1}
             assert line.value == pytest.approx(known.get(line.name, line.value), rel=0.02)
         if moment := scene.shot.moment:
-            steps = {"crossover": 250, "verlet-limit": 2 * 11, "rk4-limit": 8}
+            steps = {"crossover": 250, "verlet-limit": 22, "rk4-limit": 8}
             assert moment / scene.h == pytest.approx(steps.get(name, round(moment / scene.h)))
 
 

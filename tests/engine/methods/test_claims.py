@@ -274,10 +274,12 @@ def test_a_method_says_what_it_is_for():
         assert marks(lambda method, model=model: model in method.models) == letters
     assert marks(GENERAL.__contains__) == "esvorwqfybmdi"
     without = {"any_numbers": "hankjgzt", "note": "esvor", "used": "lchakxjzt", "other_names": ""}
+    without |= {"varies": "esvorwqfybmlcnkpuxjgzt", "first_same_as_last": "esorwqdihapuxjgz"}
     for field, letters in without.items():
         assert marks(lambda method, field=field: not getattr(method, field)) == letters
     assert marks(lambda method: method.hue is not None) == "esvr"
     assert [method.hue for method in USUAL_CAST] == [0, 1, 2, 3]
+    assert [method.force_evaluations for method in learned.FAMILY] == [4, 4, 1, 1]
 
 
 @pytest.mark.parametrize("method", METHODS, ids=str)

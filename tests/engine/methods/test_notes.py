@@ -21,6 +21,7 @@ from pendu_tui.engine.methods.learned import (
     FAMILY,
     LEARNED_SYMPLECTIC_MAP,
     RK4_LEARNED_HAMILTONIAN,
+    _numbers,
     learned_field,
     learned_hamiltonian,
     stored,
@@ -187,7 +188,7 @@ def test_imex_euler_is_stable_at_any_stiffness_and_stops_the_swing_too():
 
 
 def rows(name):
-    return np.array([[float(x) for x in row.split(",")] for row in stored()[name].split()])
+    return np.array(_numbers(name))
 
 
 @pytest.mark.slow
