@@ -9,7 +9,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock
 
+import pyte
 import pytest
 from mcap.writer import Writer
 
@@ -49,15 +51,19 @@ def test_a_new_recording_has_a_free_name_with_the_time(library, monkeypatch):
         free = library / f"2026-11-20T12-30-05{name}.mcap"
         assert new_path() == free
         free.with_suffix(taken).touch()
+    assert new_path(library.parent) == library.parent / "2026-11-20T12-30-05.mcap"
 
 
-def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(library):
+def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(library, monkeypatch):
+    unlockable = Mock(side_effect=OSError)  # as on some file systems
+    monkeypatch.setattr("pendu_tui.recordings.recorder.lock", unlockable)
     assert listing() == []
     library.mkdir()
     killed = record(library / "killed.mcap", two_runs()).rename(library / "killed.mcap.part")
-    old = record(library / "old.mcap", two_runs())
-    os.utime(old, (1, 1))
-    (library / "notes.txt").write_bytes(old.read_bytes())
+    old = [record(library / f"{name}.mcap", two_runs()) for name in "zyxw"]
+    for each in old:
+        os.utime(each, (1, 1))
+    (library / "notes.txt").write_bytes(killed.read_bytes())
     (library / "folder.mcap").mkdir()
     (library / "empty.mcap.part").touch()
     if hasattr(os, "mkfifo"):
@@ -69,14 +75,15 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
     ):
         with (library / name).open("wb") as stream:
             Writer(stream).start(profile, "pendu")
+    monkeypatch.setattr("pendu_tui.recordings.recorder.lock", system.lock)
     with Recorder(library / "running.mcap") as recorder:
         recorder.add(start(), 0.0)
         recorder.flush()
-        assert [(item.path, item.bytes) for item in listing()] == [
-            (killed, killed.stat().st_size),
-            (old, old.stat().st_size),
-        ]
+        assert [item.path for item in listing()] == [killed, *old]
+        assert listing()[0].bytes == killed.stat().st_size
         assert [item.path for item in listing(being_made=True)] == [recorder.part]
+    monkeypatch.setattr(files, "lock", unlockable)
+    assert [item.path for item in listing()] == [recorder.path, *old]
 
 
 def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypatch):
@@ -143,9 +150,13 @@ def test_processes_are_ended_stopped_and_put_last(monkeypatch, platform):
     system.give_way()
     system.stop()
     system.stop_as_usual()
+    assert system.ENDING == [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
     linux = [(7, signal.SIGKILL), (10,), (os.getpid(), signal.SIGSTOP)]
     linux += [(each, signal.SIG_DFL) for each in (signal.SIGTSTP, signal.SIGCONT)]
     assert calls == {"linux": linux, "win32": [(7, 3)]}[platform]
+    for state, is_stopped in (("7 (T) S 1", False), ("7 (a) S) T 1", platform == "linux")):
+        monkeypatch.setattr(Path, "read_text", lambda _, state=state: state)
+        assert system.is_stopped(7) == is_stopped
 
 
 def test_windows_locks_a_byte_behind_all_data_and_renames_without_links(tmp_path, monkeypatch):
@@ -169,8 +180,19 @@ def test_windows_locks_a_byte_behind_all_data_and_renames_without_links(tmp_path
     assert (tmp_path / "b").read_bytes() == b"data"
 
 
+def test_windows_has_a_shell_of_its_own_and_a_console_with_all_colours(monkeypatch):
+    for platform, command in (("linux", "exec 'a b' c"), ("win32", '"a b" c')):
+        monkeypatch.setattr(sys, "platform", platform)
+        assert system.shell_command(["a b", "c"]) == command
+    for name, usual in (("TERM", "xterm-256color"), ("COLORTERM", "truecolor")):
+        monkeypatch.delenv(name, raising=False)
+        assert system.environment()[name] == usual
+        monkeypatch.setenv(name, "other")
+        assert system.environment()[name] == "other"
+
+
 @pytest.mark.skipif(IS_WINDOWS, reason="has other terminals")
-def test_a_terminal_is_read_key_by_key_and_given_back_to_the_shell():
+def test_a_terminal_is_read_key_by_key_and_given_back_to_the_shell(monkeypatch):
     import termios
 
     keyboard, screen = os.openpty()
@@ -185,7 +207,15 @@ def test_a_terminal_is_read_key_by_key_and_given_back_to_the_shell():
         termios.tcsetattr(2, termios.TCSANOW, [*settings[:3], 0, *settings[4:]])
         system.restore_terminal(settings)
         assert termios.tcgetattr(2) == settings
-        assert os.read(keyboard, 500) == system.PLAIN_SCREEN
+        with monkeypatch.context() as windows:
+            windows.setattr(sys, "platform", "win32")
+            system.restore_terminal(system.terminal_state())
+        sent = os.read(keyboard, 500)
+        assert sent.count(b"\x1b[<u") == 2  # once on each system
+        screen = pyte.Screen(9, 9)
+        usual = set(screen.mode)
+        pyte.ByteStream(screen).feed(b"\x1b[?7;25l\x1b[?1000;1003;1004;1006;1049;2004h" + sent)
+        assert screen.mode == usual
         assert not system.is_gone()
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         assert system.is_gone()
