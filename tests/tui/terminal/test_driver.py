@@ -61,7 +61,7 @@ def test_a_paste_without_an_end_counts_as_ended_after_2_s(monkeypatch):
     now = 0.0
     monkeypatch.setattr(driver, "time", SimpleNamespace(monotonic=lambda: now))
     parser = PatientParser()
-    assert not [*parser.feed("\x1b[20"), *parser.feed("0~text")]
+    assert not [*parser.feed("\x1b[200"), *parser.feed("~text")]
     now = 1.9
     assert not [*parser.feed("more"), *parser.tick()]
     now = 2.1
@@ -70,7 +70,9 @@ def test_a_paste_without_an_end_counts_as_ended_after_2_s(monkeypatch):
     in_parts = [*parser.feed("\x1b[200~more\x1b[2"), *parser.feed("01~")]
     assert [each.text for each in in_parts] == ["more"]
     now = 9.0
-    assert not [*parser.tick()]
+    assert not [*parser.tick(), *parser.feed("\x1b")]
+    monkeypatch.setattr("textual._parser.get_time", lambda: float("inf"))
+    assert [each.key for each in parser.tick()] == ["escape"]
 
 
 @pytest.mark.parametrize("name", ["linux_driver", "web_driver", "win32"])

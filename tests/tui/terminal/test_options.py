@@ -10,6 +10,7 @@ from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
     CALM_FPS,
+    CHARACTER_SETS,
     TerminalOptions,
     cells,
     check_terminal,
@@ -38,6 +39,7 @@ def test_what_is_asked_for_is_taken_whatever_the_terminal_says():
         ({"COLORFGBG": "0;15"}, "light"),
         ({"COLORFGBG": "0;default;7"}, "light"),
         ({"COLORFGBG": "0;8"}, "dark"),
+        ({"COLORFGBG": "0;9"}, "light"),
         ({"COLORFGBG": "nonsense"}, "dark"),
         ({"TERM": "linux", "COLORFGBG": "0;15"}, "ansi"),
         ({"NO_COLOR": "1", "COLORTERM": "truecolor"}, "ansi"),
@@ -112,7 +114,9 @@ def test_a_terminal_that_does_not_answer_is_awaited_for_a_second(ask):
 
 
 def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
-    assert chosen(encoding="UTF_8") == TerminalOptions("dark", "braille", mouse=True, fps=30)
+    usual = TerminalOptions("dark", "braille", mouse=True, fps=30)
+    assert chosen(encoding="UTF_8") == TerminalOptions() == usual
+    assert CHARACTER_SETS == ("braille", "half", "ascii")  # as a key takes them
     assert chosen("--fps 60").fps == 60
     assert chosen(encoding="latin-1").character_set == "ascii"
     assert chosen(TEXTUAL_ANIMATIONS="None").fps == CALM_FPS == 10

@@ -19,26 +19,6 @@ RECORDING = "REC 0 s"
 AWAY = 1.5  # s
 
 
-@pytest.mark.parametrize(
-    ("arguments", "environment", "has"),
-    [
-        ("", {}, (True, True, False)),
-        ("--no-mouse", {"NO_COLOR": "1"}, (False, False, False)),
-        ("", {"PYTHONUTF8": "0", "PYTHONIOENCODING": "latin-1"}, (True, True, True)),
-    ],
-)
-def test_it_sends_what_the_terminal_can_show_and_the_user_wants(
-    tmp_path, arguments, environment, has
-):
-    with PtyLab(*arguments.split(), PENDU_RECORDINGS=str(tmp_path), **environment) as lab:
-        lab.wait_for(RECORDING)
-        lab.type("?")
-        lab.wait_for("larger, smaller step h")
-        sent = bytes(lab.output)
-    colour = re.search(rb"[34]8;[25];", sent) is not None
-    assert (colour, b"\x1b[?1000h" in sent, sent.isascii()) == has
-
-
 def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path):
     with PtyLab(PENDU_RECORDINGS=str(tmp_path)) as lab:
         lab.wait_for(RECORDING)
