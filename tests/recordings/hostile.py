@@ -105,7 +105,6 @@ def false_heads(count: int):
 
 
 FILES: dict[str, Callable[[], Iterable[Entry]]] = {
-    "deep JSON": lambda: begun([(EVENTS, 1.0, b"[" * 100_000)]),
     "a huge message": lambda: begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]),
     "escapes": lambda: [
         event(start(), scene=ESCAPES, watch=ESCAPES),
@@ -115,7 +114,6 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
     "h of 0": partial(changed_h, 0.0),
     "h of 1e300": partial(changed_h, 1e300),
     "step 10^9": lambda: begun(sample(first_sample()._replace(step=10**9, t=1e8), 1.0)),
-    "570 years": lambda: begun(sample(first_sample()._replace(step=1), 1.8e10)),  # > 2^63 ns
     "many runs": runs,
 }
 """Entries by what is hostile in them."""
