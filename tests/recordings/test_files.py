@@ -3,6 +3,7 @@
 import errno
 import os
 import re
+import select
 import signal
 import sys
 import time
@@ -210,7 +211,11 @@ def test_a_terminal_is_read_key_by_key_and_given_back_to_the_shell(monkeypatch):
         with monkeypatch.context() as windows:
             windows.setattr(sys, "platform", "win32")
             system.restore_terminal(system.terminal_state())
-        sent = os.read(keyboard, 500)
+        os.write(2, b"shell$")
+        sent = b""
+        while not sent.endswith(b"shell$"):
+            assert select.select([keyboard], [], [], 5.0)[0]
+            sent += os.read(keyboard, 500)
         assert sent.count(b"\x1b[<u") == 2  # once on each system
         screen = pyte.Screen(9, 9)
         usual = set(screen.mode)
