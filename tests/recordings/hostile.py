@@ -112,8 +112,6 @@ FILES: dict[str, Callable[[], Iterable[Entry]]] = {
         event(Event("mark", 1, 0, 0.0, text="x"), text=ESCAPES),
     ],
     "h of 0": partial(changed_h, 0.0),
-    "h of 1e300": partial(changed_h, 1e300),
-    "step 10^9": lambda: begun(sample(first_sample()._replace(step=10**9, t=1e8), 1.0)),
     "many runs": runs,
 }
 """Entries by what is hostile in them."""

@@ -25,7 +25,7 @@ def test_a_hostile_file_is_answered_in_time_with_a_sentence(tmp_path, name):
         assert time.process_time() - began < MAX_SECONDS
         assert answer.code in (0, 1, 3)
         assert (answer.out + answer.err).replace("\n", "").isprintable()
-    if name.startswith("h of"):
+    if name == "h of 0":
         assert pendu("verify", path).refused(3, "cannot have been recorded")
         assert pendu("replay", path, "--plain").code == 3
 
