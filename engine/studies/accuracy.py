@@ -269,7 +269,7 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
         return None
     below = line[first].errors[kind]
     above = line[first - 1].errors[kind]
-    if not below or not target < above < math.inf:
+    if not first or not below or not target < above < math.inf:
         return high
     low = cost_of(line[first - 1], cost)
     share = math.log(above / target) / math.log(above / below)

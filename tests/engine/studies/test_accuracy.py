@@ -184,6 +184,8 @@ def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
     assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
     assert cost_at(lost, "theta", "evaluations", 1e-2) == 4 * 20  # not between lost and found
+    lucky = [at(R, 10, 1e-5), at(R, 20, 1e-2)]
+    assert cost_at(lucky, "theta", "evaluations", 1e-3) == 4 * 10  # not between first and last
 
 
 def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
