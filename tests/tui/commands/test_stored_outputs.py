@@ -6,6 +6,7 @@ import shlex
 
 import pytest
 
+from pendu_tui.tui.cli.commands import COMMANDS
 from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands.options import OPTIONS
 from tests.recordings.examples import record, two_runs
@@ -92,13 +93,27 @@ def test_outputs(snapshot, library):
     snapshot("outputs.txt", re.sub(r"computed .*", "computed X", text) + "\n")
 
 
+def read_by(read, text):
+    try:
+        return re.sub(r"\w+Path", "Path", repr(read(text)))
+    except ValueError:
+        return ""
+
+
 def test_options(snapshot):
-    assert "\n  bounded: " in pendu("run", "--help").out
-    files = [each.dest for each in parser_of("run")._actions if hasattr(each, "complete")]
-    assert files == ["method", "record", "output"]
+    assert "\n  grows: " in pendu("run", "--help").out
     texts = []
     for name, each in OPTIONS.items():
-        choices = each.get("choices", ())
-        value = each.get("metavar") or "|".join(choices)
-        texts.append(f"{name} {value} ({each.get('default', '')}): {each['help'] % each}")
+        value = "|".join([each.get("metavar") or "", *each.get("choices", ())])
+        read = " ".join(read_by(each.get("type", bool), text) for text in ("1", "0", "-1"))
+        more = f"({each.get('default', '')}) {each.get('nargs', '')} [{read}]"
+        texts.append(f"{name} {value} {more}: {each['help'] % each}")
+    for name in COMMANDS:
+        parser = parser_of(name)
+        texts.append(f"\n{name} {parser._defaults}")
+        for group in (*parser._action_groups, *parser._mutually_exclusive_groups):
+            names = (
+                each.dest + " FILE" * hasattr(each, "complete") for each in group._group_actions
+            )
+            texts.append(f"{group.title} ({group.description}) {', '.join(names)}".strip())
     snapshot("options.txt", "\n".join(texts) + "\n")
