@@ -163,26 +163,25 @@ def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(
     driver = object.__new__(served.BoundedDriver)
     driver._loop = SimpleNamespace(
         call_soon_threadsafe=lambda soon, *arguments: soon(*arguments),
-        call_later=lambda seconds, resize: waiting.append(resize),
+        call_later=lambda *later: waiting.append(later),
     )
     for width in (80, 90, 1e9):
         driver.on_meta("resize", {"width": width, "height": -3})
     driver.on_meta("focus", {})
-    for resize in waiting:
-        resize()
+    ((seconds, resize),) = waiting
+    assert seconds == 0.2
+    resize()
     assert told == [("focus", {}), ("resize", {"width": 400, "height": 1})]
     driver.on_meta("resize", {"width": 80, "height": 24})
     assert len(waiting) == 2
 
 
-def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_records(tmp_path, monkeypatch):
+def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_may_record(tmp_path, monkeypatch):
     file = tmp_path / "settings"
     folder = tmp_path / "folder"
     look = TerminalOptions("light")
-    file.write_bytes(pickle.dumps((SCENES["spin"], look, folder)))
     monkeypatch.setattr(sys, "argv", ["served", str(file)])
-    monkeypatch.setenv("COLUMNS", "1000")
-    monkeypatch.setenv("ROWS", "24")
+    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
 
     class App:
         def __init__(self, screen, terminal):
@@ -192,8 +191,13 @@ def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_records(tmp_path, m
         def run(self):
             assert self.driver_class is served.BoundedDriver
             assert (os.environ["COLUMNS"], os.environ["ROWS"]) == ("400", "24")
-            self.screen.record(self.screen.source)
+            if self.screen.record:
+                self.screen.record(self.screen.source)
 
     monkeypatch.setattr(served, "PenduApp", App)
-    served.main()
+    for recorded in (folder, None):
+        monkeypatch.setenv("COLUMNS", "1000")
+        monkeypatch.setenv("ROWS", "24")
+        file.write_bytes(pickle.dumps((SCENES["spin"], look, recorded)))
+        served.main()
     assert [path.suffix for path in folder.iterdir()] == [".mcap"]  # and no .part
