@@ -44,45 +44,50 @@ def test_it_tells_the_versions_and_to_install_numba(missing, monkeypatch):
 
     monkeypatch.setattr(doctor, "version", version)
     found = findings()
-    assert "textual textual's" in found["versions"]["found"]
+    packages = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
+    assert found["versions"]["found"] == ", ".join(f"{each} {each}'s" for each in packages)
     assert found["numba"]["found"] == ("not installed" if missing else "numba's")
     assert ("[fast]" in found["numba"]["advice"]) == bool(missing)
 
 
 def test_a_folder_that_is_not_there_yet_is_fine_and_is_not_made(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "a" / "b"))
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=2e9))
     found = findings()["recordings"]
-    assert found["found"].endswith("B free")
+    assert found["found"] == f"{tmp_path / 'a' / 'b'}, 2.0 GB free"
     assert not found["advice"]
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
-    ("environment", "fine"),
+    ("number", "fine", "environment"),
     [
-        ({"TERM": "xterm-256color", "COLORTERM": "truecolor"}, True),
-        ({"TERM": "xterm-256color", "COLORTERM": ""}, False),
-        ({"TERM": "xterm", "COLORTERM": "", "NO_COLOR": "1"}, True),
+        (16777216, True, {"TERM": "xterm-256color", "COLORTERM": "truecolor"}),
+        (256, False, {"TERM": "xterm-256color", "COLORTERM": ""}),
+        (16, True, {"TERM": "xterm", "COLORTERM": "", "NO_COLOR": "1"}),
     ],
 )
-def test_colours_are_read_from_the_environment(environment, fine, monkeypatch):
+def test_colours_are_read_from_the_environment(number, fine, environment, monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     found = findings()["colours"]
     assert bool(found["advice"]) == (not fine)
-    assert found["found"].endswith(f", TERM={environment['TERM']}")
+    assert found["found"] == f"{number}, TERM={environment['TERM']}"
 
 
-@pytest.mark.parametrize(("session", "fine"), [("1", True), ("", False)])
-def test_on_windows_it_says_which_terminal_to_use(session, fine, monkeypatch):
+@pytest.mark.parametrize(("session", "console"), [("1", "Windows Terminal"), ("", "older")])
+def test_on_windows_it_says_which_terminal_to_use(session, console, monkeypatch):
     monkeypatch.setattr("platform.system", lambda: "Windows")
+    monkeypatch.setattr("platform.python_version", lambda: "3.14.1")
+    monkeypatch.setattr("platform.machine", lambda: "arm64")
     monkeypatch.delenv("WT_SESSION", raising=False)
     if session:
         monkeypatch.setenv("WT_SESSION", session)
-    advice = findings()["console"]["advice"]
-    assert fine == (not advice)
-    assert fine or "Windows Terminal" in advice
+    found = findings()
+    assert found["python"]["found"] == "3.14.1, Windows arm64"
+    assert found["console"]["found"] == console
+    assert ("use Windows Terminal" in found["console"]["advice"]) == (not session)
 
 
 @pytest.mark.parametrize(("size", "fine"), [("60x16", True), ("59x16", False), ("60x15", False)])

@@ -13,7 +13,7 @@ RUN = ("run", "--time", "5", "--methods", "rk4,verlet,heun", "-o")
 
 
 STUDIES = """\
-run --theta 3 --time 20 --methods rk4,explicit_euler
+run --theta 3 --time 20 --methods rk4,explicit_e,heun,forest,yoshida,backward
 run damped --time 30 --methods rk4
 accuracy --time 2 --h-values 0.2:0.1:2 --methods rk4 --error energy
 stability --steps 50 --z-values 0.1:1.5:4 --theta-values 0.5,2
@@ -27,12 +27,17 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.report.find_spec", bool)
     listed = pendu("run", "--theta", "1,2", "--time", "1", "-o", tmp_path / "a.svg")
     assert listed.refused(2, "a figure are for one run")
-    monkeypatch.setattr("pendu_tui.tui.commands.run.MAX_PARTS", 9)
     texts = []
     for line, suffix in zip(STUDIES.splitlines(), ("SVG", "svg", "pdf", "png"), strict=True):
         matplotlib.reset_mock()
         assert pendu(*line.split(), "-o", tmp_path / f"a.{suffix}").code == 0
         texts += ["", f"$ {line}", *map(str, matplotlib.mock_calls)]
+    drawn = []
+    with monkeypatch.context() as long:
+        long.setattr("pendu_tui.tui.commands.run.publish", lambda *each: drawn.append(each[0]))
+        pendu("run", "--time", 3000, "--h", 0.1, "--methods", "verlet", "-o", tmp_path / "c.svg")
+    ((_, t, _),) = drawn[0].figure.lines
+    assert (len(t), t[1] - t[0]) == (395, pytest.approx(38 * 0.2))  # of 15 000 samples
     monkeypatch.setattr("pendu_tui.tui.commands.run.stop_requests", lambda: nullcontext(lambda: 1))
     assert pendu(*RUN, tmp_path / "b.svg").code == 130  # after the first sample
     text = re.sub(r"\w+Path\(.*?\)", "FILE", "\n".join(texts))

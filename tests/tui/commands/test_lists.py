@@ -55,12 +55,16 @@ def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path):
     assert claims == ["key", "label", "letter", "other_names"]
 
 
-def test_the_gate_of_a_right_method_passes():
-    right = ("methods", "velocity_verlet", "--fail-if", "order < 1.9 or symplectic != yes")
-    assert pendu(*right).code == 0
-    assert pendu("methods", "heun", *right[2:]).code == 1
-    gate = ("--fail-if", "symplectic == yes")  # which is not measured of halving, like its order
-    assert pendu("methods", "halving_verlet", *gate).code == 1
+@pytest.mark.parametrize(
+    ("method", "gate", "code"),
+    [
+        ("velocity_verlet", "order < 1.9 or symplectic != yes", 0),
+        ("heun", "symplectic != yes", 1),
+        ("halving_verlet", "symplectic == yes", 1),  # which is not measured, like its order
+    ],
+)
+def test_the_gate_of_a_right_method_passes(method, gate, code):
+    assert pendu("methods", method, "--fail-if", gate).code == code
 
 
 @pytest.mark.parametrize("expression", ["verdict == grows", "symplectic < 1", "symplectic == no_"])

@@ -31,7 +31,6 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     monkeypatch.setattr(lab, "check_terminal", lambda: None)
     monkeypatch.setattr(lab, "show", None)
     assert pendu("live", "--record", path).refused(5, *taken)  # before the screen
-    assert pendu("live", "--record", path, "--no-record").refused(2, "not allowed with")
     monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
     assert pendu("live", "--plain").refused(5, str(path))
 
@@ -136,8 +135,9 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
     assert (equal.playhead.speed, live.playhead.speed) == (3.0, 1.0)
     assert not library.exists()  # a replay is not recorded
-    behind = ("--start-at", usual.length + 0.02)
-    assert pendu("replay", "drift", *behind).refused(2, f"0 to {usual.length:.2f} s")
+    for outside in (-0.01, usual.length + 0.02):
+        refused = pendu("replay", "drift", "--start-at", outside)
+        assert refused.refused(2, f"0 to {usual.length:.2f} s")
     for source in sources:
         source.close()
 
@@ -168,6 +168,7 @@ def test_a_replay_is_told_from_its_start_to_its_end():
 
 class App(SimpleNamespace):
     def run(self, mouse: bool):
+        self.mouse = mouse
         return self.result
 
     def finish(self):
@@ -175,9 +176,9 @@ class App(SimpleNamespace):
 
 
 def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_command(monkeypatch):
-    def shown(result: object = None, code: int | None = None, theme="auto", **environment: str):
+    def shown(result=None, code: int | None = None, theme="auto", mouse=(), **environment: str):
         nonlocal app
-        options = parser_of("live").parse_args(["--theme", theme])
+        options = parser_of("live").parse_args(["--theme", theme, *mouse])
         monkeypatch.setattr(lab, "environment", lambda: {"TERM": "xterm-256color"} | environment)
         app = App(result=result, return_code=code)
         return lab.show(LabScreen(Live(DEFAULT_SCENE)), options)
@@ -198,9 +199,13 @@ def test_the_app_has_the_colours_of_the_terminal_and_its_end_is_that_of_the_comm
         monkeypatch.setattr(lab, "background", lambda found=found: found)
         assert shown(**asked) == 0
         assert (app.theme, app.finished) == (theme, True)
-    assert (shown(130), shown(code=1)) == (130, 1)
-    with pytest.raises(ZeroDivisionError):
-        shown(ZeroDivisionError())
+    assert app.mouse
+    assert (shown(130, mouse=["--no-mouse"]), app.mouse, shown(code=1)) == (130, False, 1)
+    in_a_worker = RuntimeError()
+    in_a_worker.error = ZeroDivisionError()
+    for error in (ZeroDivisionError(), in_a_worker):
+        with pytest.raises(ZeroDivisionError):
+            shown(error)
 
 
 def test_a_file_of_several_scenes_is_a_lesson_and_one_of_one_if_it_asks_something(asking, tmp_path):
@@ -210,7 +215,8 @@ def test_a_file_of_several_scenes_is_a_lesson_and_one_of_one_if_it_asks_somethin
     several = tmp_path / "several.toml"
     several.write_text("[[scene]]\nname = 'one'\n[[scene]]\nname = 'two'\n", encoding="utf-8")
     assert [page.name for page in lesson_of(several).pages] == ["one", "two"]
-    assert lesson_of(asking).page.shot.question == "Why?"
+    lesson = lesson_of(asking)
+    assert (lesson.name, lesson.page.shot.question) == ("Page", "Why?")
 
 
 def test_the_goodbye_names_the_recording_and_after_a_disk_failure_the_unfinished_file(

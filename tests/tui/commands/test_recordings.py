@@ -84,16 +84,6 @@ def test_the_library_is_listed_newest_first(library):
     assert out.index("c.mcap") < out.index("b.mcap") < out.index("a.mcap")
 
 
-def test_an_unfinished_recording_is_listed_shown_and_exported_as_it_is(library):
-    part = library / "killed.mcap.part"
-    whole = (library / "a.mcap").read_bytes()
-    part.write_bytes(whole[: len(whole) // 2])
-    assert pendu("recordings", "--json").json["recordings"][0]["file"] == str(part)
-    assert 0 < pendu("recordings", "show", "latest", "--json").json["samples"] < 10
-    assert pendu("export", "latest").out.count("\n") > 1
-    assert part.exists()
-
-
 def test_a_recording_that_cannot_be_read_is_listed_with_what_is_wrong(library):
     cut = (library / "a.mcap").read_bytes()[:40]
     (library / "a.mcap").write_bytes(cut)
