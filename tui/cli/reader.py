@@ -61,7 +61,7 @@ _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
-_COMMENT = re.compile(rf"^\s*(?!{FAILED})[#@!%;][#@!%; \t]*", re.IGNORECASE)
+_MARKS = "#@!%;"  # of comments
 _DELIMITERS = "\t;,|"
 _BETWEEN = (
     r"\s{2,}",  # names may contain single blanks
@@ -145,7 +145,7 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
     document = _parsed(whole)
     if document is not whole:
         for items in _lists(document):
-            yield [*_records(items), "&"]  # as between sets of xmgrace
+            yield [*_records(items), "&"]  # a new run
         return
     for lines in _blocks(io.StringIO(whole)):
         joined = "".join(lines)
@@ -407,13 +407,14 @@ class _Text:
         rows = {
             at: line
             for at, line in lines.items()
-            if len(cells := _split(line, delimiter)) == width
-            and (not any(self._cells) or _units_in(cells) == self._cells)
+            if len(_split(line, delimiter)) == width
             and (delimiter or "," not in line)
-            and not _COMMENT.match(line)
+            and line.lstrip()[:1] not in _MARKS
         }
         fields = _split((delimiter or " ").join(rows.values()), delimiter)
         if len(fields) != len(rows) * width:  # a quotation mark is left open
+            return Found(sheet, [])
+        if any(self._cells) and _units_in(fields) != self._cells * len(rows):
             return Found(sheet, [])
         columns = [_numbers(fields[place::width], place in sheet.marks) for place in sheet.kept]
         return Found(sheet, [*rows], sheet.kept, columns, needed=1)
@@ -545,8 +546,8 @@ class _Text:
         text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
-        bare = _COMMENT.sub("", text)
-        is_comment = bare != text
+        is_comment = text[0] in _MARKS and not _IS_FAILED.match(text)
+        bare = text.lstrip(_MARKS + " \t") if is_comment else text
         fields, delimiter = self._fields(bare)
         is_like = (len(fields), "") == self._form[1:]
         numbers = _numbers(fields)

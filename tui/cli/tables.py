@@ -367,7 +367,9 @@ class Sheet:
         times[~(np.abs(times) < LATEST)] = np.nan
         begins = self._again(lines[here], times)
         marks = self._sum(self.marks, lines).filled(0)[here]
-        begins[np.unique(marks, return_index=True)[1]] = True
+        _, firsts = np.unique(marks, return_index=True)
+        if len(firsts) > np.count_nonzero(np.diff(marks)):  # they do not alternate
+            begins[firsts] = True
         runs = list(islice(_runs(times, begins), MAX_SERIES))
         if self.skipped > rows:
             why = "most of its rows differ from its head in the number of columns; keep one table."

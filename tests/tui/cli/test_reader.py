@@ -492,6 +492,7 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
         (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
         ("method,t,E\n" + rows("euler,{t},{e}", 0, 30) + rows("rk4,{t},{e}", 30), [30, 60]),
+        ("t,E,solver\n" + rows("{t},{e},{f}"), [90]),
         ("t,E,seed\n" + rows("{t},{e},1", 0, 70) + rows("{t},{e},2", 60), [70, 30]),
         (json.dumps({name: {"t": TIMES, "E": ENERGIES} for name in "ab"}), [90, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
