@@ -47,7 +47,8 @@ def test_a_run_has_every_step_of_the_lockstep_as_arrays():
     assert coarse.t.tolist() == run.t[[0, 500, 1000, 1200]].tolist()
     assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
     assert type(simulate(h=np.float32(0.1), time=1).scene.h) is float
-    assert simulate(time=0.1).scene == SCENES["drift"]
+    one = simulate(time=0.05)
+    assert (one.scene, len(one.t)) == (SCENES["drift"], 2)
 
 
 def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
@@ -92,6 +93,9 @@ def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale, size
     assert abs(found.slope * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
     assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
     assert found.error == pytest.approx((RISING[-1] - RISING[0]) / found.scale)
+    assert found.fluctuation == pytest.approx(math.sqrt(0.5) / found.scale, rel=1e-3)
+    assert (found.independent, found.rests) == (2000, False)
+    assert judge(TIMES, WAVE + 10 * (TIMES > 300), scale).rests
     assert judge(TIMES, WAVE).max_error == pytest.approx(2 / 11, rel=1e-3)  # downwards
     assert judge([1, 2], np.array([200, 199], dtype=np.uint8)).error == -1 / 200
 

@@ -92,6 +92,8 @@ def test_a_scene_keeps_its_name_only_while_nothing_is_changed():
     assert scene.fields() == {**fields, "methods": [method.key for method in scene.cast]}
     assert damped.altered(model="pendulum", cast=scene.cast).parameters == {}
     assert damped.altered(model="spring", stiffness=5, cast=()).parameters == {"stiffness": 5}
+    levels = SCENES["mean-field"].altered(level_frequency=30).altered(coupling=3)
+    assert levels.parameters == {"coupling": 3, "level_frequency": 30}
 
 
 def test_a_scene_says_why_there_is_no_map_of_it_and_no_ring():

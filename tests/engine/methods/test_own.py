@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.methods import VELOCITY_VERLET, family_of, method_of
+from pendu_tui.engine.methods import TAYLOR_20, VELOCITY_VERLET, family_of, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError, TooLongError
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
@@ -72,9 +72,9 @@ def mine(rates, phase, h):
 
 def test_a_method_that_takes_rates_integrates_friction_too():
     mine = load(RATES)
-    assert (mine.order, mine.force_evaluations) == (1, 1)
+    assert (mine.order, mine.force_evaluations, mine.first_same_as_last) == (1, 1, False)
     assert mine.models == ("pendulum", "linear", "damped")
-    assert pickle.loads(pickle.dumps(mine)) is mine
+    assert all(pickle.loads(pickle.dumps(each)) is each for each in (mine, TAYLOR_20))
     with pytest.raises(OwnMethodError, match="the file of the method mine: give it with --method"):
         pickle.dumps(replace(VELOCITY_VERLET, key="mine"))
     for name in ("damped", "drift"):
