@@ -1,6 +1,7 @@
 """Scenes are validated, and what they tell people to watch is measured."""
 
 import math
+import re
 from dataclasses import astuple, replace
 
 import numpy as np
@@ -117,6 +118,8 @@ def test_every_scene_has_its_name_and_group_and_says_what_to_watch():
         assert len(scene.cast) <= MAX_METHODS == 6
         assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and a blank
         assert scene.h / scene.speed < 0.4  # s from a step to the next
+        for chaos in re.findall(r"K = z² = ([\d.]+\d)", scene.watch):
+            assert scene.z**2 == pytest.approx(float(chaos))
         if line := scene.shot.line:
             known = {"pi/h": math.pi / scene.h, "2 pi/h": math.tau / scene.h}
             known |= {"half": -0.5, "110 E0": 110, "0.48 rad": 0.48**2 / 0.1**2 - 1}

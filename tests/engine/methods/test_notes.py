@@ -39,7 +39,7 @@ from pendu_tui.engine.methods.verlet import (
 from pendu_tui.engine.models import LinearOscillator, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.spring import Spring
-from pendu_tui.engine.run.loops import PlainLoops, compiled, count_evaluations
+from pendu_tui.engine.run.loops import PlainLoops, count_evaluations
 from pendu_tui.engine.run.stepping import Stepping
 from tests.bench import learn
 
@@ -118,14 +118,6 @@ def test_taylors_series_follows_a_swing_of_20_s_in_200_steps(start, most):
     exact = PENDULUM.exact(*start)
     states = enumerate(islice(TAYLOR_20.on(PENDULUM)(start, 0.1), 200), 1)
     assert max(abs(theta - exact.at(0.1 * n).theta) for n, (theta, _) in states) < most
-
-
-def test_taylors_series_has_the_same_bits_when_compiled():
-    ends = [
-        loops(TAYLOR_20, PENDULUM).propagate((2.0, 0.5), 0.1, 20)
-        for loops in (compiled, PlainLoops)
-    ]
-    assert ends[0] == ends[1]
 
 
 @pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=str)
