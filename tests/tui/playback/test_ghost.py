@@ -41,6 +41,8 @@ def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_
     assert largest == old.cut(0, 3.0).high["energy_error"].max()
     live.restart()
     assert live.ghost is None
+    live.lay_under(0.01, 1.0)
+    assert len(live.ghost.window(9.0).x) == 101  # with each step
     live.start(live.scene.altered(theta=2.0))
     assert (live.scene.name, live.ghost) == ("drift (altered)", None)
     live.set_speed(2.0)

@@ -198,6 +198,14 @@ def test_another_step_size_has_another_modified_energy_and_begins_anew():
     assert changed[VERLET] < 3 * alone[VERLET]  # counted from an end it is up to twice as large
 
 
+def test_of_a_past_that_was_not_read_no_modified_energy_is_known():
+    whole = run(DRIFT, (2, 0.05), (3, 0.1))
+    history = History(DRIFT, whole.changes)
+    for step in (4, 3):
+        history.add(sample(step))
+    assert np.isnan(history.window().high["shadow_error"]).all()
+
+
 def test_at_equal_cost_it_is_the_modified_energy_of_the_steps_really_taken():
     quarter = largest(run(DRIFT, (400, 0.05)))
     cut = largest(run(DRIFT, (100, 0.2), equal_cost=True))

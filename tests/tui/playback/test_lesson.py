@@ -48,6 +48,9 @@ def test_a_page_begins_with_its_scene_speed_and_cost_whatever_the_lab_did_before
     assert live.stepping.equal_cost
     assert (live.stepping.smallest, live.ghost) == (SHOWS.h, None)
     assert not lesson.follow(live, live.sample)  # it has no moment
+    run = live.sample.run
+    lesson.begin(live, 2)
+    assert live.sample.run == run
 
 
 def test_forward_goes_to_the_moment_the_truth_and_the_next_page_and_ends_after_the_last(

@@ -6,6 +6,7 @@ import math
 import threading
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from pendu_tui.engine.inputs import InputError
@@ -139,6 +140,11 @@ def test_where_a_lab_is_among_its_runs_steps_and_events():
     for direction, position in ((1, 8.0), (-1, 7.15), (1, 8.0), (1, 9.0), (1, 9.0)):
         lab.seek_event(direction)
         assert lab.playhead.position == pytest.approx(position)
+    known = [*bench.keeper.events]
+    for position, step in ((-0.1, 0), (99.0, 170)):
+        lab.seek(position)
+        assert lab.sample.step == step
+    assert bench.keeper.events == known  # repeated steps bring nothing new
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
@@ -302,6 +308,10 @@ def test_a_milestone_is_an_event_in_the_frame_that_shows_it():
         told = [each.step for each in lab.events if each.kind == "noticed"]
         assert told == [each.step for each in lab.milestones]
     assert told
+    stepped = Bench(speed=7.0).live
+    stepped.step(lab.sample.step)  # without frames, whose samples take no extreme from a row
+    highs = [each.history.window().high["energy_error"][:-1] for each in (lab, stepped)]
+    np.testing.assert_array_equal(*highs)
 
 
 def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):

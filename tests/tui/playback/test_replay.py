@@ -79,11 +79,18 @@ def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_fram
     table.replay.seek(1.9)
     assert len(table.replay.history.trails()) == 39
     assert table.replay.knows_past
-    replay = Replay(Recording.open(sitting), clock=itertools.count(0, 0.003).__next__)
+    looks = itertools.count(0, 0.004)
+    replay = Replay(Recording.open(sitting), clock=looks.__next__)
     assert replay.stepping == replay.changes[0].stepping
     replay.seek(replay.length)
+    began = next(looks)
     assert not replay.fill()
     assert not replay.knows_past
+    assert next(looks) - began == pytest.approx(0.016)  # after 6 ms, at the third look
+    while not replay.fill():
+        pass
+    replay.seek(replay.length - 0.5)  # which is already known
+    assert replay.knows_past
 
 
 def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table, replay):

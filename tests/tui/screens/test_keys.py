@@ -241,6 +241,7 @@ def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner, s
     assert wide.count("\n") < narrow.count("\n")
     first, *others = narrow.split("\n\n")
     lines = [f"{line}\n" for line in first.splitlines() if "ctrl+z" not in line]
+    lines += [f"{each.key}: {each.description}\n" for each in listed if each.show]
     snapshot(f"keys-{owner.__name__}.txt", "".join(lines))
     titles = [each.partition("\n")[0] for each in others]
     methods = [f"{each.letter}  {each.label}" for each in USUAL_CAST]

@@ -98,6 +98,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
         for key, is_there in (("m", True), ("u", False)):
             await theatre.press(key)
             assert ("mark" in theatre.text(EventList)) == is_there
+            assert ("Live" in theatre.text("KeyLine")) != is_there
 
 
 async def test_where_the_lab_could_not_record_the_replay_stays_and_ctrl_c_closes_what_it_records(
