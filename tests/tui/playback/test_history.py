@@ -198,14 +198,6 @@ def test_another_step_size_has_another_modified_energy_and_begins_anew():
     assert changed[VERLET] < 3 * alone[VERLET]  # counted from an end it is up to twice as large
 
 
-def test_of_a_past_that_was_not_read_no_modified_energy_is_known():
-    whole = run(DRIFT, (2, 0.05), (3, 0.1))
-    history = History(DRIFT, whole.changes)
-    for step in (4, 3):
-        history.add(sample(step))
-    assert np.isnan(history.window().high["shadow_error"]).all()
-
-
 def test_at_equal_cost_it_is_the_modified_energy_of_the_steps_really_taken():
     quarter = largest(run(DRIFT, (400, 0.05)))
     cut = largest(run(DRIFT, (100, 0.2), equal_cost=True))
@@ -238,14 +230,14 @@ def test_the_last_angles_before_a_row_are_known_without_numpy():
     assert history._rows is None
 
 
-def test_what_came_since_a_change_begins_behind_the_sample_at_it() -> None:
+def test_what_came_since_a_change_begins_behind_the_sample_at_it():
     until = run(DRIFT, (40, 0.05))
     history = run(DRIFT, (40, 0.05), (2, 0.2))
     _, thetas = history.since(history.changes[-1])
     assert thetas == until.window().high["theta_error"][-1].tolist()
 
 
-def test_a_stretch_holds_both_its_ends() -> None:
+def test_a_stretch_holds_both_its_ends():
     history = filled(200)
     window = history.between(15.0, 16.0)
     assert window.x[[0, -1]] == pytest.approx([15.0 - window.repeats, 16.0], abs=0.4)

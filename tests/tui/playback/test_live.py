@@ -144,7 +144,7 @@ def test_where_a_lab_is_among_its_runs_steps_and_events():
     for position, step in ((-0.1, 0), (99.0, 170)):
         lab.seek(position)
         assert lab.sample.step == step
-    assert bench.keeper.events == known  # repeated steps bring nothing new
+    assert bench.keeper.events == known
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
@@ -309,7 +309,7 @@ def test_a_milestone_is_an_event_in_the_frame_that_shows_it():
         assert told == [each.step for each in lab.milestones]
     assert told
     stepped = Bench(speed=7.0).live
-    stepped.step(lab.sample.step)  # without frames, whose samples take no extreme from a row
+    stepped.step(lab.sample.step)  # without frames
     highs = [each.history.window().high["energy_error"][:-1] for each in (lab, stepped)]
     np.testing.assert_array_equal(*highs)
 

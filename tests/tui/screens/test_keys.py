@@ -263,11 +263,9 @@ async def test_the_last_line_has_what_one_needs_now_each_a_button():
 
 async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
     async with lab(Scene(h=60.0)) as theatre:
-        for keys, own in (("n", (60.0,) * 3 + (240.0,)), ("r", (60.0,) * 3 + (240.0,))):
+        for keys, largest, is_possible in (("nr", 240.0, False), ("n", 60.0, True)):
             await theatre.press(*keys)
-            assert theatre.source.stepping.own == own
-        for keys, is_possible in (("", False), ("n", True)):
-            await theatre.press(*keys)
+            assert theatre.source.stepping.own == (60.0, 60.0, 60.0, largest)
             runs = theatre.source.sample.run
             assert await theatre.stage.start(Scene(h=100.0)) == is_possible
             assert theatre.source.sample.run == runs + is_possible

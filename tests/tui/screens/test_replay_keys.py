@@ -23,19 +23,11 @@ def path(tmp_path: Path) -> Path:
     return eventful(tmp_path / "eventful.mcap")
 
 
-async def test_seeking_stepping_events_speed_direction_and_space_at_the_end(path):
+async def test_events_speed_direction_and_space_at_the_end(path):
     async with player(path, (120, 45)) as theatre:
         replay = theatre.source
         assert " REPLAY " in theatre.text(StatusLine)
-        moves = (("right right", 2), ("left", 1), ("end", 12), ("home", 0))
-        for keys, position in (*moves, ("pagedown pagedown", 2.4), ("pageup", 1.2)):
-            await theatre.press(*keys.split())
-            assert replay.playhead.position == pytest.approx(position)
-        await theatre.press("full_stop", "full_stop", "comma")
-        assert replay.sample.step == 25
-        assert "paused" in theatre.text(StatusLine)
-
-        await theatre.press("home", "space", "m", "right_square_bracket")  # no mark in a file
+        await theatre.press("space", "m", "right_square_bracket")  # no mark in a file
         assert replay.playhead.position == pytest.approx(2)
         await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
         assert replay.playhead.position == pytest.approx(4)
@@ -117,8 +109,6 @@ async def test_where_the_lab_could_not_record_the_replay_stays_and_ctrl_c_closes
         await theatre.pilot.pause(0.1)
         assert theatre.source.kind == "REPLAY"
         assert any("/nowhere" in each for each in theatre.notices)
-        await theatre.press("right")
-        assert theatre.source.playhead.position == pytest.approx(2.0)
         theatre.stage.record = lambda live: start_recording(live, path.with_name("new.mcap"))
         await theatre.press("f", "ctrl+c")
         assert path.with_name("new.mcap").exists()  # it has this name when it is closed
