@@ -72,7 +72,7 @@ COLUMNS = (
     Column(7, LARGEST.head, lambda line, w: fitting(line.largest, w, *UNSIGNED)),
     Column(5, TREND.head, lambda line, w: fitting(line.judgement.trend, w, *SIGNED)),
     Column(3, THETA_ERROR.head, lambda line, w: fitting(line.theta_error, w, *UNSIGNED)),
-    Column(4, THETA.head, lambda line, w: decimal(line.reading.theta, w, min(w - 8, 5))),
+    Column(4, THETA.head, lambda line, w: decimal(line.reading.theta, w, w - 8)),
     Column(2, OMEGA.head, lambda line, w: decimal(line.reading.omega, w, max(w - 8, 3))),
     Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width]),
     Column(1, EVALUATIONS.head, lambda line, w: f"{line.method.force_evaluations}"),

@@ -6,11 +6,18 @@ from functools import partial
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST, VELOCITY_VERLET, named
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST, Method
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.studies.accuracy import Study, front, ladder, measured
-from pendu_tui.tui.views.accuracy import MARKS, AccuracyPane, accuracy_series, nearest
+from pendu_tui.engine.studies.accuracy import Flaw, Point, Study, front, ladder, measured
+from pendu_tui.tui.views.accuracy import (
+    ERROR_LABELS,
+    AccuracyPane,
+    accuracy_chart,
+    accuracy_series,
+    nearest,
+)
 from pendu_tui.tui.words.studies import COSTS, front_words
+from tests.tui.drawn import look
 from tests.tui.harness import until, view_of
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
@@ -52,19 +59,35 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
             assert shown.errors["energy"] == point.errors["energy"]
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
-        assert {*MARKS.values(), "@"} == {"@", "x", "~"} <= set(str(pane.border_subtitle))
+        marks = "@ current h  x no digit right  ~ limited by rounding"
+        assert pane.border_subtitle == marks
         points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]
         cheapest = front(points, "energy", "evaluations")
         assert {one.method.key for one in cheapest} == {"velocity_verlet", "rk4"}
         assert words(pane).endswith(front_words(cheapest, "evaluations"))
 
 
-def test_methods_of_one_order_share_a_line_a_fifth_as_high_as_the_first_ones_errors():
-    cast = VELOCITY_VERLET, named("position_verlet")
-    points = [*measured(SCENES["drift"].with_cast(cast), 5.0, RUNGS)]
-    line, first, _ = accuracy_series(points, "theta", "evaluations", cast)
-    below = [0.2 * first.y[2] * (first.x[2] / x) ** 2 for x in (first.x[0], first.x[-1])]
-    assert (line.mark, [*line.y]) == ("slope 2", pytest.approx(below))
+def test_charts_of_points_with_flaws_and_marks_and_a_line_for_each_order(snapshot):
+    euler, symplectic, verlet, _ = USUAL_CAST
+
+    def point(method: Method, steps: int, error: float, flaw: Flaw | None = None) -> Point:
+        errors = dict.fromkeys(ERROR_LABELS, error)
+        flaws = dict.fromkeys(ERROR_LABELS, flaw)
+        seconds = {verlet: steps / 1e5}.get(method)
+        return Point(method, 5.0, 3.0, steps, errors, flaws, steps, seconds)
+
+    points = [
+        *(point(euler, 40, 3.0, "lost"), point(euler, 100, 0.5), point(euler, 1000, 0.05)),
+        *(point(symplectic, 1600 // by, 0.01 * by) for by in (1, 2, 8)),
+        *(point(verlet, 100 * by, 1e-3 / by**2.2) for by in (1, 3, 9, 30)),
+        *(point(verlet, 9000, 1e-6, "rounding"), point(verlet, 20_000, 0.0)),
+    ]
+    texts = []
+    for kind, cost in zip(ERROR_LABELS, ("evaluations", "seconds", "evaluations"), strict=True):
+        marks = [("@", points[1]), ("O", points[2]), ("@", points[6])]
+        series = accuracy_series(points, kind, cost, USUAL_CAST[1:], marks=marks)
+        texts.append(look(accuracy_chart(series, kind, cost, 76, 16)))
+    snapshot("accuracy.txt", "\n".join(texts))
 
 
 async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_its_own_points():

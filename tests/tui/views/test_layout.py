@@ -9,8 +9,10 @@ from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.lab import EventList
-from pendu_tui.tui.views.phase import PhasePane
+from pendu_tui.tui.views.error_table import ErrorTable
+from pendu_tui.tui.views.lab import EventList, TimeChart
+from pendu_tui.tui.views.phase import PhasePane, SectionPane
+from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Pane, View
 from tests.tui.harness import lab
 
@@ -28,25 +30,29 @@ async def test_a_click_on_an_event_goes_there_and_beside_them_opens_all():
             await theatre.press("escape")
 
 
+@pytest.mark.parametrize(
+    ("kind", "a_second"),
+    [(Stage, 60), (SectionPane, 15), (PhasePane, 10), (ErrorTable, 5), (TimeChart, 3)],
+)
 @pytest.mark.parametrize("fps", [5, 8, 10, 20, 30, 60])
-def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps):
-    pane = Pane()
+def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps, kind, a_second):
+    pane = kind()
     drawn = []
     pane.draw = lambda: drawn.append(pane.sample)
     passed = 60 // fps
     for frame in range(1, 10 * fps + 1):
         pane.follow(frame, Shown(), frame * passed)
-    assert len(drawn) == min(10 * fps, 10 * fps * passed // Pane.EVERY)
+    assert len(drawn) == min(10 * fps, fps * passed * a_second // 6)
 
 
 def test_what_needs_numpy_is_drawn_after_the_first_paint():
     view = View(Live(Scene()), Shown())
     drawn = []
-    for pane in (Pane(), PhasePane()):
+    for pane in (Pane(), PhasePane(), TimeChart()):
         view.with_source(pane).draw = partial(drawn.append, type(pane))
     view.follow(view.sample, Shown())
     view._after_first_paint()
-    assert drawn == [Pane, Pane, PhasePane]
+    assert drawn == [Pane, Pane, PhasePane, TimeChart]
 
 
 def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():

@@ -5,8 +5,12 @@ import pytest
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import ladder
 from pendu_tui.tui.drawing.picture import TEXT
+from pendu_tui.tui.screens.dialogs import bindings_of, key_text, purpose
 from pendu_tui.tui.terminal.options import SMALLEST
+from pendu_tui.tui.views.accuracy import AccuracyPane
 from pendu_tui.tui.views.lab import EventList, TimeChart
+from pendu_tui.tui.views.phase import SectionPane
+from pendu_tui.tui.views.stability import StabilityPane
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Held, Pane
 from tests.tui.drawn import looks
@@ -51,6 +55,16 @@ async def settled(theatre: Theatre, *keys: str) -> str:
 async def test_every_view(snapshot, name, size, keys):
     async with lab(size=size) as theatre:
         snapshot(f"{name}.txt", await settled(theatre, *keys))
+
+
+def test_what_help_and_the_line_of_keys_tell_of_a_view(snapshot):
+    lines = []
+    for owner in (SectionPane, AccuracyPane, StabilityPane):
+        lines.append(f"{owner.BINDING_GROUP_TITLE}: {owner.HELP}")
+        for each in bindings_of(owner):
+            on_line = each.description * each.show
+            lines.append(f"{key_text(each)} | {on_line} | {purpose(each)}")
+    snapshot("keys.txt", "\n".join(lines) + "\n")
 
 
 async def test_panes_after_keys_and_pointers(snapshot):

@@ -76,7 +76,10 @@ def test_tables_and_titles(snapshot):
     live = after(DRIFT, 20)
     *others, last = live.sample.readings
     sample = live.sample._replace(readings=(*others, last._replace(diverged_at=0.8)))
-    texts.append(look(Picture(table(live, sample, Shown(), 80))))  # red is for failures alone
+    for shown in (Shown(), Shown(held=1.0)):  # red is for failures alone
+        texts.append(look(Picture(table(live, sample, shown, 80))))
+    short = after(DRIFT.with_cast(DRIFT.cast[3:]), 1)
+    texts.append(look(Picture(table(short, short.sample, Shown(), 220))))
     spin = SCENES["spin"]
     for room in (24, 100):
         texts.append(title(Shown(), spin.exact(), spin.equations, room))
