@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from pendu_tui.tui.drawing.time_chart import Reading, TimePlot
 
 
-def title(shown: Shown, exact: ExactMotion, model: Model, room: int = 100) -> str:
+def title(shown: Shown, exact: ExactMotion, model: Model, room: int) -> str:
     """Return what the chart shows; with less `room` [characters], less of it."""
     chart = next(each.chart for each in model.charted() if each.name == shown.quantity)
     span = ", all"

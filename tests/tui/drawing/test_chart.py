@@ -119,6 +119,8 @@ def test_a_column_is_read_out_farthest_from_zero_and_stays_where_it_is_in_a_zoom
     for nothing in (plot(window([], []), 40, 6), plot(data, 1, 1)):
         assert nothing.at(20) is None
     assert chart.at(middle).values[0] == pytest.approx(-30, abs=1.5)
+    exact = plot(window(TIMES, 0 * TIMES))  # no error is less than the resolution of doubles
+    assert exact.at(middle).values == pytest.approx([1e-17] * COUNT, rel=1e-9, abs=0)
     values = np.array([[1.0, math.nan], [2.0, math.nan], [math.nan, math.nan]])
     known = TimePlot(chart.picture, times=(5.0, 6.0, 7.0), values=values).at(2)
     assert known.t == 6.0  # where one of them is known

@@ -134,7 +134,7 @@ async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
 
 
 async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(monkeypatch):
-    async with phase_view() as (theatre, pane):
+    async with phase_view(SCENES["large-swing"]) as (theatre, pane):
         await theatre.run(20)
         await theatre.press("space", "g")
         assert not pane.settled

@@ -72,7 +72,7 @@ def test_tables_and_titles(snapshot):
             shown = Shown(quantity=quantity, log=log, seconds=20.0)
             texts.append(title(shown, live.exact, live.scene.equations, room))
         shown = Shown(stretch=Stretch(1, 2.5, 7.25, True), log_time=True)
-        texts.append(title(shown, live.exact, live.scene.equations))
+        texts.append(title(shown, live.exact, live.scene.equations, 60))
     live = after(DRIFT, 20)
     *others, last = live.sample.readings
     sample = live.sample._replace(readings=(*others, last._replace(diverged_at=0.8)))
