@@ -47,20 +47,6 @@ def test_each_letter_stands_once_on_the_stage_wherever_the_bobs_are(
     assert size(drawn) == (columns, rows)
 
 
-@pytest.mark.parametrize("pane", [SMALL, (28, 13), (43, 22), (73, 38)])
-@pytest.mark.parametrize("count", range(2, MAX_METHODS + 1))
-def test_lanes_are_a_bob_apart_where_there_is_room_and_bobs_stay_on_the_stage(pane, count):
-    for widest in (0.5, 1.1, 2.0, math.pi):
-        found = lanes(*pane, count, widest, rigid=True)
-        apart = found.radii[0] - found.radii[1]
-        assert apart >= min(2 * found.bob, 0.6 * found.radii[0] / (count - 1))
-        assert min(found.radii) >= 0.3 * found.radii[0]
-        for theta in (-widest, 0.0, widest):
-            x, y = found.point(found.radii[0], theta)
-            assert found.bob - 1e-9 <= x <= 2 * pane[0] - found.bob + 1e-9
-            assert found.bob - 1e-9 <= y <= 4 * pane[1] - found.bob + 1e-9
-
-
 @given(st.floats(-100, 100), st.floats(1e-6, 0.3), st.integers(2, 8))
 def test_a_lens_enlarges_small_angles_and_keeps_turns_order_and_the_top(theta, half, times):
     half = min(half, 0.8 / times)

@@ -50,6 +50,9 @@ def test_stages(snapshot):
     pictures = [stage_picture(*size, bobs, each) for size, each in product(sizes, looks[:2])]
     pictures += [stage_picture(*size, springs, looks[2]) for size in sizes[:2]]
     pictures.append(stage_picture(30, 13, bobs[:1], Look(exact=0.5, exact_length=0.5)))
+    several = [Bob(0.3 * nth - 0.8, nth, "esvrmp"[nth]) for nth in range(6)]
+    for count, size in product((2, 6), sizes[:2]):
+        pictures.append(stage_picture(*size, several[:count], looks[1]))
     # nothing between samples a radian apart, or when steps are long
     for trail, joins in (([-1.5, -0.6, 0.5, 1.5], True), ([-0.4, -0.2, 0.0], False)):
         pictures.append(stage_picture(30, 13, [Bob(3.0, 0, "e", trail=trail)], Look(joins=joins)))
