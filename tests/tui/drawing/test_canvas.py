@@ -132,9 +132,8 @@ def test_trails_in_one_place_are_all_seen(end):
     canvas = Canvas(6, 6)
     for ink in trails:
         canvas.line(0, 0, *end, ink)
-    picture = canvas.picture()
-    assert inks_of(picture) == trails
-    assert "⠉" not in picture.text  # where they are flat, they never meet
+    assert inks_of(canvas.picture()) == trails
+    assert "⠉" not in canvas.picture().text  # where they are flat, they never meet
 
 
 def test_a_letter_stands_where_no_other_method_is():

@@ -6,9 +6,9 @@ from functools import partial
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.methods import GENERAL, USUAL_CAST, Method
+from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.engine.studies.accuracy import Flaw, Point, Study, front, ladder, measured
+from pendu_tui.engine.studies.accuracy import Point, Study, front, ladder, measured
 from pendu_tui.tui.views.accuracy import (
     ERROR_LABELS,
     AccuracyPane,
@@ -68,7 +68,7 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
 def test_charts_of_points_with_flaws_and_marks_and_a_line_for_each_order(snapshot):
     euler, symplectic, verlet, _ = USUAL_CAST
 
-    def point(method: Method, steps: int, error: float, flaw: Flaw | None = None) -> Point:
+    def point(method, steps, error, flaw=None):
         errors = dict.fromkeys(ERROR_LABELS, error)
         flaws = dict.fromkeys(ERROR_LABELS, flaw)
         seconds = {verlet: steps / 1e5}.get(method)

@@ -62,8 +62,7 @@ def test_what_help_and_the_line_of_keys_tell_of_a_view(snapshot):
     for owner in (SectionPane, AccuracyPane, StabilityPane):
         lines.append(f"{owner.BINDING_GROUP_TITLE}: {owner.HELP}")
         for each in bindings_of(owner):
-            on_line = each.description * each.show
-            lines.append(f"{key_text(each)} | {on_line} | {purpose(each)}")
+            lines.append(f"{key_text(each)} | {each.description * each.show} | {purpose(each)}")
     snapshot("keys.txt", "\n".join(lines) + "\n")
 
 

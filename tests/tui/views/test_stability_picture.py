@@ -21,7 +21,6 @@ from pendu_tui.engine.studies.stability import (
 from pendu_tui.tui.drawing.frame import Axis, Frame
 from pendu_tui.tui.drawing.picture import PALETTES, Picture
 from pendu_tui.tui.views import stability as drawing
-from pendu_tui.tui.views.stability import verdict
 
 STEPS = 1000
 GRID = Grid((np.arange(12) + 0.5) * math.pi / 12, (np.arange(30) + 0.5) / 10, STEPS)
@@ -125,4 +124,4 @@ LOST = cells(*[(0, 2.0, GROWS)] * 5)
     ],
 )
 def test_a_verdict_tells_the_outcome_and_the_nearest_cliff(outcomes, z, sentence):
-    assert verdict(LADDER_GRID, outcomes, 0, (z, 0), w0=2.0) == f"RK4 at h {sentence}"
+    assert drawing.verdict(LADDER_GRID, outcomes, 0, (z, 0), w0=2.0) == f"RK4 at h {sentence}"
