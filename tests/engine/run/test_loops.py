@@ -102,11 +102,14 @@ def test_a_run_goes_on_from_where_it_is_with_the_step_that_it_is_given():
     assert loops.advance(again, 0.1, 2, math.inf).phase == loops.propagate(again, 0.1, 2)
 
 
-@pytest.mark.parametrize(("key", "evaluations"), [("imex_euler", 30), ("respa", 330)])
-def test_the_evaluations_of_each_counted_part_are_added_up(key, evaluations):
-    spring = EXAMPLES["spring"].equations
-    start = spring.start(1.0, 0.5)
-    assert count_evaluations(method_of(key), spring, start, 0.01, 30) == evaluations
+@pytest.mark.parametrize(
+    ("key", "model", "evaluations"),
+    [("imex_euler", "spring", 30), ("respa", "spring", 330), ("rk4", "pendulum", 120)],
+)
+def test_evaluations_of_the_force_or_of_each_counted_part_are_added_up(key, model, evaluations):
+    model = EXAMPLES[model].equations
+    start = model.start(1.0, 0.5)
+    assert count_evaluations(method_of(key), model, start, 0.01, 30) == evaluations
 
 
 @each_method

@@ -32,13 +32,6 @@ def phases(sample):
     return [(reading.theta, reading.omega, reading.max_energy_error) for reading in sample.readings]
 
 
-def move(course, n):
-    if n < 0:
-        course.go_to(max(0, course.step + n))
-    else:
-        course.forward(n)
-
-
 @settings(max_examples=6)
 @given(st.lists(st.integers(-1500, 2500), min_size=1, max_size=6), H_VALUES)
 def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
@@ -48,7 +41,10 @@ def test_going_back_and_forth_ends_with_the_bits_of_the_direct_way(moves, h):
     course.forward(1900)
     course.sample()
     for n in moves:
-        move(course, n)
+        if n < 0:
+            course.go_to(max(0, course.step + n))
+        else:
+            course.forward(n)
         sample = course.sample()
     expected = straight(course.step, {700: h})
     assert (sample.step, sample.t, phases(sample)) == (expected.step, expected.t, phases(expected))
@@ -74,6 +70,7 @@ def test_a_change_at_the_step_gone_back_to_is_still_ahead():
     course.forward(10)
     course.sample()
     course.change(stepping(0.1))
+    assert not course.in_past
     course.go_to(5)
     course.forward(5)
     assert course.in_past  # another change here is of another run
