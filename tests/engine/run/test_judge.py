@@ -348,8 +348,9 @@ def test_a_band_has_left_the_start_by_half_its_width(sign, word):
     near = "undecided", levels.NEAR
     # the last judgement is of step 5248, and so of a present from step 3936 on
     for middle, narrow_from, expected in (
-        *((1.95, 4400, near), (1.95, 3600, (word, ""))),
-        *((1.95, 6000, near), (2.05, 6000, (word, ""))),
+        (1.95, 4400, near),
+        (1.95, 3600, (word, "")),
+        (2.05, 6000, (word, "")),
     ):
         errors = sign * (middle + np.where(step < narrow_from, 1, 0.9) * np.sin(step / 3))
         found = judge_of([0.0, *errors[1:]]).judgement

@@ -94,18 +94,18 @@ def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monke
 
 
 @pytest.mark.parametrize(
-    ("theta", "z", "steps", "expected"),
+    ("theta", "z", "expected"),
     [
-        (0.5, 1.3, 2000, "holds"),
-        (0.5, 1.43, 2000, "holds, wobbling"),  # beside z = 2 sin(pi/4) 10 % wider, and back
-        (0.5, 1.6, 2000, "holds"),
-        (0.518, 2.092, 2000, "holds elsewhere"),  # beyond its linear limit, as in the scene
+        (0.5, 1.3, "holds"),
+        (0.5, 1.43, "holds, wobbling"),  # beside z = 2 sin(pi/4) 10 % wider, and back
+        (0.5, 1.6, "holds"),
+        (0.518, 2.092, "holds elsewhere"),  # beyond its linear limit, as in the scene
     ],
 )
 def test_velocity_verlet_wobbles_at_a_resonance_and_is_held_elsewhere_beyond_its_limit(
-    theta, z, steps, expected
+    theta, z, expected
 ):
-    cells = outcomes(VELOCITY_VERLET, np.array([theta]), np.array([z]), steps)
+    cells = outcomes(VELOCITY_VERLET, np.array([theta]), np.array([z]), 2000)
     assert FATES[cells["fate"][0]] == expected
 
 
