@@ -130,9 +130,8 @@ def test_a_method_that_diverges_keeps_its_last_finite_phase_and_others_go_on(cut
     last = round(frozen.diverged_at / scene.h) - 1
     assert frozen.diverged_at == (last + 1) * scene.h
     run = bad.phases(Pendulum(scene.w0_squared).force(), (scene.theta, scene.omega), scene.h)
-    *_, before, beyond = (scene.theta, scene.omega), *islice(run, last + 1)
+    *_, before = (scene.theta, scene.omega), *islice(run, last)
     assert (frozen.theta, frozen.omega) == before
-    assert not abs(beyond[1]) < 1e149  # a square beyond 1e300 is out, too
     assert finite(frozen)
 
 

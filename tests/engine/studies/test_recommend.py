@@ -17,16 +17,6 @@ E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 
 
-def test_the_recommended_run_reaches_its_target_and_a_coarser_one_does_not():
-    study = Study(SCENES["large-swing"], 5.0, compiled)
-    best, *_ = least_cost(study, "final", 1e-2)
-    steps = best.reached.steps
-    runs = steps, math.ceil(1.1 * steps), math.floor(steps / 1.03)
-    here, finer, coarser = (study.run(best.method, n, n).errors["final"] for n in runs)
-    assert here == best.reached.errors["final"]  # compared at each step of a run so short
-    assert max(here, finer) <= 1e-2 < coarser
-
-
 def test_a_target_as_large_as_the_swing_is_refused():
     study = Study(DRIFT, 1.0)
     with pytest.raises(InputError, match="as large as the swing"):
@@ -48,6 +38,10 @@ def test_the_cheapest_is_first_and_others_cost_a_multiple_of_it():
     study = Study(replace(DRIFT, cast=(V, R)), 10.0, compiled)
     shares = []
     best, other = least_cost(study, "energy", 1e-2, shares.append)
+    steps = best.reached.steps
+    runs = steps, math.ceil(1.1 * steps), math.floor(steps / 1.03)
+    here, finer, coarser = (study.run(V, n, n).errors["energy"] for n in runs)
+    assert max(here, finer) <= 1e-2 < coarser
     assert (best.method, best.times, other.method) == (V, 1.0, R)
     assert 1 < other.times == other.cost / best.cost
     assert shares == [0.5, 1]
@@ -78,12 +72,13 @@ def confirmed(*steps):
 # the error after n steps, what is asked, the steps tried, those kept, the budget or why they fail
 SEARCHES = {
     "the order predicts steps, bisected to 2 %; 10 % more do, so not by chance": (
-        lambda n: 1e-3 if n == 111 else n**-2, {},
-        [10, 40, 100, 63, 79, 88, 93, 96, 97, 98, *confirmed(100, 111, 102, 113)], 102, None,
+        lambda n: 1e-3 if n in (102, 111) else n**-2, {},
+        [10, 40, 100, 63, 79, 88, 93, 96, 97, 98, *confirmed(100, 111, 102, 113, 105, 116)], 105,
+        None,
     ),
     "where all is lost, four times the steps are tried": (
-        lambda n: 2 if n < 100 else n**-2, {},
-        [10, 40, 160, 80, 113, 95, 103, 98, 100, *confirmed(100, 111)], 100, None,
+        lambda n: 2 if n < 200 else n**-2, {},
+        [10, 40, 160, 640, 320, 226, 190, 207, 198, 202, *confirmed(202, 223)], 202, None,
     ),
     "an error that falls more slowly is reached by 10 % more": (
         lambda n: 1e-2 / n, {},
@@ -111,6 +106,9 @@ SEARCHES = {
     "rounding keeps the error from falling twice": (
         lambda n: {10: 1e-7, 40: 4e-9}.get(n, 1e-9 if n < 640 else 9e-10), {"target": 1e-12},
         [10, 40, 160, 320, 640, 1280, 2560], 640, "rounding stops it at 9.0e-10",
+    ),
+    "rounding keeps the first error from falling twice": (
+        lambda n: 1e-9, {"target": 1e-12}, [10, 20, 40], 10, "rounding stops it at 1.0e-09",
     ),
     "rounding stops the last run of the budget": (
         lambda n: 1e-9, {"target": 1e-12, "most": 21}, [10, 20], 10, "rounding stops it at 1.0e-09",

@@ -149,12 +149,14 @@ def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width):
     assert whole[4, 0, 5] == outcomes(USUAL_CAST[2], GRID.theta[5:6], GRID.z[4:5], 200)[0]
     computed = list(pieces(GRID, [50, 200]))
     assert computed[-1].cells.tobytes() == whole[computed[-1].part.z, 1].tobytes()
+    assert [piece.part.grid.steps for piece in computed] == 4 * [50] + 4 * [200]
     assert [piece.done for piece in computed] == 2 * [0.25, 0.5, 0.75, 1]  # 10 z and 3
 
 
 def test_a_part_has_so_many_swings_that_its_arrays_fit_into_the_cache():
-    wide = replace(GRID, theta=np.ones(1366))
-    assert [part.grid.shape[0] for part in wide.parts()][::2] == [2] * 6 + [1]
+    for swings, parts in ((1366, [2] * 6 + [1]), (5000, [1] * 13)):
+        wide = replace(GRID, theta=np.ones(swings))
+        assert [part.grid.shape[0] for part in wide.parts()][::2] == parts
 
 
 @pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
