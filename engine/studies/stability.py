@@ -191,9 +191,7 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """Return ln of the growth of neighbours' distance after so many steps, with w0 = 1.
 
     The displacement is rescaled to length 1 after each step: Benettin et al., Meccanica 15 (1980)
-    9.  It grows in proportion to the steps on regular orbits, exponentially on chaotic ones.  The
-    logarithm per step tends to the largest Lyapunov exponent, for K >= 10 ln(K/2): Chirikov, Phys.
-    Rep. 52 (1979) 263.
+    9.  It grows in proportion to the steps on regular orbits, exponentially on chaotic ones.
     """
     phases = method.on(UNIT, np.sin)
     along = 1.0

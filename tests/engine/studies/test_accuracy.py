@@ -99,6 +99,7 @@ def test_an_error_as_large_as_the_swing_is_lost_and_one_below_the_floor_is_round
         flaws = [study.flaw(kind, error, 400) for error in errors]
         assert flaws == ["rounding", None, None, "lost"]
     assert Study(SCENES["spin"], 20.0).sizes["theta"] == math.pi
+    assert Study(DRIFT.altered(theta=-1.0), 0.1).sizes["final"] == 1.0
     _, late = rounding_floor(SCENES["near-separatrix"], 20.0)
     assert late == pytest.approx(1.556e-9, rel=0.01)  # where a change of energy delays it most
 
