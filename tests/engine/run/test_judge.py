@@ -20,7 +20,6 @@ from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.loops import PlainLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
-from pendu_tui.engine.run.verdicts import Judgement
 from pendu_tui.engine.scenes import SCENES, Scene
 from tests.bench.judging import exclude, judgements
 from tests.engine.run.test_record import noise_of
@@ -30,7 +29,6 @@ E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 W0 = Scene().w0
 CELLS = list(truths())[::47]  # 47 and the 36 steps of a line have no divisor in common
-RESONANCES = ((1.25, 0.348011), (1.69, 0.370360), (1.3, 0.3512), (0.37, 0.459757))
 
 
 def words(lockstep):
@@ -83,11 +81,7 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number():
         (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
         (E, scene_at("theta=2.5", 1.2), 6000, ["bounded"]),  # back at its start again and again
         (E, scene_at("omega=31.4", 2.05), 6000, ["", "undecided"]),
-        *(
-            (method, Scene(theta=theta, h=h), 6000, ["", "bounded"])
-            for method in (S, V)
-            for theta, h in RESONANCES
-        ),
+        *((method, Scene(theta=1.69, h=0.37036), 6000, ["", "bounded"]) for method in (S, V)),
     ],
 )
 def test_what_leaves_or_is_lost_is_told_at_the_end(method, scene, steps, ends):
@@ -436,17 +430,6 @@ def test_rk4s_error_passes_verlets_once_for_good():
     assert (passing.method, passing.other, passing.step) == (R, V, 167)
     assert passing.t == pytest.approx(33.4)
     assert {R, V} <= {each.method for each in milestones(lockstep, "verdict") if each.step <= 167}
-
-
-@pytest.mark.parametrize(("peak", "passes"), [(0.9e-12, False), (1.1e-12, True)])
-def test_an_error_passes_another_that_is_more_than_roundings(peak, passes):
-    lockstep = Lockstep(DRIFT, judged=True)
-    leaving, _, bounded, _ = lockstep._judges
-    leaving.judgement, bounded.judgement = Judgement("grows"), Judgement("bounded")
-    bounded.peak = peak
-    for leaving.peak in (peak, 2 * peak, 3 * peak, peak / 2, 2 * peak):
-        lockstep._note_crossings()
-    assert len(lockstep.milestones) == 2 * passes
 
 
 def test_a_method_fails_once_and_for_good():
