@@ -159,12 +159,6 @@ def test_each_level_has_a_case_on_both_sides(name):
         assert judge_record(T, 1000 + make(value)).verdict == (word or "undecided")
 
 
-def test_an_energy_that_is_gone_but_swings_has_the_slope_of_the_longest_part():
-    found = judge_record(T, 1000 + np.where(T < 10, 0, 7 + SWING))
-    assert (found.verdict, found.rests) == ("grows", False)
-    assert abs(found.slope) < 0.004  # 0.02 in its last quarter
-
-
 @pytest.mark.parametrize(("last", "growth"), [(0.99, None), (1.01, math.log(2.01) / 63)])
 def test_growth_is_told_of_what_is_straight_in_its_logarithm_beyond_e0(last, growth):
     values = np.expm1(np.linspace(0, math.log1p(last), 64))
