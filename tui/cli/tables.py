@@ -262,8 +262,7 @@ class Sheet:
 
     def add_column(self, name: str, unit: str = "") -> None:
         self.kept += (len(self.names),)
-        if role(name)[0] == "run" and not self._is_printed:
-            self.marks += (len(self.names),)
+        self.marks += (len(self.names),) * (role(name)[0] == "run")
         self.names.append(name)
         self.units.append(unit)
         self._lines.append(array("q"))

@@ -103,12 +103,11 @@ def columns(series: Series) -> str | None:
         ("t,x,E", "{t},{k},{w}", None),  # a field
         ("t,x,E", "{t},{k},{b}", None),  # a count
         ("time,t,E", "17327000{n:02},{t},{e}", "t, E"),  # on the wall
-        ("time,step,E", "17327000{n:02},{n},{e}", "step, E"),
-        ("time,E", "17327000{n:02},{e}", "time, E"),
         ("", "t = {t} E = {e}×10^{f}", None),
         ("", "t = {t} E = -42 {k:07.3f}", None),
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
+        ("t,E", "{t} ps , {e} eV", "t ps, E eV"),
         ("t,energy error (%)", "{t},{e}", None),
         ("t,E (V/m)", "{t},{e}", None),
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
@@ -222,7 +221,6 @@ def array(*unnamed: object, **named: object) -> bytes:
         "\ufeff" + json.dumps({"run": {"h": [], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
-        json.dumps({"meta": {"sizes": [3, 4]}, "run": {"t": TIMES, "E": ENERGIES}}),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
         array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
@@ -230,7 +228,6 @@ def array(*unnamed: object, **named: object) -> bytes:
         lzma.compress(rows("{t} {e}").encode()),
         rows("{t}\t{e}").encode("utf-16"),
         ("t,E\n" + rows("{t},{e}")).replace("-", "−"),
-        rows("t = {t}, E = {e}").replace("-", "−"),
         "t;E\n" + rows("{t:};{e:}").replace(".", ","),
         "| t | E |\n|---|---|\n" + rows("| {t} | {e} |"),
         "t,E\n" + rows('"{t}","{e}",'),
@@ -280,7 +277,6 @@ def test_columns_of_inner_arrays_have_numbers():
     ("head", "form", "ends"),
     [
         ("t,E\n", "{t},{e}", ("nan", "-nan(ind)", "1.#QNAN", "#NUM!", "overflow", "")),
-        ("t;E\n", "{t};{e}", ("Err:502", "#NV", "#¡NUM!")),
         ("t E\n", "{t} {e}", ("-1.#IND", "+Infinity", "********", "overflow")),
         ("t E T\n", "{t} {e} 3", ("nan", "inf")),
         ("t\tE\n", "{t}\t{e}", ("nan", "")),
@@ -301,7 +297,10 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
     [
         ("t,E\n" + rows("{t},{e}") + "nan,nan\n", 44.5, 1),
         ("t,E\n" + rows("{t},{e}") + 200 * "nan,nan\n", 44.5, 200),
-        ("t,E\n" + rows("{t},{e}") + "#NUM!,#NUM!\n#N/A,#NV\n", 44.5, 2),
+        *(
+            ("t,E\n" + rows("{t},{e}") + 2 * f"{end},{end}\n", 44.5, 2)
+            for end in ("#NUM!", "#N/A", "#NV", "#¡NUM!", "Err:502")
+        ),
         ("t,E\n" + rows("{t},{e}") + "inf,-345\n", None, 1),
         ("t,E\n" + rows("{t},{e}\nnan,nan"), None, 90),  # one row divides others
         ("t,E\n" + rows("{t},{e}").replace("\n", "\nnan,nan\n", 1) + 2 * "nan,nan\n", 44.5, 3),
@@ -493,7 +492,9 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
         ("method,t,E\n" + rows("euler,{t},{e}", 0, 30) + rows("rk4,{t},{e}", 30), [30, 60]),
         ("t,E,solver\n" + rows("{t},{e},{f}"), [90]),
-        ("t,E,seed\n" + rows("{t},{e},1", 0, 70) + rows("{t},{e},2", 60), [70, 30]),
+        ("t,E,seed\n" + rows("{s},{e},1\n{s}.5,{e},1", 0, 80) + rows("{s},{e},2", 80), [160, 10]),
+        (rows("seed={f} t={t} E={e}", 0, 8) + rows("seed=3 t={t} E={e}", 9), [8, 81]),
+        (json.dumps({"a": {"t": TIMES, "E": ENERGIES}, "b": {"t": TIMES, "x": TIMES}}), [90]),
         (json.dumps({name: {"t": TIMES, "E": ENERGIES} for name in "ab"}), [90, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
@@ -554,7 +555,6 @@ BROKEN = (
     ("t,E\n" + rows("-0.1,inf\n{t},{e}"), "at -0.1 .* --from"),
     (rows("t = {t}, E = {e} J\nE = {e} eV"), "E is in J, but in eV in line 2;"),
     ("t,E\n" + rows("{t},{e} mJ", 0, 70) + rows("{t},{e} J"), "E is in mJ, but in J in line 72"),
-    ("t E\n" + rows("{t}us {e}\n{t}5ms {e}"), "t is in us, but in ms in line 3;"),
 )
 MISUSED = (
     (TABLE, {"energy": "E+t"}, "t is both the time and an energy"),
