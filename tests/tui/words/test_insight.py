@@ -42,7 +42,10 @@ def changed(live, index: int, errors: dict[str, float] | None = None, **changes)
     judgements[index] = judgements[index]._replace(**changes)
     readings[index] = readings[index]._replace(**(errors or {}))
     sample = live.sample._replace(readings=tuple(readings))
-    kept = {name: getattr(live, name) for name in ("scene", "exact", "changes")}
+    kept = {
+        name: getattr(live, name)
+        for name in ("scene", "exact", "changes", "stepping", "milestones")
+    }
     return SimpleNamespace(**kept, sample=sample, judgements=judgements)
 
 
@@ -183,12 +186,19 @@ def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
     failed = next(each for each in live.milestones if each.kind == "failed")
-    over = failed._replace(kind="over the top", step=0, method=USUAL_CAST[RK4])
+    failed = failed._replace(step=live.sample.step)
+    over = failed._replace(kind="over the top", step=failed.step - 1, method=USUAL_CAST[RK4])
     live.milestones = [over, failed]
+    assert insight(live).kind == "failed"
     found, *others = lasting(live)
     assert found.kind == "failed"
     assert seconds(live.sample.readings[EXPLICIT].diverged_at) in found.text
     assert not any("Explicit Euler" in each.text for each in others)
+
+
+def test_a_method_that_went_over_the_top_may_be_chaotic_too(judged):
+    live = changed(judged, EXPLICIT, verdict="chaotic")
+    assert "chaotic" in [each.kind for each in lasting(live)]
 
 
 def test_there_and_back_shows_at_the_start_which_methods_are_reversible():

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.words.numbers import (
     SIGNED,
+    UNSIGNED,
     about,
     decimal,
     energy_share,
@@ -31,6 +32,8 @@ TEXTS = {
     (decimal, math.nan, 3, 1): "  -",
     (decimal, 0.99996, 9, 4): "  +1.0000",
     (fitting, 1.5e-300, 5, *SIGNED): "#####",  # not cut to a wrong one
+    (fitting, 3.26e-5, 7, *UNSIGNED): "3.3e-05",
+    (fitting, 3.26e-5, 5, *UNSIGNED): "3e-05",
     (seconds, -0.004): "0.00 s",
     (seconds, 59.996): "1 min 00 s",
     (seconds, 12.345): "12.35 s",
