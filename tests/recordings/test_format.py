@@ -135,7 +135,10 @@ def test_an_unknown_field_is_ignored_and_a_missing_optional_one_is_none():
 def test_the_start_of_a_run_made_elsewhere_with_a_method_that_is_not_here_is_kept(scene):
     elsewhere = {"methods": ["mine@0a"], "sources": ["text"], "sin": "another", "numerics": 1}
     message = json.loads(encode_event(start(scene=scene))) | elsewhere
-    assert json.loads(encode_event(decode_event(json.dumps(message).encode()))) == message
+    event = decode_event(json.dumps(message).encode())
+    assert json.loads(encode_event(event)) == message
+    (method,) = event.scene.cast
+    assert (method.label, method.letter) == ("mine", "?")
 
 
 def test_an_unexpected_message_is_refused():

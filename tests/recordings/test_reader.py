@@ -109,13 +109,14 @@ def test_a_change_outside_of_chunks_is_damage_where_all_is_checked(path, at, cut
     assert not verify(path).identical
 
 
-def test_without_its_last_bytes_or_a_checksum_a_file_counts_as_unfinished(path):
+def test_without_its_last_bytes_or_a_checksum_a_file_counts_as_unfinished(path, out):
     whole = path.read_bytes()
     summary = FOOTER.unpack(whole[-FOOTER.size :])[2]
     for begin, end in ((summary - 4, summary), (len(whole) - 1, len(whole))):
         path.write_bytes(whole[:begin] + bytes(end - begin) + whole[end:])
         with Recording.open(path, check=True) as read:
             assert (read.damaged, read.reason) == (False, "its end is missing or damaged")
+    assert not recover(path, out)["damaged"]
 
 
 def test_a_chunk_that_is_there_twice_is_damage_and_no_loss(path):

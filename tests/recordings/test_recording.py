@@ -85,8 +85,8 @@ def test_a_run_without_samples_has_no_length_and_a_recording_without_them_is_ref
     assert [stream.closed for stream in opened] == [True]
     starts = [Entry(1.0, start(2)), Entry(1.0, start(3))]
     with Recording.open(record(tmp_path / "b.mcap", [*two_runs()[:4], *starts])) as recording:
-        runs = [(run.steps, run.begin, run.end) for run in recording.runs]
-    assert runs == [(6, 0.0, 1.0), (0, 1.0, 1.0), (0, 1.0, 1.0)]
+        runs = [(run.steps, round(run.t, 9), run.begin, run.end) for run in recording.runs]
+    assert runs == [(6, 0.6, 0.0, 1.0), (0, 0.0, 1.0, 1.0), (0, 0.0, 1.0, 1.0)]
     assert recording._stream.closed
 
 
