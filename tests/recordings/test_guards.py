@@ -66,7 +66,6 @@ def energy_gate():
         (kicks(second=0.0), "no order: its error stays above"),
         (kicks(dropped=40), "begins again after"),
     ],
-    ids=["stale", "no second kick", "1 of 40 dropped"],
 )
 def test_a_broken_method_fails_for_what_is_broken(method_gate, broken, reason):
     with failing(reason):

@@ -42,13 +42,6 @@ def begin(recorder):
     return recorder
 
 
-@pytest.fixture
-def recorder(tmp_path):
-    recorder = begin(Recorder(tmp_path / "live.mcap"))
-    yield recorder
-    recorder.abandon()
-
-
 def last_on_disk(recorder):
     """What a reader finds last if the process dies here."""
     with Recording.open(recorder.part) as recording:
@@ -85,8 +78,9 @@ def test_a_recording_is_valid_to_mcaps_readers_which_find_a_time_through_the_ind
 
 
 def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_written_twice(
-    recorder, monkeypatch
+    tmp_path, monkeypatch
 ):
+    recorder = begin(Recorder(tmp_path / "live.mcap"))
     assert last_on_disk(recorder).step == 0  # the start at once
     with pytest.raises(ValueError, match="NaN"):
         recorder.add(stepped(1), float("nan"))
