@@ -129,6 +129,7 @@ def test_steps_go_from_sample_to_sample_both_ways_and_not_over_the_ends(table, r
     values = [entry.value for entry in table.samples]
     forward = [replay.step(1) for _ in range(len(values) + 2)]
     assert forward == [*values[1:], *values[-1:] * 3]
+    assert replay.playhead.paused
     backward = [replay.step(-1) for _ in range(len(values) + 2)]
     assert backward == [*values[-2::-1], *values[:1] * 3]
 
