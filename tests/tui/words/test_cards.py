@@ -5,7 +5,6 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.words.cards import (
     GLOSSARY,
     HEADS,
-    WIDTH,
     glossary,
     head_text,
     method_card,
