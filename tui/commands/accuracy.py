@@ -181,8 +181,8 @@ class Results:
             yield from self._advice_notes()
 
     def _advice_notes(self) -> Iterator[Any]:
-        wish = f"{self.kind} error of at most {self.options.target:g} over {self.time:g} s"
-        yield f"\nThe cheapest run of each method with a {wish}:"
+        limit = f"{self.kind} error is at most {self.options.target:g} over {self.time:g} s"
+        yield f"\nThe cheapest run of each method whose {limit}:"
         rows = list(map(self._attempt_fields, self.attempts))
         columns = [
             method_column([attempt.method for attempt in self.attempts]),
