@@ -143,6 +143,16 @@ conserved: ECons
 total: TotE, E_TotE, TotEng, TOTEner, totEnergy, Total E, ETotalE, Total Ene, Total Energy, Etot, \
 Energy tot, E_total, Etot/N, Etot per atom
 energy: E, Ener, energy, tot, total, mechanical, mechanical energy
+kinetic: KE, v_ke, K, Ek, Kin., Ekin, KinEng, kinetic, EKinetic, Kinetic E, Kinetic En., Kinetic \
+Ene, Kinetic Energy, Energy kinetic, EKtot, TOTKe, MD kinetic, Current Kinetic
+potential: PE, c_pe, f_ep, U, Pot., Epot, PotEng, potential, EPotential, Potential E, Potential \
+En., Potential Ene, md.Potential_Energy, Energy potential, EPtot, Current Potential
+error: dE/E, |dE/E0|, delta E/E0, rel dE/E, relative dE/E, (E-E0)/E0, |E(t)-E0|/E0, E err, energy \
+error, energy drift, rel. E error, relative energy error
+error: rel err, relative error
+run: method, integrator, solver, scheme, seed, run, run_id, unit, units
+other: Temp, Temperature, Pres, Press, Pressure, Vol, Volume, Density, E_pair
+: strain energy, wall time, E2
 """
 
 
