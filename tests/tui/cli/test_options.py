@@ -60,6 +60,13 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
         *((units.moment, text, None) for text in ("ps", "")),
         (units.moment, "2", (2.0, "")),
         (units.split_unit, " Time (ps) ", ("Time", "ps")),
+        *((units.split_unit, f"t{end}", ("t", "ps")) for end in ("_ps", "/ps", " ps", "{ps}")),
+        *((units.split_unit, f"E{end}", ("E", "eV")) for end in ("_eV", "/eV", " eV", "[eV]")),
+        *(
+            (units.split_unit, end, (end, ""))
+            for end in ("E (kin)", "Epot(pot)", "E(const)", "E_s")
+        ),
+        (units.split_unit, "E(t)", ("E", "")),
     ],
 )
 def test_the_text_of_an_option_is_its_value_or_refused(read, text, value):

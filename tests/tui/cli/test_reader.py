@@ -479,7 +479,6 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
     [
         (runs(HEAD, "{s} {k} {e}", LOOP, 39), [40, 51]),
         (runs(HEAD, "{s} {k} {e}", "# now NVE\n", 39), [40, 51]),
-        (runs("ETITLE: TS TOTAL\n", "ENERGY: {s} {e}", "TCL: Running for 5 steps\n", 39), [40, 51]),
         (runs(*CP2K, 30), [90]),
         (runs(*CP2K, 39), [90]),
         (rows("{e}", 0, 70) + "-1.0-1.0\n1\n1 2\n" + rows("{e}", 70), [71, 1, 20]),
