@@ -331,7 +331,7 @@ def recommend(
     if chosen.theta == chosen.omega == 0:
         raise InputError("the pendulum hangs at rest; use another theta or omega.")
     check_name("kind of error", error, ("theta", "energy", "final"))
-    seconds, _ = usual(chosen)
+    seconds, _ = usual(chosen, all=True)
     if time is not None:
         seconds = _positive("time", time)
     wanted = _positive("target", target)

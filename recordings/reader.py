@@ -79,7 +79,7 @@ class Contents:
         self.topics[channel.id] = channel.topic
 
 
-def read_contents(stream: BinaryIO, check: bool = False) -> Contents:
+def read_contents(stream: BinaryIO, check: bool) -> Contents:
     """Find the chunks of a file by its summary, or by a search if that is missing or wrong.
 
     With `check`, the checksum of the whole file is verified.

@@ -176,7 +176,7 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
     return sorted({max(1, round(time / (h_max * ratio**rung))) for rung in range(count)})
 
 
-def usual(scene: Scene, all: bool = False, time: float | None = None) -> tuple[float, list[int]]:
+def usual(scene: Scene, all: bool, time: float | None = None) -> tuple[float, list[int]]:
     """Return a time [s], by default ten small swings, and a ladder for the usual cast or `all`."""
     time = time or float(f"{10 * math.tau / scene.w0:.2g}")
     largest, smallest, rungs = Z_LADDER

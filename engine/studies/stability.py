@@ -206,7 +206,7 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     return total
 
 
-def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
+def is_chaotic(method: Method, theta: Any, z: Any, steps: int) -> Any:
     """Return whether swings from rest at theta [rad] are chaotic within `steps` steps.
 
     Over a million steps neighbours on regular orbits separate by at most e^14, on chaotic ones by

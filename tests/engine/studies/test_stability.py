@@ -232,7 +232,7 @@ def test_chaos_fenced_stays_below_pi_over_h_and_chaos_loose_does_not(method):
     fenced, loose = SCENES["chaos-fenced"], SCENES["chaos-loose"]
     assert (fenced.z**2, loose.z**2) == pytest.approx((0.95, 1.1), rel=1e-12)
     assert fenced.z < GREENE_Z < loose.z
-    assert is_chaotic(method, fenced.theta, fenced.z)
+    assert is_chaotic(method, fenced.theta, fenced.z, 10_000)
     # A million steps reach 0.91 pi and 0.79 pi; the fence is an invariant curve.
     assert largest_omega(fenced, method, 100_000) < math.pi
     # It takes 14 000 and 33 000 steps here; other roundings of sin give other orbits.
@@ -247,4 +247,4 @@ def test_chaos_fenced_stays_below_pi_over_h_and_chaos_loose_does_not(method):
     ],
 )
 def test_chaotic_swings_are_called_chaotic_and_regular_ones_not(theta, z, chaotic):
-    assert is_chaotic(VELOCITY_VERLET, theta, z) == chaotic
+    assert is_chaotic(VELOCITY_VERLET, theta, z, 10_000) == chaotic
