@@ -161,7 +161,7 @@ class Judged:
     fluctuation: float | None  # standard deviation about a line, over the scale
     independent: float  # samples
     scale: float  # in the energies' unit
-    diverged_at: float | None = None  # the time of the first energy that has failed
+    diverged_at: float | None  # the time of the first energy that has failed
 
     def __str__(self) -> str:
         return "\n".join(self.lines())

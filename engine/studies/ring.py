@@ -38,10 +38,10 @@ class Neighbourhood:
     finite keeps its last ring.
     """
 
-    def __init__(self, scene: Scene, radius: float, points: int = 64) -> None:
-        """Put `points` starts around the scene's: `radius` in theta, `radius`·w0 in omega."""
+    def __init__(self, scene: Scene, radius: float) -> None:
+        """Put 64 starts around the scene's: `radius` in theta, `radius`·w0 in omega."""
         self._model = scene.equations
-        angle = np.linspace(0.0, 2 * math.pi, points, endpoint=False)
+        angle = np.linspace(0.0, 2 * math.pi, 64, endpoint=False)
         ring = (
             scene.theta + radius * np.cos(angle),
             scene.omega + radius * scene.w0 * np.sin(angle),

@@ -283,10 +283,10 @@ class Piece:
     done: float
 
 
-def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
-    """Yield the map in pieces of `width` z and one method, with the steps of each pass."""
+def pieces(grid: Grid, passes: Sequence[int]) -> Iterator[Piece]:
+    """Yield the map in pieces of ten z and one method, with the steps of each pass."""
     for steps in passes:
-        parts = replace(grid, steps=steps).parts(width)
+        parts = replace(grid, steps=steps).parts(10)
         for done, part in enumerate(parts, 1):
             yield Piece(part, part.cells(), done / len(parts))
 
