@@ -89,15 +89,15 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
 
 def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypatch):
     taken = record(tmp_path / "a.mcap", two_runs())
-    for path, force, why in (
-        (taken, False, "--force"),
-        (taken, None, "name$"),
-        (tmp_path, True, "name$"),
-        (tmp_path / "no" / "a.mcap", True, "does not exist"),
-        (files.Path("-"), True, "not a file name"),
+    for path, why, *force in (
+        (taken, "--force"),
+        (taken, "name$", None),
+        (tmp_path, "name$", True),
+        (tmp_path / "no" / "a.mcap", "does not exist", True),
+        (files.Path("-"), "not a file name", True),
     ):
         with pytest.raises(DiskError, match=why) as refused:
-            files.check_target(path, force)
+            files.check_target(path, *force)
         assert refused.value.filename == str(path)
     files.check_target(taken, force=True)
     files.check_target(tmp_path / "free.mcap", force=None)

@@ -53,6 +53,7 @@ def test_errors_are_the_largest_of_the_run(steps):
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     largest = max(abs(energy(y) - start) / start for y in path)
     assert point.errors == {"theta": max(off), "energy": largest, "final": off[-1]}
+    assert point.seconds is point.spread is None
 
 
 @pytest.mark.parametrize("steps", [799, 800, 1199, 5000])
