@@ -17,7 +17,6 @@ from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.insight import insight
 from pendu_tui.tui.words.plain_text import (
-    READING,
     description,
     event_lines,
     method_sentence,
@@ -116,7 +115,7 @@ def test_a_lesson_gives_time_to_read_asks_at_its_moment_answers_and_ends():
     assert 'the scene "drift"' in told[0][1]
     asked = next(at for at, sentence in told if page.shot.question in sentence)
     answered = next(at for at, sentence in told if page.shot.truth in sentence)
-    times = (READING + page.shot.moment, READING, READING)
+    times = (6 + page.shot.moment, 6, 6)
     assert (asked, answered - asked, clock.now - begin - answered) == pytest.approx(times, abs=0.2)
 
 
@@ -153,7 +152,9 @@ def test_changes_and_marks_are_listed_pauses_are_not_and_a_step_back_removes_wha
     live.change(Stepping(-0.1))
     live.change(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
-    live.step(200)
+    live.step(50)
+    live.mark()
+    live.step(150)
     snapshot("events.txt", "\n".join(numbered(event_lines(live))) + "\n")
     live = after(DRIFT.altered(theta=1.001), 8)
     live.step(-20)
