@@ -7,14 +7,16 @@ from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import Screen
 from textual.widgets._toast import Toast
+from textual.widgets._tooltip import Tooltip
 
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import TextScreen
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.lines import InsightLine, StatusLine, TooSmall
-from tests.tui.drawn import screen
+from pendu_tui.tui.screens.lines import StatusLine, TooSmall
+from pendu_tui.tui.views.error_table import ErrorTable
+from tests.tui.drawn import looks, screen
 from tests.tui.harness import lab, until
 
 
@@ -69,15 +71,19 @@ async def test_an_outdated_size_is_ignored_or_two_would_call_each_other_up_for_e
     assert arranged == [Size(80, 24)]
 
 
-async def test_notices_lie_on_the_insight_line_and_replace_equal_ones():
+async def test_notices_lie_on_the_insight_line_and_replace_equal_ones(snapshot, monkeypatch):
+    monkeypatch.setattr(PenduApp, "TOOLTIP_DELAY", 0.01)
     live = Live(DEFAULT_SCENE.altered(h=5e-10), clock=lambda: 0.0)
+    live.tick(0.0)
     app = PenduApp(LabScreen(live, lambda: 0.0))
-    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+    async with app.run_test(size=(80, 24), tooltips=True, notifications=True) as pilot:
         await pilot.press("m")
-        await until(pilot, lambda: any(toast.region for toast in app.screen.query(Toast)))
-        region = app.screen.query_one(Toast).region
-        assert region.height == 1
-        assert app.screen.query_one(InsightLine).region.contains_region(region)
+        await pilot.hover(ErrorTable, offset=(30, 0))
+        for over in (Toast, Tooltip):
+            await until(
+                pilot, lambda over=over: any(each.region for each in app.screen.query(over))
+            )
+        snapshot("notice.txt", looks(app))
         await pilot.press("m", *["minus"] * 9)
         refused = [each for each in app._notifications if "not a usable" in each.message]
         assert [(each.severity, each.markup, each.timeout) for each in refused] == [

@@ -3,8 +3,11 @@
 import html
 import re
 
+from textual.widgets import Input
+
 from pendu_tui.tui.cli.options import resolve
 from tests.tui.command_line import pendu
+from tests.tui.drawn import looks
 from tests.tui.harness import lab, player
 from tests.tui.views.test_snapshots import SECONDS, SMALL, settled
 
@@ -12,6 +15,19 @@ from tests.tui.views.test_snapshots import SECONDS, SMALL, settled
 async def test_a_replay(snapshot):
     async with player(resolve("drift"), SMALL) as theatre:
         snapshot("replay-80x24.txt", await settled(theatre, "home", *["right"] * 6))
+
+
+async def test_the_dialogs(snapshot, monkeypatch):
+    monkeypatch.setattr(Input, "_toggle_cursor", lambda _: None)  # it does not blink
+    pictures = []
+    async with lab(size=SMALL) as theatre:
+        await theatre.press("space")
+        await theatre.run(0)
+        for key in ("i", "M", "ctrl+p", "d"):
+            await theatre.press(key)
+            pictures.append(looks(theatre.app))
+            await theatre.press("escape")
+    snapshot("dialogs.txt", "\n".join(pictures))
 
 
 async def test_the_lab_in_ascii_without_colours(snapshot, monkeypatch):
