@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
-from pendu_tui.tui.drawing.picture import FRAME, TEXT, WARN, Picture
+from pendu_tui.tui.drawing.picture import TEXT, WARN, Picture
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
@@ -16,7 +16,6 @@ from pendu_tui.tui.playback.source import Playhead, RecordingStatus
 from pendu_tui.tui.screens.lines import (
     BADGE,
     InsightLine,
-    bar,
     facts,
     status_row,
     text_rows,
@@ -86,13 +85,6 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
     row = status_row(taped(), Shown(held=1.0), 100)
     pictures.append(f"{text(row)}\n{text(status_row(taped(), Shown(), 100, True))}\n")
     snapshot("status.txt", "".join(pictures))
-
-
-def test_the_bar_shows_what_was_played_and_what_was_done():
-    row = bar(5.0, 10.0, [0.0, 2.5, 5.0, 7.5], 20)
-    assert row == [("┿━━━━┿━━━━", TEXT), ("█", TEXT), ("────┼────", FRAME)]
-    assert text(bar(10.0, 10.0, [], 10)) == "━━━━━━━━━█"
-    assert text(bar(0.0, 0.0, [], 4)) == "█───"
 
 
 def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
