@@ -66,8 +66,6 @@ class _Styles(dict[Ink, Style]):
 class CellWidget(Widget):
     """Shows a picture, cut off or filled with blanks where it does not fit."""
 
-    ALLOW_SELECT = False
-
     def __init__(self) -> None:
         super().__init__()
         self._picture = Picture()
