@@ -11,7 +11,7 @@ from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FRAME
 from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
-from pendu_tui.tui.drawing.time_chart import MIN_COLUMNS, MIN_ROWS, TimePlot, _crossings, time_chart
+from pendu_tui.tui.drawing.time_chart import TimePlot, _crossings, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown, Stretch
 from tests.tui.drawn import cells, look, size
@@ -173,11 +173,11 @@ def test_any_points_make_a_loglog_chart(data, width, height):
     assert size(picture) == (width, height)
 
 
-@pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
+@pytest.mark.parametrize("size", [(19, 30), (80, 3)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     text = plot(window([1, 2], [1, 2]), *size).picture.text
     assert "A chart needs 20×4" in " ".join(text.split())
-    assert "┤" in plot(window([1, 2], [1, 2]), MIN_COLUMNS, MIN_ROWS).picture.text
+    assert "┤" in plot(window([1, 2], [1, 2]), 20, 4).picture.text
 
 
 @pytest.mark.parametrize(
