@@ -9,7 +9,6 @@ from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
-    CALM_FPS,
     CHARACTER_SETS,
     TerminalOptions,
     cells,
@@ -119,7 +118,7 @@ def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
     assert CHARACTER_SETS == ("braille", "half", "ascii")  # as a key takes them
     assert chosen("--fps 60").fps == 60
     assert chosen(encoding="latin-1").character_set == "ascii"
-    assert chosen(TEXTUAL_ANIMATIONS="None").fps == CALM_FPS == 10
+    assert chosen(TEXTUAL_ANIMATIONS="None").fps == 10
 
 
 @pytest.mark.parametrize("text", ["59x16", "60x15", "401x200", "400x201", "80", "80x24x2"])

@@ -4,7 +4,7 @@ import pytest
 from textual import events
 
 from pendu_tui.engine.scenes import SCENES, Line, Scene
-from pendu_tui.tui.views.phase import STARTS, SectionPane
+from pendu_tui.tui.views.phase import SectionPane
 from pendu_tui.tui.views.viewport import LEFT
 from tests.tui.harness import lab, until
 
@@ -13,7 +13,7 @@ SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
 
 @pytest.fixture(autouse=True)
 def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pendu_tui.tui.views.phase.STARTS", STARTS // 10)
+    monkeypatch.setattr("pendu_tui.tui.views.phase.STARTS", 30)
 
 
 async def section_of(theatre, *keys: str) -> SectionPane:
