@@ -8,8 +8,6 @@ from statistics import median
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from pendu_tui.engine.methods import USUAL_CAST, method_of
 from pendu_tui.engine.methods.splitting import FOREST_RUTH
@@ -71,6 +69,9 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number():
     assert lockstep.judgements[0].lyapunov * h == pytest.approx(math.log(10), rel=0.02)
 
 
+LINEAR = {1.99: "bounded", 2.01: "grows"}
+
+
 @pytest.mark.parametrize(
     ("method", "scene", "steps", "ends"),
     [
@@ -78,7 +79,9 @@ def test_a_chaotic_orbit_gets_its_verdict_and_lyapunov_number():
         (R, SCENES["rk4-limit-above"], 6000, ["grows"]),
         (R, Scene(h=1.2 / W0), 6000, ["loses"]),  # everything
         (V, SCENES["chaos-fenced"], 6000, ["chaotic"]),
+        (method_of("imex_euler"), SCENES["stiff-slow"], 15_000, ["loses"]),
         (E, Scene(h=2.1 / W0), 30_000, ["", "undecided"]),
+        *((V, Scene(model="linear", h=z / W0), 100, [word]) for z, word in LINEAR.items()),
         (E, scene_at("theta=2.5", 1.2), 6000, ["bounded"]),  # back at its start again and again
         (E, scene_at("omega=31.4", 2.05), 6000, ["", "undecided"]),
         *((method, Scene(theta=1.69, h=0.37036), 6000, ["", "bounded"]) for method in (S, V)),
@@ -99,13 +102,6 @@ def test_judging_may_begin_anywhere_in_a_swing_and_go_back(h):
         assert words(lockstep) == ["grows", "bounded", "bounded", "loses"]
         judged.add(lockstep.judgements[1].periods)
     assert len(judged) == 1  # each from the change on
-
-
-def test_a_stiff_spring_has_its_verdicts():
-    scene = SCENES["stiff-slow"]
-    found = milestones(moved(scene, [round(300 / scene.h)]), "verdict")
-    expected = {"rk4": "loses", "imex_euler": "loses"}
-    assert {each.method.key: each.verdict for each in found}.items() >= expected.items()
 
 
 look_point = partial(LookPoint, theta=0.0, omega=0.0, energy=1.0)
@@ -239,11 +235,6 @@ def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, ver
         assert orbit.verdict("bounded", peak, periods=100.0) == "bounded"
 
 
-@pytest.mark.parametrize(("z", "word"), [(1.99, "bounded"), (2.01, "grows")])
-def test_a_linear_swing_is_bounded_up_to_the_limit_of_the_method(z, word):
-    assert words(moved(Scene(model="linear", h=z / W0, cast=(V,)), [100])) == [word]
-
-
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize(
     ("every", "length", "reason"), [(4, 128, levels.BEATS), (20, 128, ""), (20, 64, levels.BEATS)]
@@ -271,21 +262,16 @@ def test_growth_is_that_of_the_logarithm_where_energy_is_multiplied_each_step():
     assert {each.growth for each in (*others, *moved(DRIFT, [1200]).judgements)} == {None}
 
 
-def test_at_equal_cost_judges_count_each_methods_own_steps():
-    lockstep = moved(DRIFT, [0])
-    lockstep.set_stepping(Stepping(0.2, True, DRIFT.cast))
-    lockstep.advance(300)
-    periods = 60 / DRIFT.exact().period
-    assert [each.periods for each in lockstep.judgements] == pytest.approx([periods] * 4, rel=0.01)
-
-
-def test_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_looked():
+def test_at_equal_cost_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_looked():
     lockstep = Lockstep(DRIFT, judged=True)
     lockstep.set_stepping(Stepping(0.04, True, DRIFT.cast))
     # a swing takes 53.6 steps, and there is a look point every 7 steps
     swings = [lockstep.progress(2, steps).have for steps in (105, 108, 112)]
     assert swings == [1, 1, 2]
     assert lockstep.progress(2, 6) is None
+    lockstep.advance(300)
+    periods = 12 / DRIFT.exact().period  # counted in each method's own steps
+    assert [each.periods for each in lockstep.judgements] == pytest.approx([periods] * 4, rel=0.02)
 
 
 def test_before_four_swings_there_is_neither_verdict_nor_slope():
@@ -457,13 +443,12 @@ def test_verdicts_and_milestones_do_not_depend_on_samples_or_loops(name):
     assert (cut.milestones, cut.judgements) == (whole.milestones, whole.judgements)
 
 
-@settings(max_examples=4)
-@given(back=st.integers(0, 1500), at=st.integers(0, 1500))
-def test_after_a_way_back_verdicts_are_those_of_their_step(back, at):
+def test_after_a_way_back_verdicts_are_those_of_their_step():
     run = RewindableRun(SCENES["chaos-loose"])
     run.forward(1500)
-    run.go_to(back)
-    run.forward(max(0, at - back))
-    alone = moved(run.scene, [run.step])
-    assert run.lockstep.judgements == alone.judgements
-    assert list(run.lockstep.milestones) == list(alone.milestones)
+    for back, at in ((1400, 1500), (100, 700)):
+        run.go_to(back)
+        run.forward(at - back)
+        alone = moved(run.scene, [at])
+        assert run.lockstep.judgements == alone.judgements
+        assert run.lockstep.milestones == alone.milestones
