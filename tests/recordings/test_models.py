@@ -36,23 +36,15 @@ def test_a_scene_is_recorded_verified_recovered_and_replayed(tmp_path, name, sce
         assert (replay.scene, replay.sample) == (scene, samples[-1])
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("own")
-    (folder / "mine.py").write_text(HEUN)
-    own = "--method", f"{folder / 'mine.py'}:my_heun"
-    path = folder / "own.mcap"
-    assert pendu("run", "--methods", "rk4", *own, "--time", "20", "--record", path).code == 0
-    return path.read_bytes()
-
-
 @pytest.fixture
-def path(made, tmp_path, monkeypatch):
+def path(tmp_path, monkeypatch):
+    """A recording with a method of one's own, which is then unknown again."""
     monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text(HEUN)
+    own = "--method", "mine.py:my_heun", "--time", "20", "--record", "own.mcap"
+    assert pendu("run", "--methods", "rk4", *own).code == 0
     monkeypatch.setattr(events, "_own", {})
-    path = tmp_path / "own.mcap"
-    path.write_bytes(made)
-    return path
+    return Path("own.mcap")
 
 
 def test_without_the_file_all_is_kept_but_only_the_other_methods_verify(path):
