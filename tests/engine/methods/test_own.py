@@ -14,7 +14,7 @@ from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import TAYLOR_20, VELOCITY_VERLET, family_of, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError, TooLongError
 from pendu_tui.engine.run.lockstep import Lockstep
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
+from pendu_tui.engine.scenes import SCENES
 from tests.own_methods import VERLET, load
 
 EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
@@ -129,7 +129,6 @@ WRONG = {
     "a control character": ("A#\x1b", "line 1: `A#` raises NameError: name 'A' is not defined."),
     "a character that ends a text": ("\0", "source code string cannot contain null bytes."),
     "no Python": ("\ndef mine(:", "line 2: invalid syntax."),
-    "an exception when loaded": ("def f(x):\n    return x / 0\nf(1)", "line 2: `return x / 0` raises ZeroDivisionError"),
     "another name": ("import math\ndef yours(): pass\ndef _hidden(): pass\ndef hers(): pass", "has no function 'mine'; it has yours, hers."),
     "another function": ("mine = print", "print is not a generator function"),
     "just enough text": ("#" * MAX_SOURCE, "mine.py has no function 'mine'."),
@@ -234,10 +233,3 @@ def test_an_interrupt_and_a_divergence_are_no_faults(error, told):
     begun = mine.phases(np.sin, (1.0, 0.0), 0.1)
     next(begun)
     begun.close()
-
-
-def test_an_exception_after_many_steps_is_a_sentence_with_the_line():
-    late = load(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
-    lockstep = Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,)))
-    with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple "):
-        lockstep.advance(30_000)

@@ -22,10 +22,8 @@ from pendu_tui.tui.cli.dispatch import main
 
 for line in (
     "run --scene scene.toml --bond 1.5 --time 2 --record a.mcap",
-    "run mean-field --methods rk4 --coupling 1.5 --time 2 --record b.mcap",
     "verify a.mcap",
     "export a.mcap -o a.csv",
-    "export b.mcap -o b.csv",
     "snapshot --scene scene.toml --size 200x60 --time 2 -o a.svg",
 ):
     assert not main(shlex.split(line)), line
@@ -52,6 +50,4 @@ def test_another_model_runs_with_its_variables_is_recorded_verified_and_drawn(tm
     )
     assert not done.returncode, done.stderr
     assert "identical" in done.stdout
-    tables = [(tmp_path / name).read_text("utf-8") for name in ("a.csv", "b.csv")]
-    assert tables[0] == tables[1]
-    assert "probability_error" in tables[0]
+    assert "probability_error" in (tmp_path / "a.csv").read_text("utf-8")
