@@ -19,7 +19,7 @@ from pendu_tui.tui.commands.lab import settled
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.replay import Replay
-from pendu_tui.tui.playback.source import Source
+from pendu_tui.tui.playback.source import Playhead, Source
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import FPS
@@ -125,12 +125,30 @@ class Theatre:
     def source(self) -> Any:
         return self.stage.source
 
+    @property
+    def sample(self) -> Sample:
+        return self.source.sample
+
+    @property
+    def scene(self) -> Scene:
+        return self.source.scene
+
+    @property
+    def playhead(self) -> Playhead:
+        return self.source.playhead
+
     async def run(self, seconds: float) -> None:
         for _ in range(round(seconds * FPS)):
             self.now += 1 / FPS
             self.source.tick(self.now)
         self.stage.show_now()
         await self.pilot.pause()
+
+    def frames(self, count: int = 1, seconds: float = 1 / FPS) -> None:
+        """Let the timer of frames ring so often, each time after so many seconds."""
+        for _ in range(count):
+            self.now += seconds
+            self.stage.frame()
 
     async def press(self, *keys: str) -> None:
         for key in keys:
@@ -144,6 +162,10 @@ class Theatre:
     @property
     def notices(self) -> list[str]:
         return [each.message for each in self.app._notifications]
+
+    def pane(self, widget: type[CellWidget] | str) -> Any:
+        """Return the only such widget on the screen."""
+        return self.stage.query_one(widget)
 
     def text(self, widget: type[CellWidget] | str) -> str:
         """Return the text of the first such widget on the screen."""

@@ -67,14 +67,14 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
 
     async with lab(size=SIZE) as theatre:
         await do("scene crossover")
-        assert theatre.source.scene == SCENES["crossover"]
-        assert not theatre.source.playhead.paused
+        assert theatre.scene == SCENES["crossover"]
+        assert not theatre.playhead.paused
         for keys, theme in (("pagedown up", "high-contrast"), ("down down pageup down", "light")):
             await do("theme", *keys.split())
             assert theatre.app.theme == theme
         await found(theatre, "double speed")
         await theatre.click(Choices, 3, 0)
-        assert theatre.source.playhead.speed == 2 * SCENES["crossover"].speed
+        assert theatre.playhead.speed == 2 * SCENES["crossover"].speed
         await do("pixels half")
         assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
         await theatre.press("e", "1", "-", "n", "b")

@@ -16,11 +16,11 @@ async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
         await theatre.press(
             "b", "i", *"115deg ", "down", *"-2", *["down"] * 4, "up", *"0.01", "enter"
         )
-        scene = theatre.source.scene
+        scene = theatre.scene
         assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
         assert theatre.source.stepping.h == 0.01  # a new run is no reversed one
         assert theatre.stage.shown.theta is None  # phase space fits it
-        assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
+        assert (scene.length, scene.gravity, theatre.sample.step) == (1.0, 9.81, 0)
 
 
 async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wrong():
@@ -50,7 +50,7 @@ async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wro
             await theatre.pilot.pause()
             assert verdict.styles.color == calm
         await enter("stiffness", "400")
-        assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
+        assert theatre.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
 async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen():
@@ -80,5 +80,5 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         assert [str(MAX_METHODS) in each for each in theatre.notices] == [True, False]
         await click(3)
         await theatre.press("home", "space", "down", "space", "space", "enter")
-        assert theatre.source.scene.cast == (known[3], known[0])
-        assert theatre.source.scene.h == 0.1
+        assert theatre.scene.cast == (known[3], known[0])
+        assert theatre.scene.h == 0.1

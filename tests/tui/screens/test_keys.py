@@ -29,17 +29,14 @@ async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_m
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.press("b")
-        for _ in range(40):
-            theatre.now += 1 / 30
-            theatre.stage.frame()
-        assert theatre.source.sample.t == pytest.approx(0, abs=1e-9)
-        assert theatre.source.playhead.paused
+        theatre.frames(40)
+        assert theatre.sample.t == pytest.approx(0, abs=1e-9)
+        assert theatre.playhead.paused
         (mark,) = [event for event in theatre.source.events if event.kind == "mark"]
         assert mark.text == "Back at the start"
         await theatre.press("space")
-        theatre.now += 0.5
-        theatre.stage.frame()
-        assert theatre.source.sample.t < -0.3
+        theatre.frames(seconds=0.5)
+        assert theatre.sample.t < -0.3
 
 
 async def test_a_frame_draws_what_is_due_or_nothing_if_the_terminal_is_behind(monkeypatch):
@@ -51,7 +48,7 @@ async def test_a_frame_draws_what_is_due_or_nothing_if_the_terminal_is_behind(mo
         assert gc.get_freeze_count()
         theatre.now = 0.1
         async with asyncio.timeout(10):  # frames come by themselves
-            while not theatre.source.sample.step:
+            while not theatre.sample.step:
                 await theatre.pilot.pause(0.01)
         stage.frame_timer.pause()
         drawn = Counter()
@@ -59,9 +56,7 @@ async def test_a_frame_draws_what_is_due_or_nothing_if_the_terminal_is_behind(mo
 
         def frames(number=60):
             drawn.clear()
-            for _ in range(number):
-                theatre.now += 1 / 30
-                stage.frame()
+            theatre.frames(number)
             return drawn[Stage], drawn[StatusLine], drawn[InsightLine]
 
         frames(-stage._beat % 60 // 2)  # until all text has had its turn
@@ -72,9 +67,9 @@ async def test_a_frame_draws_what_is_due_or_nothing_if_the_terminal_is_behind(mo
         drawn.clear()
         stage.action_pause()
         assert not drawn
-        before = theatre.source.sample.t
+        before = theatre.sample.t
         assert frames() == (0, 0, 0)
-        assert theatre.source.sample.t > before + 1.9
+        assert theatre.sample.t > before + 1.9
 
 
 async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_speed():
@@ -95,7 +90,7 @@ async def test_settings_are_undone_one_after_the_other_and_a_scene_has_its_own_s
         for earlier in reversed(before[:-1]):
             await theatre.press("u")
             assert settings() == earlier
-        assert theatre.source.sample.step == 20
+        assert theatre.sample.step == 20
         await theatre.press("u")  # nothing is left
 
 
@@ -111,17 +106,17 @@ async def test_a_run_that_was_replaced_is_brought_back_where_it_was_and_verifies
         await theatre.run(2)
         await theatre.press("plus")
         await theatre.run(2)
-        before, milestones = theatre.source.sample, theatre.source.milestones
+        before, milestones = theatre.sample, theatre.source.milestones
         for key in ("p", "r"):
             await theatre.press(key)
             await theatre.run(1)
         await theatre.press("u", "u")
-        there = theatre.source.sample
+        there = theatre.sample
         assert without_extremes(there._replace(run=before.run)) == without_extremes(before)
-        assert (theatre.source.scene.name, theatre.source.stepping.h) == ("drift", 0.1)
+        assert (theatre.scene.name, theatre.source.stepping.h) == ("drift", 0.1)
         assert theatre.source.milestones == milestones
         await theatre.run(4)
-        assert theatre.source.sample.t == pytest.approx(before.t + 4, abs=0.11)
+        assert theatre.sample.t == pytest.approx(before.t + 4, abs=0.11)
         assert there.run == 5  # drift, the next, that again, that again, drift again
         theatre.source.close()
     assert verify(path).identical
@@ -139,13 +134,13 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         assert theatre.stage.shown.quantity == "theta_error"
 
         first, over, *_ = [milestone.step for milestone in theatre.source.milestones]
-        listed = theatre.stage.query_one(EventList)
+        listed = theatre.pane(EventList)
         row = next(at for at, line in enumerate(listed.text.splitlines()) if "over the top" in line)
         await theatre.click(listed, 8, row + 1)
-        assert (theatre.source.sample.step, theatre.source.playhead.paused) == (first, True)
+        assert (theatre.sample.step, theatre.playhead.paused) == (first, True)
         for key, step in (("]", over), ("[", first), ("[", 0)):
             await theatre.press(key)
-            assert theatre.source.sample.step == step
+            assert theatre.sample.step == step
         await theatre.click(listed, 5, 4)  # below the last one
         assert theatre.app.screen.title == "Events"
         await theatre.press("escape", "r")
@@ -153,8 +148,8 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         await theatre.pilot.pause()
         assert "run 1;" in theatre.notices[-1]
         await theatre.click("PhasePane", 5, 0)
-        assert (theatre.stage.view, theatre.source.sample.run) == ("phase", 2)
-        pane = theatre.stage.query_one("PhaseView PhasePane")
+        assert (theatre.stage.view, theatre.sample.run) == ("phase", 2)
+        pane = theatre.pane("PhaseView PhasePane")
         pane.failure = "It failed."
         await theatre.press("f2", "f3")
         assert not pane.failure
@@ -165,12 +160,10 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
 
         async def runs(state: str) -> bool:
             await theatre.pilot.pause()
-            step = theatre.source.sample.step
-            for _ in range(6):  # a fifth of a second, after which the line is drawn
-                theatre.now += 1 / 30
-                theatre.stage.frame()
+            step = theatre.sample.step
+            theatre.frames(6)  # a fifth of a second, after which the line is drawn
             assert state in theatre.text(StatusLine)
-            return theatre.source.sample.step > step
+            return theatre.sample.step > step
 
         for opening, paused in (("question_mark", False), ("ctrl+p", False), ("i", True)):
             theatre.source.pause(paused)
@@ -185,13 +178,12 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
         theatre.stage.post_message(Held(None))
         assert await runs("running")
         for gap, played in ((0.99, 0.99), (1.01, 0.0)):  # as after ctrl+z
-            before = theatre.source.playhead.position
-            theatre.now += gap
-            theatre.stage.frame()
-            assert theatre.source.playhead.position - before == pytest.approx(played)
+            before = theatre.playhead.position
+            theatre.frames(seconds=gap)
+            assert theatre.playhead.position - before == pytest.approx(played)
         theatre.now += 0.02
         theatre.stage.action_pause()
-        assert theatre.source.playhead.position - before == pytest.approx(0.02)
+        assert theatre.playhead.position - before == pytest.approx(0.02)
 
 
 async def test_thirty_changes_can_be_undone_and_a_step_takes_the_line_of_its_scene_away():
@@ -258,7 +250,7 @@ async def test_the_last_line_has_what_one_needs_now_each_a_button():
         for column, h in ((row.index("-"), 0.02), (row.index("Step"), 0.01), (end, 0.01)):
             await theatre.click("KeyLine", column, 0)
             assert theatre.source.stepping.h == h
-        assert theatre.source.playhead.paused
+        assert theatre.playhead.paused
 
 
 async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
@@ -266,6 +258,6 @@ async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
         for keys, largest, is_possible in (("nr", 240.0, False), ("n", 60.0, True)):
             await theatre.press(*keys)
             assert theatre.source.stepping.own == (60.0, 60.0, 60.0, largest)
-            runs = theatre.source.sample.run
+            runs = theatre.sample.run
             assert await theatre.stage.start(Scene(h=100.0)) == is_possible
-            assert theatre.source.sample.run == runs + is_possible
+            assert theatre.sample.run == runs + is_possible

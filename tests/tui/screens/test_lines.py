@@ -131,7 +131,7 @@ async def test_the_insight_line_tells_a_failure_before_all_else_and_has_one_row_
     failed = TAPE._replace(failed="/tmp/run.mcap.part: full.")
     monkeypatch.setattr(Live, "recording_status", failed)
     async with lab(size=size) as theatre:
-        line = theatre.stage.query_one(InsightLine)
+        line = theatre.pane(InsightLine)
         for failure, told in (
             (None, "Not recording: run.mcap.part: full."),
             (f"own/e.py: {40 * 'no '}", "e.py: no no"),

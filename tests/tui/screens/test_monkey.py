@@ -103,8 +103,7 @@ async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monk
                 await theatre.pilot.pause(0)
                 while not all(worker.is_finished for worker in app.workers):
                     await theatre.pilot.pause(0.001)
-                theatre.now += strides.choice(STRIDES)
-                theatre.stage.frame()
+                theatre.frames(seconds=strides.choice(STRIDES))
         assert app.is_running
     for path in tmp_path.glob("*.[mp]*"):
         assert path.suffix == ".mcap"

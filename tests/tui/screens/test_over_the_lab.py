@@ -98,13 +98,13 @@ async def test_notices_lie_on_the_insight_line_and_replace_equal_ones(snapshot, 
 async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_work():
     async with lab(size=(50, 12)) as theatre:
         assert "Terminal too small: 50x12, need 60x16" in theatre.text(TooSmall)
-        assert not theatre.stage.query_one(StatusLine).is_on_screen
+        assert not theatre.pane(StatusLine).is_on_screen
         await theatre.press("greater_than_sign")
-        assert theatre.source.playhead.speed == 2
+        assert theatre.playhead.speed == 2
         await theatre.pilot.resize_terminal(80, 24)
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
-        assert not theatre.stage.query_one(TooSmall).is_on_screen
+        assert not theatre.pane(TooSmall).is_on_screen
 
 
 async def test_a_text_is_closed_by_the_key_that_opens_it_and_by_what_closes_other_texts():
@@ -118,7 +118,7 @@ async def test_a_text_is_closed_by_the_key_that_opens_it_and_by_what_closes_othe
             assert isinstance(theatre.app.screen, TextScreen)
             await theatre.press(closing)
             assert theatre.app.screen is theatre.stage
-        assert not theatre.source.playhead.paused
+        assert not theatre.playhead.paused
 
 
 async def test_ctrl_z_stops_the_program_while_the_terminal_is_the_shells_but_not_a_visitors(

@@ -39,7 +39,7 @@ async def test_events_speed_direction_and_space_at_the_end(path):
         await theatre.run(0.5)
         assert replay.playhead.paused
 
-        listed = theatre.stage.query_one(EventList)
+        listed = theatre.pane(EventList)
         row = next(at for at, line in enumerate(listed.text.splitlines()) if "mark 1" in line)
         await theatre.click(listed, 8, row + 1)
         clock, mark = next(event for event in replay.recording.events if event[1].kind == "mark")
@@ -59,8 +59,8 @@ async def test_an_incomplete_recording_is_said_to_be_one(path):
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
     async with player(path) as theatre:
-        pilot, playhead = theatre.pilot, theatre.source.playhead
-        columns = theatre.stage.query_one(SeekBar)._columns
+        pilot, playhead = theatre.pilot, theatre.playhead
+        columns = theatre.pane(SeekBar)._columns
         half = 1 + columns // 2
         for act, widget, column, position in (
             (pilot.mouse_down, "SeekBar", half, 6),
@@ -136,7 +136,7 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
     async with player(path) as theatre:
         theatre.stage.record = lambda live: start_recording(live, path.with_name("new.mcap"))
         await theatre.press("right")
-        replay, here = theatre.source, theatre.source.sample
+        replay, here = theatre.source, theatre.sample
         for key in keys.split():
             await theatre.press(key)
         assert " LIVE " in theatre.text(StatusLine)
@@ -145,12 +145,12 @@ async def test_a_key_that_changes_the_run_goes_on_live_from_there_and_u_leads_ba
         (told,) = [each.message for each in theatre.app._notifications if each.timeout == 8]
         assert told.startswith(said)
         await theatre.press("u")
-        assert (theatre.source, theatre.source.sample) == (replay, here)
+        assert (theatre.source, theatre.sample) == (replay, here)
         assert theatre.notices[-1].startswith("Back")
         assert replay.playhead.paused
         assert path.with_name("new.mcap").exists()
         await theatre.press("u", "right", "full_stop")
-        assert theatre.source.sample.step > here.step  # it is still open
+        assert theatre.sample.step > here.step  # it is still open
     assert path.read_bytes() == before
     assert verify(path.with_name("new.mcap")).identical
 

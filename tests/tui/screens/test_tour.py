@@ -11,7 +11,7 @@ from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.screens.lines import InsightLine, LessonPanel
 from pendu_tui.tui.views.lab import TimeChart
-from tests.tui.harness import FPS, Theatre, lab, on_stage
+from tests.tui.harness import Theatre, lab, on_stage
 
 STEPS = tour().pages
 
@@ -32,15 +32,15 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
         )  # a page shows its own picture, whatever was there
         for number, page in enumerate(STEPS):
             shot = page.shot
-            assert (theatre.stage.view, theatre.source.scene) == (shot.view, page)
+            assert (theatre.stage.view, theatre.scene) == (shot.view, page)
             assert theatre.stage.shown == Shown().through(page)
             assert words(page.watch) in panel(theatre)
             assert f"Tour {number + 1} of {len(STEPS)}: " in panel(theatre)
-            region = theatre.stage.query_one(LessonPanel).region
+            region = theatre.pane(LessonPanel).region
             assert (region.width, region.height, region.bottom) == (60, 6, 15)  # above the key line
             assert max(map(len, theatre.text(LessonPanel).splitlines())) <= 60
-            assert not theatre.stage.query_one(InsightLine).is_on_screen
-            assert shot.view != "lab" or theatre.stage.query_one(TimeChart).size.height >= 5
+            assert not theatre.pane(InsightLine).is_on_screen
+            assert shot.view != "lab" or theatre.pane(TimeChart).size.height >= 5
             assert ("enter end" in panel(theatre)) == (page is STEPS[-1])
             await theatre.press("enter")
             if page is STEPS[-1]:
@@ -54,32 +54,32 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             assert words(shot.truth) in panel(theatre)
             assert "enter go on" in panel(theatre)
             await theatre.press("enter")
-        assert not theatre.stage.query_one(LessonPanel).is_on_screen
-        assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
+        assert not theatre.pane(LessonPanel).is_on_screen
+        assert (theatre.stage.view, theatre.playhead.paused) == ("lab", False)
         await theatre.press("u")
-        assert theatre.source.scene == SCENES["spin"]
+        assert theatre.scene == SCENES["spin"]
 
 
 async def test_leaving_it_restores_view_and_settings_and_u_the_run():
     async with lab(SCENES["spin"]) as theatre:
         await theatre.run(2)
         await theatre.press("enter", "backspace", "1", "greater_than_sign")
-        assert theatre.source.scene == SCENES["spin"]  # its keys do nothing yet
+        assert theatre.scene == SCENES["spin"]  # its keys do nothing yet
         before = theatre.stage.shown
-        t = theatre.source.sample.t
+        t = theatre.sample.t
         await theatre.press("T", "u")  # which does not leave it
-        assert theatre.stage.query_one(LessonPanel).size.height == 4
+        assert theatre.pane(LessonPanel).size.height == 4
         await theatre.click(LessonPanel)  # goes on, as enter does
         assert words(STEPS[0].shot.question) in panel(theatre)
         await theatre.press("enter", "enter", "escape")
-        assert theatre.stage.query_one(InsightLine).is_on_screen
+        assert theatre.pane(InsightLine).is_on_screen
         assert (theatre.stage.view, theatre.stage.shown) == ("lab", before)
-        assert (theatre.source.playhead.speed, theatre.source.playhead.paused) == (2, False)
+        assert (theatre.playhead.speed, theatre.playhead.paused) == (2, False)
         await theatre.press("u")
-        assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
+        assert (theatre.scene, theatre.sample.t) == (SCENES["spin"], t)
         await theatre.press("p")
         names = [*SCENES]
-        assert theatre.source.scene.name == names[names.index("spin") + 1]
+        assert theatre.scene.name == names[names.index("spin") + 1]
         await theatre.press("T")
         assert words(STEPS[1].watch) in panel(theatre)
 
@@ -99,10 +99,9 @@ async def test_the_command_begins_with_it_unless_its_options_alter_the_scene():
     async with guided(tour(), STEPS[0].altered(h=0.1)) as theatre:
         assert not theatre.stage.is_guided
     async with guided(tour(), STEPS[0]) as theatre:
-        assert theatre.source.sample.run == 1
-        while not theatre.source.playhead.paused:
-            theatre.now += 1 / FPS
-            theatre.stage.frame()
+        assert theatre.sample.run == 1
+        while not theatre.playhead.paused:
+            theatre.frames()
             assert theatre.now < 30
         assert words(STEPS[0].shot.question) in panel(theatre)
 

@@ -8,7 +8,7 @@ from tests.tui.harness import lab
 
 async def test_a_head_under_the_pointer_says_what_it_means():
     async with lab() as theatre:
-        shown = theatre.stage.query_one(ErrorTable)
+        shown = theatre.pane(ErrorTable)
         head = theatre.text(ErrorTable).splitlines()[0]
         first, second = shown._head[:2]
         for at, name in ((len(first) - 1, first), (len(first), second)):

@@ -47,10 +47,10 @@ async def test_a_view_that_a_scene_cannot_have_says_why_until_there_is_a_pendulu
         await theatre.press(key_of(view))
         await theatre.run(0.2)
         assert " ".join(theatre.text(pane).split()) == STIFF.why_not_mapped
-        assert theatre.stage.query_one(pane).settled
+        assert theatre.pane(pane).settled
         await theatre.press("right", "enter", "tab")
         await theatre.click(pane, 12, 4)
-        assert theatre.source.scene == STIFF
+        assert theatre.scene == STIFF
         theatre.source.start(SCENES["gentle"])
         await theatre.run(0.5)
         assert "Maps and studies are for" not in theatre.text(pane)

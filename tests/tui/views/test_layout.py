@@ -20,10 +20,10 @@ from tests.tui.harness import lab
 async def test_a_click_on_an_event_goes_there_and_beside_them_opens_all():
     async with lab(size=(90, 32)) as theatre:
         await theatre.run(8)
-        listed = theatre.stage.query_one(EventList)
+        listed = theatre.pane(EventList)
         assert listed.text.splitlines()[1] == " 7.15 s Explicit Euler over th…"
         await theatre.click(listed, 8, 2)
-        assert theatre.source.sample.t == pytest.approx(7.15)
+        assert theatre.sample.t == pytest.approx(7.15)
         for row in (0, 3):  # on the border, and below the last one
             await theatre.click(listed, 5, row)
             assert theatre.app.screen.title == "Events"

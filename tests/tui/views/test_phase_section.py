@@ -20,7 +20,7 @@ async def section_of(theatre, *keys: str) -> SectionPane:
     """The pane with a section that is complete, after these keys."""
     await theatre.press("f3", *keys)
     await theatre.run(0.2)
-    pane = theatre.stage.query_one(SectionPane)
+    pane = theatre.pane(SectionPane)
     await until(theatre.pilot, lambda: pane.shown.section and pane.settled)
     pane.draw()
     return pane

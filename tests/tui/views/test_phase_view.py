@@ -36,7 +36,7 @@ def plot(pane) -> list[str]:
 
 
 def state(theatre):
-    return theatre.source.scene.theta, theatre.source.scene.omega
+    return theatre.scene.theta, theatre.scene.omega
 
 
 async def test_a_click_in_the_lab_starts_all_there_with_the_step_in_force_and_u_takes_it_back():
@@ -45,10 +45,10 @@ async def test_a_click_in_the_lab_starts_all_there_with_the_step_in_force_and_u_
         await theatre.press("plus", "n")  # at equal cost: of the cheapest
         expected = shown(theatre).viewport.at_cell(40, 3)
         await theatre.pilot.click(shown(theatre), offset=(41 + LEFT, 4))
-        assert (*state(theatre), theatre.source.scene.h) == (*expected, 0.1)
-        assert all((r.theta, r.omega) == tuple(expected) for r in theatre.source.sample.readings)
+        assert (*state(theatre), theatre.scene.h) == (*expected, 0.1)
+        assert all((r.theta, r.omega) == tuple(expected) for r in theatre.sample.readings)
         await theatre.press("u")
-        assert theatre.source.scene == DRIFT.altered(h=0.05)
+        assert theatre.scene == DRIFT.altered(h=0.05)
         assert theatre.stage.view == "lab"
         await theatre.click(shown(theatre), 5, 0)  # the title
         assert theatre.stage.view == "phase"
@@ -71,7 +71,7 @@ async def test_the_pointer_is_described_with_its_orbit_and_letting_go_inside_sta
         await theatre.pilot.hover(offset=(0, 0))
         await theatre.pilot.mouse_up(offset=(0, 0))
         assert plot(pane) == plain
-        assert theatre.source.scene == DRIFT
+        assert theatre.scene == DRIFT
         expected = pane.viewport.at_cell(33 - LEFT, 6)
         x, y = pane.content_region.offset
         for kind, at in (
@@ -95,7 +95,7 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
         # a round number within half a dot of the dot beside the start's
         assert viewport.x(pane.cursor.theta) == pytest.approx(viewport.x(1.0) + 4, abs=0.5)
         await theatre.press("escape", "enter")
-        assert (plot(pane), theatre.source.scene) == (plain, DRIFT)
+        assert (plot(pane), theatre.scene) == (plain, DRIFT)
         await theatre.press("left", "up")
         expected = tuple(pane.cursor)
         await theatre.press("z")  # around the crosshair, which is then in the middle
@@ -129,7 +129,7 @@ async def test_the_wheel_zooms_around_the_pointer():
 async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
     async with phase_view(Scene(omega=9e8)) as (theatre, pane):
         await theatre.click(pane, 20, 1)
-        assert theatre.source.scene.omega == 9e8
+        assert theatre.scene.omega == 9e8
         assert "out of range" in theatre.notices[0]
 
 
@@ -148,7 +148,7 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         )
         assert pane.ring.area_ratios == expected.area_ratios
         theatre.stage.show_now()
-        table = theatre.stage.query_one(AreaTable)
+        table = theatre.pane(AreaTable)
         head, _, symplectic, _, rk4 = table.text.splitlines()
         assert "theta error  area/area0   theta [rad]" in head
         assert any(area in symplectic for area in (" 1 + ", " 1 - ", " 1 "))  # but for rounding

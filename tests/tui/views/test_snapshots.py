@@ -105,8 +105,8 @@ async def test_panes_after_keys_and_pointers(snapshot):
             theatre.source.step(1)
             theatre.source.mark()
         await note("springs")
-        assert theatre.stage.query_one(EventList)._picture.rows[-1][0][1] == TEXT
-        stage = theatre.stage.query_one(Stage)
+        assert theatre.pane(EventList)._picture.rows[-1][0][1] == TEXT
+        stage = theatre.pane(Stage)
         before = stage.text
         theatre.source.start(SCENES["drift"])
         stage.draw()  # as the pointer asks for it before the next frame

@@ -75,7 +75,7 @@ def test_small_swings_are_enlarged_to_23_to_46_degrees_as_the_stage_is_wide(room
 
 def on_lane(theatre, place):
     """The cell of the stage in which a method's lane is at its lowest."""
-    stage = theatre.stage.query_one(Stage)
+    stage = theatre.pane(Stage)
     bobs, look = stage._drawn
     found = lanes(*stage.room, len(bobs), look.widest, look.rigid)
     x, y = found.point(found.radii[place], 0.0)
@@ -84,7 +84,7 @@ def on_lane(theatre, place):
 
 async def grabbed(theatre, *moves, start=(12, 9), wait=0.3):
     """Drag the stage over these cells of it, wait, and let it go."""
-    stage = theatre.stage.query_one(Stage)
+    stage = theatre.pane(Stage)
     await theatre.pilot.mouse_down(stage, offset=start)
     for move in moves:
         await theatre.pilot.hover(stage, offset=move)
@@ -102,20 +102,20 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
     """As one step of undo."""
     async with lab() as theatre:
         await theatre.run(2)
-        before = theatre.source.sample
+        before = theatre.sample
         # two dots right of the pivot and two below
         _, table = await grabbed(theatre, (30, 9), (23, 12), start=(22, 12))
         assert table.count("+0.785") == 4
-        scene = theatre.source.scene
+        scene = theatre.scene
         assert (scene.theta, scene.omega) == (0.785, 0.0)
         assert [event.kind for event in theatre.source.events] == ["start", "start"]
         await theatre.press("u")
-        assert theatre.source.scene == SCENES["drift"]
-        assert theatre.source.sample.step == before.step
+        assert theatre.scene == SCENES["drift"]
+        assert theatre.sample.step == before.step
         for click, drag in (((14, 9), (15, 9)), ((12, 10), (12, 11)), ((12, 9), (60, 9))):
             assert (await grabbed(theatre, click, wait=0))[0] is None
             assert (await grabbed(theatre, drag, wait=0))[0] is not None
-        stage = theatre.stage.query_one(Stage)
+        stage = theatre.pane(Stage)
         for columns, below in ((36, "drag: throw it · dotted: exact"), (35, "drag: throw it")):
             stage.room = Size(columns, 20)
             stage.draw()
@@ -125,33 +125,33 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
     async with lab() as theatre:
         theatre.source.set_speed(2.0)
-        theatre.stage.query_one(Stage)._throw([(0.9, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        theatre.pane(Stage)._throw([(0.9, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
         await theatre.pilot.pause()
-        scene = theatre.source.scene
+        scene = theatre.scene
         assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
-        theatre.stage.query_one(Stage)._throw([(0.0, 0.0), (1e-4, -1.0)], 0.01)
+        theatre.pane(Stage)._throw([(0.0, 0.0), (1e-4, -1.0)], 0.01)
         await theatre.pilot.pause()
-        scene = theatre.source.scene
+        scene = theatre.scene
         assert scene.omega == pytest.approx(-5 * scene.w0, abs=0.01)  # the terminal was late
-        theatre.stage.query_one(Stage)._throw([(0.0, 3.1), (0.05, -3.1)], 0.06)  # over the top
+        theatre.pane(Stage)._throw([(0.0, 3.1), (0.05, -3.1)], 0.06)  # over the top
         await theatre.pilot.pause()
-        assert theatre.source.scene.omega == pytest.approx(0.83)
+        assert theatre.scene.omega == pytest.approx(0.83)
 
 
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.click(Stage, *on_lane(theatre, 2)[1], button=3)
-        below = theatre.stage.query_one(Stage).size.height - 1
+        below = theatre.pane(Stage).size.height - 1
         await theatre.click(Stage, 1, below)  # far off
         assert not theatre.stage.shown.hidden
         for place in (2, 0):
             stage, cell = on_lane(theatre, place)
             await theatre.click(stage, *cell)
             await theatre.run(0.1)
-            assert theatre.stage.shown.places(theatre.source.scene.cast) == [place]
-            assert theatre.source.sample.run == 1
-            assert stage.border_title == theatre.source.scene.cast[place].label
+            assert theatre.stage.shown.places(theatre.scene.cast) == [place]
+            assert theatre.sample.run == 1
+            assert stage.border_title == theatre.scene.cast[place].label
             await theatre.click(stage, *on_lane(theatre, 0)[1])
             await theatre.run(0.1)
             assert not theatre.stage.shown.hidden
