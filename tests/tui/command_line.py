@@ -64,6 +64,14 @@ def pendu(*arguments: object) -> Outcome:
         return Outcome(code, out.getvalue().decode(), err.getvalue().decode())
 
 
+def link(path: Path, target: Path | str) -> None:
+    """Make a symbolic link, or skip the test where there are none."""
+    try:
+        path.symlink_to(target)
+    except OSError:
+        pytest.skip("needs symbolic links")
+
+
 def shortened(text: str) -> str:
     """Round long numbers, of which the last digits depend on the machine."""
     digits = r"(?<!x)\b\d+\.\d{12,}(e[-+]\d+)?"

@@ -44,6 +44,14 @@ def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.Monk
 
 
 @pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, which is that of the recordings, too."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
 def uncomputed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Views get no results."""
 

@@ -18,12 +18,11 @@ SOURCE = EULER.format(name="kick_drift") + EULER.format(name="rk4")
 
 
 @pytest.fixture
-def mine(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
-    (tmp_path / "long.py").write_text(SOURCE + "#" * 30_000)
-    (tmp_path / "binary.py").write_bytes(b"\xff")
-    (tmp_path / "once.py").write_text("def once(force, phase, h):\n    yield phase")
+def mine(here):
+    (here / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
+    (here / "long.py").write_text(SOURCE + "#" * 30_000)
+    (here / "binary.py").write_bytes(b"\xff")
+    (here / "once.py").write_text("def once(force, phase, h):\n    yield phase")
 
 
 def cast_from(*arguments: str) -> Cast:

@@ -7,7 +7,6 @@ import os
 import signal
 import sys
 import time
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from signal import SIGINT, SIGTERM
@@ -20,7 +19,7 @@ from pendu_tui.tui.cli.dispatch import main, repeat_swallowed_interrupts
 from pendu_tui.tui.cli.errors import explained
 from pendu_tui.tui.cli.files import stop_requests, text_file, whole_file
 from pendu_tui.tui.cli.options import resolve
-from tests.tui.command_line import needs_signals, pendu
+from tests.tui.command_line import link, needs_signals, pendu
 
 EXPORT = ("export", "drift", "-o")
 
@@ -116,10 +115,9 @@ def test_an_error_of_a_file_comes_with_advice(number, advice):
 
 
 def test_a_recording_is_a_file_or_a_bundled_one_or_the_latest_or_another_of_the_library(
-    tmp_path, monkeypatch
+    here, monkeypatch
 ):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(library := tmp_path / "library"))
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(library := here / "library"))
     for folder in ("library", "drift"):  # which hides no file
         Path(folder).mkdir()
     for name, suggestion in (("latest", "file, or one of changes"), ("drfit", "mean drift?")):
@@ -183,27 +181,18 @@ def test_a_text_has_the_same_bytes_on_every_system(tmp_path):
         "run --time 1 --method one.py:mine --record one.py --force",
     ],
 )
-def test_no_output_replaces_an_input_even_with_force(tmp_path, monkeypatch, command):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+def test_no_output_replaces_an_input_even_with_force(here, command):
     for name in ("one.toml", "one.py", "one.csv"):
         Path(name).write_text("theta = 1.0\n", encoding="utf-8")
     Path("one.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes()[:-500])
     Path("hard.mcap").hardlink_to("one.mcap")
     if "link.mcap" in command:
-        with suppress(OSError):
-            Path("link.mcap").symlink_to("one.mcap")
-        if not Path("link.mcap").is_symlink():
-            pytest.skip("needs symbolic links")
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+        link(Path("link.mcap"), "one.mcap")
+    before = {path.name: path.read_bytes() for path in here.iterdir()}
     assert pendu(*command.split()).refused(2, "is read by this command")
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == before
 
 
 def test_a_loop_of_links_is_an_ordinary_error(tmp_path):
-    loop = tmp_path / "loop"
-    with suppress(OSError):
-        loop.symlink_to(loop)
-    if not loop.is_symlink():
-        pytest.skip("needs symbolic links")
+    link(loop := tmp_path / "loop", loop)
     assert pendu("judge", loop).refused(3, "loop")

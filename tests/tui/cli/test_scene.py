@@ -110,14 +110,13 @@ def test_it_may_begin_with_a_byte_order_mark_and_give_angles_in_degrees(mine):
     assert read_scene(mine, "\ufefftheta = '180deg'").theta == math.pi
 
 
-def test_methods_of_ones_own_lie_beside_the_file(tmp_path, monkeypatch):
-    own_method(tmp_path)
-    monkeypatch.chdir(tmp_path)
+def test_methods_of_ones_own_lie_beside_the_file(here, monkeypatch):
+    own_method(here)
     scene = read_scene(Path("mine.toml"), 'methods = ["rk4", "my methods.py:mine"]')
     assert [method.key for method in scene.cast] == ["rk4", "mine"]
     saved = scene_text(scene)
     monkeypatch.chdir("/")
-    assert read_scene(tmp_path / "elsewhere.toml", saved).cast[1].key == "mine"
+    assert read_scene(here / "elsewhere.toml", saved).cast[1].key == "mine"
 
 
 LECTURE = """

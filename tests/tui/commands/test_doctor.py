@@ -1,12 +1,11 @@
 import re
-from contextlib import suppress
 from importlib.metadata import PackageNotFoundError
 from types import SimpleNamespace
 
 import pytest
 
 from pendu_tui.tui.commands import doctor
-from tests.tui.command_line import pendu
+from tests.tui.command_line import link, pendu
 
 
 def findings() -> dict[str, dict[str, str]]:
@@ -22,13 +21,10 @@ def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_te
 
 
 @pytest.mark.parametrize("folder", ["file", "file/below", "lost link"])
-def test_it_explains_a_folder_of_recordings_that_cannot_be_used(folder, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "file").touch()
-    with suppress(OSError):
-        (tmp_path / "lost link").symlink_to("nowhere")
-    if folder == "lost link" and not (tmp_path / folder).is_symlink():
-        pytest.skip("needs symbolic links")
+def test_it_explains_a_folder_of_recordings_that_cannot_be_used(folder, here, monkeypatch):
+    (here / "file").touch()
+    if folder == "lost link":
+        link(here / folder, "nowhere")
     monkeypatch.setenv("PENDU_RECORDINGS", folder)
     found = findings()["recordings"]
     assert found["found"].replace("\\", "/") == folder

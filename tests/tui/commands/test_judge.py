@@ -18,6 +18,7 @@ from pendu_tui.tui.cli.tables import Wanted
 from pendu_tui.tui.commands import judge as command
 from tests.tui.command_line import pendu, shortened
 
+pytestmark = pytest.mark.usefixtures("here")
 ROWS = [(n / 10, 100 + math.sin(n)) for n in range(300)]
 
 
@@ -26,11 +27,6 @@ def lines(form: str, rows: list[tuple[float, float]] = ROWS) -> str:
 
 
 TABLE = "t,E\n" + lines("{t},{e}")
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
 
 
 FIRST = [(t, e - 9) for t, e in ROWS[:200]]

@@ -62,12 +62,11 @@ def test_labs_that_begin_at_once_record_under_names_of_their_own(tmp_path, monke
     assert sorted(each.name for each in path.parent.iterdir()) == ["now-2.mcap", "now.mcap"]
 
 
-def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(tmp_path, monkeypatch):
+def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(here, monkeypatch):
     async def still(*asked):
         return str(asked)
 
     monkeypatch.setattr(lab, "still", still)
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLORFGBG", "0;15")  # which is light
     picture = ("snapshot", "spin", "--time", 3, "--size", "60x16", "--pixels", "half")
     assert pendu(*picture).code == 0
@@ -106,11 +105,8 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     monkeypatch.setattr(lab, "own_methods", lambda options: options.method)
     monkeypatch.setattr(lab, "remember", methods.append)
     monkeypatch.setattr("pendu_tui.tui.cli.watchdog.watch_calls_in_c", bool)
-    monkeypatch.setattr("pendu_tui.tui.commands.lab.check_terminal", lambda: None)
-    monkeypatch.setattr(
-        "pendu_tui.tui.commands.lab.show",
-        lambda screen, options: screens.append(screen) or 0,
-    )
+    monkeypatch.setattr(lab, "check_terminal", lambda: None)
+    monkeypatch.setattr(lab, "show", lambda screen, options: screens.append(screen) or 0)
     looping = ("--loop", "--paused", "--start-at", 3, "--speed", 2, "--no-record")
     replay = ("replay", "drift", *looping)
     gc.enable()
@@ -142,16 +138,13 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
         source.close()
 
 
-def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(
-    tmp_path, monkeypatch
-):
+def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(here, monkeypatch):
     told = []
 
     def tell(source, say, _, lesson):
         assert say.keywords == {"flush": True}
         told.append((source.recorder is not None, lesson is not None))
 
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     monkeypatch.setattr(lab, "tell", tell)
     for command in ("live", "live --no-record", "tour --no-record"):
         assert pendu(*command.split(), "--plain").code == 0

@@ -16,13 +16,12 @@ from tests.tui.command_line import pendu
 
 
 @pytest.fixture
-def library(tmp_path, monkeypatch):
+def library(here):
     """Three recordings of known age: c is the newest."""
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     for age, name in enumerate("cba"):
-        path = record(tmp_path / f"{name}.mcap", two_runs())
+        path = record(here / f"{name}.mcap", two_runs())
         os.utime(path, (1e9 - age, 1e9 - age))
-    return tmp_path
+    return here
 
 
 @pytest.fixture
@@ -47,9 +46,9 @@ def test_show_tabulates_so_many_runs_at_most(most, more, whole, monkeypatch):
 
 
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
-    whole, tmp_path, monkeypatch
+    whole, here, monkeypatch
 ):
-    out = tmp_path / "saved.mcap"
+    out = here / "saved.mcap"
     recover = ("recordings", "recover", whole, "-o", out)
     whole.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     answer = pendu(*recover, "--json").json
@@ -58,11 +57,9 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(
     assert pendu(*recover).refused(5, "exists", "--force")
     assert out.read_bytes() == saved
     assert f"{answer['samples_kept']} samples saved; 0 " in pendu(*recover, "--force").out
-    again = pendu("recordings", "recover", out, "-o", tmp_path / "again.mcap")
+    again = pendu("recordings", "recover", out, "-o", here / "again.mcap")
     assert "it was complete" in again.out
     saved = out.read_bytes()
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    monkeypatch.chdir(tmp_path)
     itself = ("recordings", "recover", "saved", "-o", "saved.mcap", "--force")
     assert pendu(*itself).refused(2, "another name")
     lost = {"samples_kept": 1, "entries_lost": 3, "runs_lost": 1, "reason": None, "out": "new"}

@@ -29,11 +29,9 @@ from tests.tui.command_line import own_method, pendu
         ("export a", 10, 4.0),
     ],
 )
-def test_the_progress_is_shown_to_the_end(command, count, whole, tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
-    monkeypatch.chdir(tmp_path)
-    Path(own_method(tmp_path).removesuffix(":mine")).rename("mine.py")
-    record(tmp_path / "a.mcap", two_runs())
+def test_the_progress_is_shown_to_the_end(command, count, whole, here, monkeypatch):
+    Path(own_method(here).removesuffix(":mine")).rename("mine.py")
+    record(here / "a.mcap", two_runs())
     shown = []
     show = nullcontext(lambda *done: shown.append(done))
     monkeypatch.setattr(f"pendu_tui.tui.commands.{command.split()[0]}.progress", lambda _: show)

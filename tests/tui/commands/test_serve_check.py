@@ -133,7 +133,7 @@ def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
     assert pendu("serve").refused(2, "install", "serve needs")
 
 
-def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path, monkeypatch):
+def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(here, monkeypatch):
     told = []
 
     class Server:
@@ -145,14 +145,13 @@ def test_each_tab_is_told_the_scene_its_look_and_a_folder_that_is_made(tmp_path,
             if len(told) > 2:
                 raise OverflowError("no such port.")
 
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(serve, "LabServer", Server)
-    own = ("--methods", "rk4", "--method", own_method(tmp_path))
+    own = ("--methods", "rk4", "--method", own_method(here))
     line = ("serve", "spin", *own, "--theme", "light", "--record", "folder", "--port", 0)
     assert [pendu(*line).code for _ in range(2)] == [130, 130]
     scene, look, folder, settings = told[0]
     assert [method.key for method in scene.cast] == ["rk4", "mine"]
-    assert (scene.name, look, folder) == ("spin", TerminalOptions("light"), tmp_path / "folder")
+    assert (scene.name, look, folder) == ("spin", TerminalOptions("light"), here / "folder")
     assert not settings.exists()
     assert pendu(*line).refused(2, "cannot listen on 127.0.0.1 port 0: no such port; use")
 

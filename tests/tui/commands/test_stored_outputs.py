@@ -63,15 +63,14 @@ export {FOLDER}/spring.mcap
 
 
 @pytest.fixture
-def library(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+def library(here, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
-    record(tmp_path / "a.mcap", two_runs())
-    record(tmp_path / "b.mcap", altered(two_runs(), 3, 2, omega=-5.0))
-    cut = record(tmp_path / "cut.mcap", two_runs())
+    record(here / "a.mcap", two_runs())
+    record(here / "b.mcap", altered(two_runs(), 3, 2, omega=-5.0))
+    cut = record(here / "cut.mcap", two_runs())
     cut.write_bytes(cut.read_bytes()[:-40])
-    (tmp_path / "killed.mcap.part").write_bytes(cut.read_bytes())
-    return tmp_path
+    (here / "killed.mcap.part").write_bytes(cut.read_bytes())
+    return here
 
 
 def test_outputs(snapshot, library):

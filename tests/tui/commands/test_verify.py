@@ -37,12 +37,11 @@ COMMANDS = (
 
 @pytest.mark.parametrize("name", ["empty.mcap", "cut.mcap", 300 * "x"], ids=len)
 @pytest.mark.parametrize("command", COMMANDS)
-def test_what_is_not_a_recording_is_one_sentence_and_exit_3(command, name, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "empty.mcap").touch()
-    (tmp_path / "cut.mcap").write_bytes(b"\x89MCAP0\r\n")
+def test_what_is_not_a_recording_is_one_sentence_and_exit_3(command, name, here):
+    (here / "empty.mcap").touch()
+    (here / "cut.mcap").write_bytes(b"\x89MCAP0\r\n")
     assert pendu(*command.replace("FILE", name).split()).refused(3, name)
-    assert len([*tmp_path.iterdir()]) == 2
+    assert len([*here.iterdir()]) == 2
 
 
 def test_a_method_of_ones_own_that_no_recording_has_is_named(whole, tmp_path, monkeypatch):

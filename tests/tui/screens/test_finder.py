@@ -57,8 +57,7 @@ async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
         assert row.endswith("  + │")
 
 
-async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+async def test_what_is_found_is_done_by_enter_or_by_a_click(here):
 
     async def do(words, *keys):
         await found(theatre, words)
@@ -79,9 +78,9 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(tmp_path, monkeypatc
         assert not re.search("[⠁-⣿]", theatre.app.export_screenshot())
         await theatre.press("e", "1", "-", "n", "b")
         await do("scene file")
-        await until(theatre.pilot, (tmp_path / "scene.toml").exists)
+        await until(theatre.pilot, (here / "scene.toml").exists)
         stepping = theatre.source.stepping
-        (scene,) = read_scenes(tmp_path / "scene.toml").values()
+        (scene,) = read_scenes(here / "scene.toml").values()
         assert (scene.h, scene.cast) == (stepping.smallest, SCENES["crossover"].cast)
         assert scene.shot.equal_cost
         front = [scene.cast[place].key for place in theatre.stage.shown.places(scene.cast)]

@@ -74,16 +74,15 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
     [partial(Live, DEFAULT_SCENE), lambda clock: Replay(Recording.open(resolve("drift")), clock)],
     ids=["live", "replay"],
 )
-async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monkeypatch, source):
+async def test_random_events_do_no_harm_and_the_recordings_verify(here, monkeypatch, source):
     few = ladder(5.0, 0.2, 0.05, 2)
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     monkeypatch.setattr("pendu_tui.tui.views.accuracy.usual", lambda scene, all: (5.0, few))
     monkeypatch.setattr("pendu_tui.tui.views.stability.PASSES", (2, 6))
     monkeypatch.setattr(PenduApp, "exit", lambda self, code=0: None)  # q and ctrl+c are found, too
 
     def make(clock):
         screen = LabScreen(source(clock=itertools.count(0.0, LOOK).__next__), clock)
-        screen.record = lambda live: live.record(LiveRecorder(new_path(tmp_path)))
+        screen.record = lambda live: live.record(LiveRecorder(new_path(here)))
         return screen
 
     parser = XTermParser()
@@ -105,6 +104,6 @@ async def test_random_events_do_no_harm_and_the_recordings_verify(tmp_path, monk
                     await theatre.pilot.pause(0.001)
                 theatre.frames(seconds=strides.choice(STRIDES))
         assert app.is_running
-    for path in tmp_path.glob("*.[mp]*"):
+    for path in here.glob("*.[mp]*"):
         assert path.suffix == ".mcap"
         assert verify(path).identical

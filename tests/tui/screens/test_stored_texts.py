@@ -40,9 +40,8 @@ def words(theatre: Theatre) -> list[str]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has ctrl+z in the help, and / in names")
 @pytest.mark.usefixtures("uncomputed")
-async def test_a_walk_over_the_keys(snapshot, monkeypatch, tmp_path):
+async def test_a_walk_over_the_keys(snapshot, here):
     """After each key the lines that it has changed."""
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     texts: list[str] = []
     before: list[str] = []
     async with lab(size=(120, 40)) as theatre:
@@ -53,4 +52,4 @@ async def test_a_walk_over_the_keys(snapshot, monkeypatch, tmp_path):
             now = words(theatre)
             texts += ["", f"[{key}]", *(line for line in now if line not in before)]
             before = now
-    snapshot("walk.txt", "\n".join(texts).replace(str(tmp_path), "FOLDER") + "\n")
+    snapshot("walk.txt", "\n".join(texts).replace(str(here), "FOLDER") + "\n")
