@@ -44,22 +44,6 @@ def test_a_target_that_no_method_reaches_is_reported():
     assert "not within 20000000 evaluations" in pendu(*asked).out
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--h-values", "0.2:0.1"], ["not a list of up to 1000 step sizes", "0.2:0.001:10"]),
-        (["--methods", "taylor_20"], ["--cost seconds"]),
-        (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
-        (["--target", "10", "--time", "1"], ["a target of 10", "less than 1"]),
-        (["--theta", "0"], ["at rest", "no error to measure"]),
-        (["--workers", "2", "--cost", "seconds"], ["measured in this process"]),
-        (["--dask", "tcp://x:1", "--cost", "seconds"], ["measured in this process"]),
-    ],
-)
-def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
-    assert pendu("accuracy", *arguments).refused(2, *words)
-
-
 @pytest.mark.parametrize(("ends", "word"), [("1e9:0.1", "1e+09"), ("0.1:1e-12", "1e-12")])
 def test_an_absurd_step_size_is_refused_before_any_is_tried(ends, word, tmp_path, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.accuracy.measured_point", None)

@@ -144,24 +144,6 @@ def test_what_cannot_be_judged_is_one_sentence(data, names, code, words):
     assert outcome.refused(code, "energies.csv", words)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ("--temperature 0 --atoms 9", "--temperature"),
-        ("--temperature 5", "belongs to --atoms"),
-        ("--step 0.5fs --units time=ps", "--step already gives the unit of time; leave time= out"),
-        ("again.csv --steps 1,1", "not all the same"),
-        ("again.csv --steps 1,2,3", "one for each"),
-        ("again.csv", "several files need --steps"),
-        ("--steps 1", "not all the same"),
-        ("--fail-if 'rk4.verdict == grows'", "is not understood"),
-        ("--fail-if 'theta_error > 1'", "no field 'theta_error'"),
-    ],
-)
-def test_options_that_make_no_sense_are_refused_before_a_file_is_read(options, words):
-    assert pendu("judge", "absent.csv", *shlex.split(options)).refused(2, words)
-
-
 def test_stdin_is_read_where_it_is_open():
     Path("energies.csv").write_text(TABLE)
     stdin = os.dup(0)

@@ -65,8 +65,3 @@ def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path):
 )
 def test_the_gate_of_a_right_method_passes(method, gate, code):
     assert pendu("methods", method, "--fail-if", gate).code == code
-
-
-@pytest.mark.parametrize("expression", ["verdict == grows", "symplectic < 1", "symplectic == no_"])
-def test_a_gate_that_cannot_be_is_refused(expression):
-    assert pendu("methods", "--fail-if", expression).refused(2, "--fail-if")

@@ -104,11 +104,6 @@ def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
     assert not (tmp_path / "nothing").exists()
 
 
-@pytest.mark.parametrize("words", ["list a", "show", "show a -o b", "recover a", "-o b"])
-def test_each_verb_takes_its_own_files(words):
-    assert pendu("recordings", *words.split()).refused(2, "use recordings, recordings show FILE")
-
-
 @pytest.mark.parametrize(("names", "listed"), [("km", "k, m"), ("kmn", "k, 2 more")])
 def test_of_many_scenes_the_first_is_named(names, listed, library):
     with Recorder(library / "tour.mcap") as recorder:

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from pendu_tui.engine.methods import GENERAL
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
@@ -62,25 +61,6 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
     assert pendu(*run, "--force", "--sample-every", 50).code == 0
     with Recording.open(path) as recording:
         assert recording.samples == 1 + 250 / 50
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ("--time 1 --length -1", ["length"]),
-        ("--time 0.01", ["shorter than one step"]),
-        ("--time 2 --h 0.05,5", ["--time 2", "5 s"]),
-        ("--time 1e9", ["out of range", "below 1e+09"]),
-        ("--time 1 --fail-if rk5.theta>1", ["--fail-if", "rk5"]),
-        ("", ["--time is missing"]),
-        ("--h 0", ["h = 0 s"]),
-        (f"--time 1 --methods {','.join(m.key for m in GENERAL)}", ["at most 6"]),
-        ("--time 1 --theta 1,2", ["--record", "one run"]),
-    ],
-)
-def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
-    assert pendu("run", "--record", tmp_path / "x.mcap", *arguments.split()).refused(2, *words)
-    assert not list(tmp_path.iterdir())
 
 
 def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():

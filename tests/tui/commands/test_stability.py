@@ -17,19 +17,6 @@ def test_a_file_holds_what_its_form_prints(tmp_path):
     assert pendu(*small, "--json").out == file.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--theta-values", "4"), ("--theta-values", "3.14159")),
-        (("--z-values", "1,1000"), ("--z-values", "below 1000")),
-        (("--steps", "3000000000"), ("--steps", "2.14748e+09")),
-        (("--scene", "linear"), ("linear oscillator", "pendu-tui methods")),
-    ],
-)
-def test_impossible_values_are_refused_in_one_sentence(arguments, words):
-    assert pendu("stability", *arguments).refused(2, *words)
-
-
 def test_a_start_that_is_no_amplitude_is_given_one():
     def out(*start):
         return pendu("stability", *start, "--methods", "verlet", "--steps", 20).out
