@@ -70,7 +70,7 @@ def test_a_method_takes_the_step_in_its_own_parts(index):
     assert ours[:5] == own[:5]
 
 
-def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
+def test_a_method_diverges_at_a_part_of_a_step_keeps_its_last_phase_and_others_go_on():
     def doubling(force, phase, h):
         theta, omega = phase
         while True:
@@ -81,11 +81,16 @@ def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
     lockstep = Lockstep(replace(DEFAULT_SCENE, omega=3.0, cast=cast), judged=True)
     lockstep.set_stepping(Stepping(0.2, True, cast))
     lockstep.advance(1000)
-    at = lockstep.sample().readings[0].diverged_at
+    frozen, other = lockstep.sample().readings
+    alone = Lockstep(replace(lockstep.scene, cast=cast[1:], h=0.2))
+    alone.advance(1000)
+    assert (other,) == alone.sample().readings
+    at = frozen.diverged_at
     parts = round(at / 0.05)
     assert at == parts * 0.05
     (failed,) = (each for each in lockstep.milestones if each.kind == "failed")
     assert (failed.step, failed.t) == (math.ceil(parts / 4), at)
+    assert frozen.omega == 2.0 ** (parts + 1)
     # where omega²/2 leaves the range
     assert (2.0 ** (parts + 1)) ** 2 / 2 < 1e300 < (2.0 ** (parts + 2)) ** 2
     assert parts % 4 == 1  # it fails in the first part of a step
