@@ -61,12 +61,8 @@ def truths():
             yield by_key[key], start, z, letter
 
 
-Course = list[tuple[str, int, float]]
-"""Verdicts in order, each with its step and time [periods]."""
-
-
 def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int):
-    """Return the verdicts on a method."""
+    """Return the verdicts on a method in order, each with its step and time [periods]."""
     period = scene.exact().period or math.tau / scene.w0
     lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops, judged=True)
     lockstep.advance(steps)
@@ -77,7 +73,7 @@ def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int):
     ]
 
 
-def is_true(letter: str, course: Course):
+def is_true(letter: str, course: list[tuple[str, int, float]]):
     """Return whether the truth allows these verdicts; none are always allowed."""
     words = [verdict for verdict, *_ in course if verdict != "undecided"]
     distinct = tuple(word for word, _ in groupby(words))

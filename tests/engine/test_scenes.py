@@ -221,10 +221,6 @@ def late_energy(measure):
     return lambda track: measure(1 + track.late(track.error))
 
 
-def late_turns_a_step(track):
-    return abs(track.late(track.omega)).mean() * track.scene.h / math.tau
-
-
 NEVER = (math.inf, math.inf)
 _Z2 = SCENES["gentle"].z ** 2
 FACTS = {  # seconds, steps from a sample to the next, and what of which method is between what
@@ -266,7 +262,7 @@ FACTS = {  # seconds, steps from a sample to the next, and what of which method 
         (lambda track: max(track.t[abs(track.error) < 0.091]), RK4, 33, 33.5),
     ]),
     "euler-caught": (600, 10, [(late_energy(min), EXPLICIT, 100, 110), (late_energy(max), EXPLICIT, 110, 120),
-        (late_turns_a_step, EXPLICIT, 0.495, 0.505), (late_energy(np.mean), EXPLICIT, 108, 112),
+        (lambda track: abs(track.late(track.omega)).mean() * track.scene.h / math.tau, EXPLICIT, 0.495, 0.505), (late_energy(np.mean), EXPLICIT, 108, 112),
     ]),
     "halving": (120, 1, [
         (at(300), 0, 0.185, 0.195), (at(-1), 0, 0.294, 0.298), (at(300), 1, -0.2, -0.09), (worst, 2, 0, 0.08),

@@ -134,21 +134,24 @@ def with_chance(noise, chance):
     return energies
 
 
-GROWTH = np.log1p(10 * T) / math.log(1001)
-SLOW = noise_of(60, seed=3)
-WHITE = noise_of(1e6, seed=2)
-SWING = 0.5 * np.cos(T / 20)  # so slow that nothing else can be told
 SIDES = {
     # the chance of the slope is 0.02, that of its ranks 4e-6 or 2e-5
-    "MOVES_BY_RANK": (lambda size: GROWTH + size * noise_of(200), {0.06: "grows", 0.08: ""}),
+    "MOVES_BY_RANK": (
+        lambda size: np.log1p(10 * T) / math.log(1001) + size * noise_of(200),
+        {0.06: "grows", 0.08: ""},
+    ),
     "MOVES": (lambda chance: with_chance(noise_of(60, 2), chance), {1.4e-3: "", 7e-4: "grows"}),
     # of an eighth of the record, times that share
-    "WINDOWS": (lambda size: WHITE + size * np.clip(T - 87.5, 0, None), {0.19: "", 0.23: "grows"}),
+    "WINDOWS": (
+        lambda size: noise_of(1e6, 2) + size * np.clip(T - 87.5, 0, None),
+        {0.19: "", 0.23: "grows"},
+    ),
     "SUSPECT": (lambda chance: with_chance(noise_of(200, 2), chance), {0.07: "bounded", 0.035: ""}),
     "MATERIAL": (lambda move: SINE + move * T / 100, {0.4: "bounded", 0.6: "grows"}),
-    "LARGE": (lambda move: SLOW + move * T / 100, {0.0: "bounded", 2.0: ""}),
+    "LARGE": (lambda move: noise_of(60, 3) + move * T / 100, {0.0: "bounded", 2.0: ""}),
     "MIN_CYCLES": (lambda n: np.sin(math.tau * n * T / 100 + 1.3), {1.5: "", 2.5: "bounded"}),
-    "GONE": (lambda far: np.where(T < 10, 0, far + SWING), {3: "", 7: "grows"}),
+    # beside a swing so slow that nothing else can be told
+    "GONE": (lambda far: np.where(T < 10, 0, far + 0.5 * np.cos(T / 20)), {3: "", 7: "grows"}),
 }
 
 
