@@ -76,10 +76,6 @@ SEARCHES = {
         [10, 40, 100, 63, 79, 88, 93, 96, 97, 98, *confirmed(100, 111, 102, 113, 105, 116)], 105,
         None,
     ),
-    "where all is lost, four times the steps are tried": (
-        lambda n: 2 if n < 200 else n**-2, {},
-        [10, 40, 160, 640, 320, 226, 190, 207, 198, 202, *confirmed(202, 223)], 202, None,
-    ),
     "an error that falls more slowly is reached by 10 % more": (
         lambda n: 1e-2 / n, {},
         [10, 32, 57, 76, 88, 97, 107, 101, 98, 99, *confirmed(101, 112)], 101, None,
