@@ -1,10 +1,8 @@
 """Hostile files, with right checksums and contents that no recorder writes."""
 
-import hashlib
 import json
 import struct
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -24,19 +22,16 @@ from pendu_tui.recordings.format import (
 )
 from tests.recordings.examples import SCENE, start
 
-MANY = 500
 FOREIGN = "/somebody/else"
-ESCAPES = "\x1b[2J\x1b]0;x\x07 [bold]"
-
 Entry = list[tuple[str, float, bytes]]
 """Messages: topic, clock [s], data."""
 
 
-def write(path: Path, entries: Iterable[Entry], chunk_size: int = 1 << 28):
+def write(path: Path, entries: Iterable[Entry]):
     """Write entries as a finished file."""
     with path.open("wb") as stream:
         writer = Writer(
-            stream, chunk_size=chunk_size, compression=CompressionType.ZSTD, enable_data_crcs=True
+            stream, chunk_size=1 << 28, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
         writer.start("pendu", "forger")
         schema = writer.register_schema("x", "jsonschema", b'{"type": "object"}')
@@ -81,17 +76,6 @@ def changed_h(h: float):
         yield sample(first_sample()._replace(step=step), 0.5 + step / 30)
 
 
-def unlike(number: int):
-    """A long text of its own for each number, which cannot be compressed to nothing."""
-    return hashlib.sha256(number.to_bytes(8)).hexdigest() + "字" * 130
-
-
-def runs():
-    for run in range(1, MANY):
-        yield event(start(run, replace(SCENE, name=unlike(run))))
-        yield sample(first_sample(run))
-
-
 def false_head(packed: int = 4_000_000):
     """The head of a chunk that claims to have so many bytes, and 4 MB of contents."""
     frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
@@ -106,12 +90,6 @@ def false_heads(count: int):
 
 FILES: dict[str, Callable[[], Iterable[Entry]]] = {
     "a huge message": lambda: begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]),
-    "escapes": lambda: [
-        event(start(), scene=ESCAPES, watch=ESCAPES),
-        sample(first_sample()),
-        event(Event("mark", 1, 0, 0.0, text="x"), text=ESCAPES),
-    ],
     "h of 0": partial(changed_h, 0.0),
-    "many runs": runs,
 }
 """Entries by what is hostile in them."""

@@ -50,11 +50,6 @@ def failing(reason=None):
 
 
 @pytest.fixture
-def method_gate():
-    return MethodProperties([])
-
-
-@pytest.fixture
 def energy_gate():
     return EnergyDrift([])
 
@@ -67,12 +62,13 @@ def energy_gate():
         (kicks(dropped=40), "begins again after"),
     ],
 )
-def test_a_broken_method_fails_for_what_is_broken(method_gate, broken, reason):
+def test_a_broken_method_fails_for_what_is_broken(broken, reason):
     with failing(reason):
-        method_gate.check(broken, order=2, symplectic=True)
+        MethodProperties([]).check(broken, order=2, symplectic=True)
 
 
-def test_a_right_method_passes_and_each_of_its_properties_is_compared(method_gate):
+def test_a_right_method_passes_and_each_of_its_properties_is_compared():
+    method_gate = MethodProperties([])
     assert method_gate.check(RIGHT, order=2.05, symplectic=True)
     assert ("symplectic", True) in method_gate._properties
     for name, claim, has in (
@@ -106,17 +102,21 @@ def test_the_order_of_right_runs_passes_for_every_seed(energy_gate):
         energy_gate.check_order(runs, at_least=1.001 * order.highest)
 
 
-def test_runs_that_are_too_short_to_tell_fail_and_say_how_long_they_must_be(energy_gate):
+def record(count=3000):
+    return run(0.05, count=count)
+
+
+def test_what_is_too_short_to_tell_fails_and_says_how_long_it_must_be(energy_gate):
     random = np.random.default_rng(5)
     runs = [(h, np.arange(64.0), h**2 * random.normal(size=64)) for h in (0.1, 0.12)]
     with failing(r"cannot tell.* times as long"):
         energy_gate.check_order(runs, at_least=1.8)
     with failing("too few"):
         energy_gate.check_order([(0.1, [0], [1])], at_least=1.8)
-
-
-def record(count=3000):
-    return run(0.05, count=count)
+    with failing(r"cannot tell: the drift is .* as long"):
+        energy_gate.check(*record(), max_drift=1e-12)
+    with failing("cannot tell: the verdict is not bounded"):
+        energy_gate.check(*record(40))
 
 
 def test_a_limit_is_compared_on_both_sides(energy_gate):
@@ -130,13 +130,6 @@ def test_a_limit_is_compared_on_both_sides(energy_gate):
         assert energy_gate.check(*record(), **{name: value})
         with failing(reason.format(value, 0.99 * value)):
             energy_gate.check(*record(), **{name: 0.99 * value})
-
-
-def test_a_record_that_cannot_tell_fails_and_says_how_long_it_must_be(energy_gate):
-    with failing(r"cannot tell: the drift is .* as long"):
-        energy_gate.check(*record(), max_drift=1e-12)
-    with failing("cannot tell: the verdict is not bounded"):
-        energy_gate.check(*record(40))
 
 
 def test_several_verdicts_may_pass_and_a_drift_is_compared_with_its_bound(energy_gate):
