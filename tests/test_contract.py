@@ -47,23 +47,19 @@ SCHEMAS = {
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    prepare(tmp_path)
+    """Recordings, one of them cut, energies, a method and a library."""
     monkeypatch.chdir(tmp_path)
+    whole = record(tmp_path / "whole.mcap", two_runs()).read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(whole[:-700])
+    (tmp_path / "library").mkdir()
+    (tmp_path / "library/one.mcap").write_bytes(whole)
+    rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
+    (tmp_path / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
+    (tmp_path / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
+    Path(own_method(tmp_path).removesuffix(":mine")).rename(tmp_path / "mine.py")
     monkeypatch.setenv("PENDU_RECORDINGS", "library")
     monkeypatch.setattr("pendu_tui.engine.run.loops.compiled", PlainLoops)  # that takes seconds
     monkeypatch.setattr("pendu_tui.engine.studies.accuracy.TIMED_STEPS", 100)
-
-
-def prepare(folder: Path) -> None:
-    """Write recordings, one of them cut, energies, a method and a library to a folder."""
-    whole = record(folder / "whole.mcap", two_runs()).read_bytes()
-    (folder / "cut.mcap").write_bytes(whole[:-700])
-    (folder / "library").mkdir()
-    (folder / "library/one.mcap").write_bytes(whole)
-    rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
-    (folder / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
-    (folder / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
-    Path(own_method(folder).removesuffix(":mine")).rename(folder / "mine.py")
 
 
 def kinds(value: Any, path: str = "") -> dict[str, set[str]]:

@@ -31,10 +31,6 @@ def block_with(language: str, word: str) -> str:
     return block
 
 
-def section(title: str) -> str:
-    return README.partition(f"## {title}\n")[2].partition("\n## ")[0]
-
-
 def test_what_is_linked_is_there():
     for page in PAGES:
         for target in re.findall(r"\]\((?!http)(.*?)(?:#.*?)?\)", page.read_text(encoding="utf-8")):
@@ -63,7 +59,8 @@ def test_tables_tell_what_the_program_tells():
     assert f"| command | does |\n|---|---|\n{commands}" in README
     for each in VERDICTS.values():
         assert f"| `{each.word}` | {each.meaning} |" in README
-    keys = re.findall(r"^\| `(.+?)` \| (.+) \|$", section("Keys"), re.MULTILINE)
+    section = README.partition("## Keys\n")[2].partition("\n## ")[0]
+    keys = re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE)
     assert len(keys) == 9
     assert {f"{key:<9}{does}" for key, does in keys} <= set(key_lines(bindings_of(LabScreen)))
 
