@@ -88,7 +88,7 @@ def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monke
     monkeypatch.setattr(stability, "watch", counting)
     outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
     assert len(sizes) > 5
-    assert all(after < 7 / 8 * before for before, after in pairwise(sizes))
+    assert 0.8 < max(after / before for before, after in pairwise(sizes)) < 7 / 8
 
 
 @pytest.mark.parametrize(
@@ -136,6 +136,7 @@ GRID = Grid(np.linspace(0.1, 3.1, 7), np.linspace(0.1, 3, 13), 200, USUAL_CAST[2
 @pytest.mark.parametrize("width", [5, None])
 def test_the_cells_are_the_same_bit_for_bit_however_the_grid_is_cut(width):
     whole = GRID.unknown()
+    whole["steps"] = 10**9  # of the longest study
     assert (whole["fate"] == UNKNOWN).all()
     assert not is_lost(whole).any()
     for part in GRID.parts(width):
@@ -229,8 +230,8 @@ def largest_omega(scene, method, steps, enough=math.inf):
 @pytest.mark.parametrize("method", SYMPLECTIC, ids=str)
 def test_chaos_fenced_stays_below_pi_over_h_and_chaos_loose_does_not(method):
     fenced, loose = SCENES["chaos-fenced"], SCENES["chaos-loose"]
-    assert (fenced.z**2, loose.z**2) == pytest.approx((0.95, 1.1), rel=1e-12)
-    assert fenced.z < GREENE_Z < loose.z
+    squares = fenced.z**2, GREENE_Z**2, loose.z**2
+    assert squares == pytest.approx((0.95, 0.971635, 1.1), rel=1e-12)
     assert is_chaotic(method, fenced.theta, fenced.z, 10_000)
     # A million steps reach 0.91 pi and 0.79 pi; the fence is an invariant curve.
     assert largest_omega(fenced, method, 100_000) < math.pi
