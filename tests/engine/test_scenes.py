@@ -329,7 +329,7 @@ def test_a_rational_part_of_h_avoids_the_resonance_like_an_irrational_one(share)
 
 def test_how_a_run_is_shown_changes_no_number():
     shown = replace(DEFAULT_SCENE, speed=3.0, often_said="It holds.", shot=Shot(log=False))
-    assert shown == DEFAULT_SCENE
+    assert {shown, DEFAULT_SCENE} == {shown}
     usual = ("lab", None, "energy_error", True, None, None, (), False, None, None)
     assert astuple(Shot()) == (*usual, "", "", (), 1, "", False, False)
     assert DEFAULT_SCENE.altered(theta=2.0, speed=3.0).speed == 3.0

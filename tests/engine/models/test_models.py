@@ -48,23 +48,34 @@ def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
     ]
     found = [(each.name, each.unit, *each[3:]) for each in NUMBERS.values()]
     assert [each for each in found if each in known] == known
+    assert all(f"in {each.unit}" in each.about for each in NUMBERS.values())
 
 
 @pytest.mark.parametrize(
     ("key", "facts"),
     [
-        ("pendulum", (("force", "parts"), ("force",), "w0", 0, [])),
-        ("linear", (("force", "parts"), ("force",), "w0", 0, [])),
-        ("damped", (("parts", "rates"), ("force",), "w0", 2, [])),
-        ("spring", (("parts", "force"), ("fast", "solve"), "omega_s", 3, ["spring_energy"])),
-        ("mean_field", (("parts", "rates"), ("force",), "nu", 3, ["probability_error"])),
+        ("pendulum", "-w0² sin theta; force parts; force; w0; 0"),
+        ("linear", "-w0² theta; force parts; force; w0; 0"),
+        ("damped", "-w0² sin theta - gamma omega; parts rates; force; w0; 2"),
+        (
+            "spring",
+            "-k (1 - 1/|z|) z - i w0², z = x + iy; parts force; fast solve; omega_s; 3; "
+            "spring energy (1 at start)",
+        ),
+        (
+            "mean_field",
+            "-w0² sin theta - kappa b'·s, s' = nu b × s; parts rates; force; nu; 3; "
+            "probability error",
+        ),
     ],
 )
 def test_a_model_says_what_methods_and_charts_take_of_it(key, facts):
     model = EXAMPLES[key].equations
     why_not = sum(map(bool, (model.caption, model.without_force, model.without_ring)))
-    own = [each.name for each in model.charted()[1:-3]]
-    assert (model.offers, model.counted_parts, model.frequency_symbol, why_not, own) == facts
+    own = [each.chart.title for each in model.charted()[1:-3]]
+    law = model.equation.split("'' = ", 1)[1]
+    taken = " ".join(model.offers), " ".join(model.counted_parts), model.frequency_symbol
+    assert "; ".join((law, *taken, str(why_not), *own)) == facts
     assert (model.level(1.0, 2.0) == 0) == (why_not == 3)
 
 
