@@ -3,37 +3,59 @@
 import re
 
 from pendu_tui.engine.models import MODELS
-from pendu_tui.engine.quantities import CHARTED, EXTREMES, QUANTITIES, RECORDED
+from pendu_tui.engine.models.model import ENERGY_RATIO
+from pendu_tui.engine.quantities import CHARTED, QUANTITIES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading
 
+ROWS = """
+theta, rad, always, gate, theta 11 theta [rad] 13
+omega, rad/s, always, gate, omega 6 omega [rad/s] 13
+energy, s⁻², always, gate
+energy_error, (E - E0) / E0, always, gate, energy error, +.2e, dE/E0 8 dE/E0 8
+max_energy_error, over every step so far, always, gate, largest, .2e, largest 7 largest 8
+energy_error_low, since the sample before, if known
+energy_error_high, since the sample before, if known
+diverged_at, s, if known, gate
+max_invariant_error, over every step so far, if known, gate
+log_energy_error, gate
+theta_error, rad, gate, theta error [rad], .2e, th.err 7 theta error 11
+shadow_error
+drift_per_second, 1/s, gate, per second, +.1e, per s 8 trend per s 11
+slope, 1/s, gate
+bound, 1/s, gate
+share, gate
+force_evaluations, gate, force evaluations, d, evals/step 10 evals/step 10
+energy_error, (E - E0) / E0, always, gate, ln(E/E_true), +.2e, ln E/Et 8 ln E/Et 8
+"""
 
-def test_a_reading_has_the_recorded_quantities_in_order_and_requires_those_always_recorded():
+
+def told(each):
+    """Name, unit or what it is, whether recorded and compared; how tables and the lab show it."""
+    gate = "gate" if each.in_gate else ""
+    words = each.name, each.unit, each.about, each.recorded, gate, each.label, each.form
+    head = "{} {} {} {}".format(*each.head) if each.head.narrow else ""
+    return ", ".join(filter(None, (*words, head)))
+
+
+def test_a_quantity_is_recorded_compared_and_shown_in_its_unit():
+    assert [told(each) for each in (*QUANTITIES, ENERGY_RATIO)] == ROWS.split("\n")[1:-1]
+    for each in QUANTITIES:
+        assert bool(each.head.wide) == bool(each.sentence), each.name
+        shown = f"{each.head.wide} {each.label} {each.sentence} {each.chart}"
+        assert {*re.findall(r"\[(.+?)\]", shown)} <= {each.unit, "1/s²"}
+
+
+def test_a_reading_has_the_recorded_quantities_in_order():
     *fields, extra = Reading._fields
     assert fields == [each.name for each in RECORDED]
     assert extra == "extra"
-    defaults = Reading._field_defaults
-    optional = {each.name for each in RECORDED if each.recorded == "if known"}
-    assert set(defaults) - {"extra"} <= optional
-    assert all(each.unit or each.about for each in RECORDED)  # which viewers show
+    assert {*Reading._field_defaults} == {"diverged_at", "max_invariant_error", extra}
 
 
-def test_no_two_quantities_share_a_name_or_a_head():
-    for model in MODELS.values():
-        quantities = (*QUANTITIES, *model.variables)
-        assert len({each.name for each in quantities}) == len(quantities)
-    heads = [each.head.narrow for each in QUANTITIES if each.head.narrow]
-    assert len(set(heads)) == len(heads)
-    gate = {each.name for each in QUANTITIES if each.in_gate}
-    assert gate >= {"log_energy_error", "slope", "bound", "share", "force_evaluations"}
-    assert {each.name for each in QUANTITIES} - gate == {*EXTREMES, "shadow_error"}
-
-
-def test_what_has_a_column_is_explained_and_fits_its_width():
-    for each in (*QUANTITIES, *(model.error for model in MODELS.values())):
-        assert bool(each.head.wide) == bool(each.sentence), each.name
-        assert bool(each.label) == bool(each.form and format(1, each.form))
-        assert len(each.head.narrow) <= each.head.width <= each.head.wide_width
-        assert len(each.head.wide) <= each.head.wide_width <= 13
+def test_no_two_quantities_share_a_name():
+    own = (each for model in MODELS.values() for each in model.variables)
+    names = [each.name for each in (*QUANTITIES, *own)]
+    assert len(set(names)) == len(names)
 
 
 def test_every_chart_has_a_title_and_the_charted_are_those_with_one():
@@ -44,14 +66,3 @@ def test_every_chart_has_a_title_and_the_charted_are_those_with_one():
         ("shadow energy error", "|shadow error|"),
         ("energy per m L² [1/s²]", "energy [1/s²]"),
     ]
-
-
-def test_quantities_have_the_units_of_their_equations():
-    found = {each.name: each.unit for each in QUANTITIES}
-    per_second = dict.fromkeys(("drift_per_second", "slope", "bound"), "1/s")
-    angles = {"theta": "rad", "omega": "rad/s", "theta_error": "rad"}
-    known = {**angles, "energy": "s⁻²", "diverged_at": "s", **per_second}
-    assert known.items() <= found.items()
-    for each in QUANTITIES:
-        told = f"{each.head.wide} {each.label} {each.sentence} {each.chart}"
-        assert {*re.findall(r"\[(.+?)\]", told)} <= {each.unit, "1/s²"}
