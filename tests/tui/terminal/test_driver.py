@@ -35,7 +35,10 @@ def written(text, character_set):
 def test_half_blocks_change_only_braille_and_in_ascii_frames_and_words_are_read_as_before():
     assert written("╭─ 57.3° 2× ▀█", "half") == "╭─ 57.3° 2× ▀█"
     assert written("⠀⠁⠂⠈⠐⠄⠠⡀⢀⣿", "half") == " ▀▀▀▀▄▄▄▄█"
-    assert written("─━╺╸–│┃▌┊┌╋╯█▀▄▁·…×╱•±√", "ascii") == "-----|||:+++#'...>x/o~V"
+    lines = "─━╺╸–−▔│┃╹╻▏▎▌▐▊▕┊"
+    assert written(lines, "ascii") == 7 * "-" + 10 * "|" + ":"
+    corners = "┌┐└┘├┤┬┴┼┿╋┏┓┗┛┣┫┻╭╮╰╯╴▛▜▙▟"
+    assert written(f"{corners}█▀▄▁·…╱•", "ascii") == 27 * "+" + "#'...>/o"
     frame = ["╭─ h² ─╮", "│ 2×  …│", "╰──────╯"]
     assert [written(line, "ascii") for line in frame] == ["+- h2 -+", "| 2x  >|", "+------+"]
     assert written("Störmer, 2√2, ±57°, ½ µs ⣀⡀⠁⢸", "ascii") == "Stormer, 2V2, ~57o, _ us ..':"
