@@ -36,7 +36,7 @@ def live() -> Live:
 @pytest.fixture
 def lesson(live) -> Lesson:
     lesson = Lesson("Page", [ASKS, TELLS, SHOWS])
-    lesson.begin(live, 0)
+    lesson.begin(live, lesson.index)
     return lesson
 
 

@@ -55,7 +55,7 @@ def test_stages(snapshot):
         pictures.append(stage_picture(*size, several[:count], looks[1]))
     # nothing between samples a radian apart, or when steps are long
     for trail, joins in (([-1.5, -0.6, 0.5, 1.5], True), ([-0.4, -0.2, 0.0], False)):
-        pictures.append(stage_picture(30, 13, [Bob(3.0, 0, "e", trail=trail)], Look(joins=joins)))
+        pictures.append(stage_picture(30, 15, [Bob(3.0, 0, "e", trail=trail)], Look(joins=joins)))
     snapshot("stages.txt", "\n".join(map(look, pictures)))
 
 
