@@ -76,8 +76,8 @@ def amplitude(model: Model, theta: float, omega: float) -> float:
     return high
 
 
-HALF_EVEN = 1.5 * 2**52
-"""Added to a number or an array and taken off again, it rounds half to even: both edges stay."""
+TO_WHOLE = 1.5 * 2**52
+"""Added to a number or an array and taken off again, it rounds to a whole number."""
 
 MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad from the left to the right edge
 
@@ -111,8 +111,8 @@ class Viewport(NamedTuple):
             rows,
             theta=0.0,
             omega=0.0,
-            theta_per_dot=theta
-            / (columns - 0.5),  # half a dot more, or rounding loses points at pi
+            # half a dot more, or rounding loses points at pi
+            theta_per_dot=theta / (columns - 0.5),
             omega_per_dot=max(fastest, 1.5 * omega) / max(2 * rows - 2, 2),
             wrap=scene.equations.turns,
         )
@@ -125,7 +125,8 @@ class Viewport(NamedTuple):
         x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
         if self.wrap:
             turn = math.tau / self.theta_per_dot
-            x = x - turn * ((x - self.columns) / turn + HALF_EVEN - HALF_EVEN)
+            turns = (x - self.columns) / (turn + 1e-9)  # less than half at both edges
+            x = x - turn * (turns + TO_WHOLE - TO_WHOLE)
         return x
 
     def y(self, omega: Any) -> Any:

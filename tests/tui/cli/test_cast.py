@@ -20,6 +20,7 @@ SOURCE = EULER.format(name="kick_drift") + EULER.format(name="rk4")
 @pytest.fixture
 def mine(here):
     (here / "mine.py").write_text(SOURCE, encoding="utf-8-sig")
+    (here / "kick.py").write_text(EULER.format(name="kick"))
     (here / "long.py").write_text(SOURCE + "#" * 30_000)
     (here / "binary.py").write_bytes(b"\xff")
     (here / "once.py").write_text("def once(force, phase, h):\n    yield phase")
@@ -73,7 +74,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert (last.key, last.symplectic, last.source) == ("kick_drift", True, SOURCE)
     assert cast_from(*own, "--methods", "kick,rk4") == (last, RK4)
     assert cast_from(*own) == (*USUAL_CAST, last)
-    assert last.letter == "K"  # which no other has
+    assert [each.letter for each in cast_from(*own, "--method", "kick.py")[-2:]] == ["K", "I"]
 
 
 @pytest.mark.other_process
@@ -115,6 +116,11 @@ def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(
     assert pendu("run", "--time", "2", "--method", "hostile.py").refused(3, "hostile.py", why)
 
 
+def test_a_name_is_given_once(mine):
+    twice = ("--method", "mine.py:kick_drift") * 2
+    assert pendu("run", "--time", "2", *twice).refused(2, "there is a method kick_drift already")
+
+
 def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_the_command(
     tmp_path,
 ):
@@ -140,6 +146,7 @@ def test_more_than_six_run_but_fit_no_screen_and_no_recording():
     assert [row["method"] for row in rows] == keys
     for command in (("live",), ("run", "--time", "2", "--record", "x.mcap")):
         assert pendu(*command, *methods).refused(2, "7 methods are too many", "at most 6")
+    assert len(cast_from("--methods", ",".join(keys[:6]))) == 6
 
 
 def test_ones_own_method_has_null_claims_and_a_process_that_watches(mine, monkeypatch):

@@ -27,6 +27,15 @@ def test_every_cell_leads_to_what_is_drawn_in_its_middle(size, theta, omega, fac
     assert viewport.y(omega) == pytest.approx(4 * row + 2, abs=0.5 + 1e-4)
 
 
+@pytest.mark.parametrize("edge", [0, -1])
+def test_both_edges_of_a_portrait_lead_to_what_is_drawn_there(edge):
+    for columns in range(2, 201):
+        viewport = Viewport.portrait(columns, 2, DRIFT)
+        column = edge % columns
+        theta, _ = viewport.at_cell(column, 0)
+        assert viewport.x(theta) == pytest.approx(2 * column + 1, abs=0.5001)
+
+
 @given(sizes, st.floats(-math.pi, math.pi))
 def test_every_angle_of_a_turn_is_on_the_portrait_and_every_turn_shows_the_same(size, theta):
     viewport = Viewport.portrait(*size, DRIFT)
