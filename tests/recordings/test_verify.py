@@ -120,13 +120,15 @@ def test_a_wrong_time_is_found_and_a_folder_with_it_fails_as_a_test(verified, tm
     (tmp_path / "in").mkdir()
     record(tmp_path / "in" / "whole.mcap", two_runs())
     (tmp_path / "in" / "cut.mcap").write_bytes((tmp_path / "in" / "whole.mcap").read_bytes()[:-9])
+    (tmp_path / "odd.mcap").touch()
     test = verify_recordings(tmp_path)
     (names,) = (mark.args[1] for mark in test.pytestmark)
-    assert names == ["0.mcap", "in/cut.mcap", "in/whole.mcap"]
+    assert names == ["0.mcap", "in/cut.mcap", "in/whole.mcap", "odd.mcap"]
     test("in/whole.mcap")
     reasons = {
-        "0.mcap": "run 1, step 6, t = 0.61 s, .*t is 0.6000.*, recorded 0.61",
-        "in/cut.mcap": "its end is missing",
+        "0.mcap": "0.mcap: run 1, step 6, t = 0.61 s, .*t is 0.6000.*, recorded 0.61",
+        "in/cut.mcap": "cut.mcap: its end is missing",
+        "odd.mcap": "odd.mcap: its end is missing",
     }
     for name, reason in reasons.items():
         with pytest.raises(pytest.fail.Exception, match=reason) as failed:
