@@ -63,7 +63,7 @@ def replay(table: Table) -> Replay:
 def test_it_shows_the_last_sample_recorded_before_and_begins_again_after_the_end(table, replay):
     assert replay.sample == table.samples[0].value
     assert replay.length == pytest.approx(LENGTH)
-    assert replay.recording_status == ("eventful.mcap", replay.length, None)
+    assert (replay.kind, replay.recording_status) == ("REPLAY", ("eventful.mcap", 12.0, None))
     while not replay.playhead.paused:
         assert table.run(0.2) == table.due
     assert replay.sample == table.samples[-1].value
@@ -220,7 +220,7 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(replay, seconds):
     replay.seek(seconds)
     replay.set_speed(-2.0)
     live = replay.live()
-    assert (live.playhead.speed, live.recording_status) == (2.0, None)
+    assert (live.kind, live.playhead.speed, live.recording_status) == ("LIVE", 2.0, None)
     here = replay.sample
     assert (live.sample.step, live.sample.t) == (here.step, here.t)
     assert live.stepping.h == replay.stepping.h
