@@ -133,3 +133,4 @@ def test_the_way_of_a_run_grows_also_while_time_runs_back():
     for step, t, h in ((20, 2.0, -0.05), (60, 0.0, 0.1)):
         run.add(9.0, Event("set_h", 1, step, t, h=h))
     assert [change.x for change in run.changes] == [0.0, 2.0, 4.0]  # s on the way
+    assert not run.changes[0].stepping.equal_cost
