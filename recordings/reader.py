@@ -174,7 +174,8 @@ def _sizes_in(head: bytes) -> tuple[int, int]:
     is_possible = (
         opcode == Opcode.CHUNK
         and compression == _ZSTD
-        and _CHUNK.size - _RECORD.size + packed == length <= MAX_RECORD
+        and length == _CHUNK.size - _RECORD.size + packed
+        and length <= MAX_RECORD
         and size <= min(MAX_RECORD, MAX_EXPANSION * (length + 128))
     )
     # what zstandard allocates

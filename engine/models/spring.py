@@ -181,5 +181,5 @@ class Spring(Model):
     def exact_phase(self, theta: float, omega: float, t: float) -> Phase:
         """Return the phase at a time [s]; nan if the spring is too fast to follow."""
         if self.fastest > 320 * self.w0:
-            return (complex(math.nan, math.nan),) * 2
+            return complex(math.nan, math.nan), complex(math.nan, math.nan)
         return super().exact_phase(theta, omega, t)

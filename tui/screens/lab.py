@@ -333,7 +333,9 @@ class LabScreen(SizedScreen[None]):
     @property
     def lesson(self) -> Lesson:
         """The pages that key p leads through: those of the guide, or all scenes."""
-        return (self.is_guided and self.guide) or self.scenes
+        if self.is_guided and self.guide:
+            return self.guide
+        return self.scenes
 
     async def action_next_scene(self) -> None:
         await self._turn_to((self.lesson.index + 1) % len(self.lesson.pages))
