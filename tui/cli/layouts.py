@@ -12,6 +12,7 @@ from pendu_tui.tui.cli.units import UNIT, split_unit
 
 _DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.]|,\d)"  # of many languages
 _DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+_SPACED = r"[-+]?\d{1,3}[^\S\t]\d{3}\b"  # 42 001
 NUMBER = rf"[-+]?(?:\d*\.\d+[-+]\d{{3}}(?!\d)|{_DECIMALS}|{_DIGITS})"
 """-4.52-107 is Fortran's -4.52e-107."""
 FAILED = (
@@ -158,8 +159,9 @@ LAYOUTS = (
         line=r"(?<![\w.])(?:(?:INFO|DEBUG):? +|X {2,})?"
         r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
         rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
-        rf"(?: *= *\"?| *: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s)){VALUE}"
-        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10|[^\S\t]\d{{3}}\b)",
+        rf"(?: *= *\"?| *: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s))"
+        rf"(?!{_SPACED}){VALUE}"
+        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""
@@ -183,7 +185,7 @@ ROLES = (
     ),
     ("error", r"(rel(ative)?)?d(elta)?ee0?|.*e0e0|(rel(ative)?)?e(nergy)?(err(or)?|drift)"),
     ("error", r"rel(ative)?err(or)?"),
-    ("run", r"method|integrator|solver|scheme|seed|run(id)?|units?"),
+    ("mark", r"method|integrator|solver|scheme|seed|units?"),
     ("other", r"temp(erature)?|press?(ure)?|vol(ume)?|density|epair"),
 )
 """Roles of columns and their names as `key` writes them; the best comes first."""

@@ -139,7 +139,7 @@ def _unmarked(lines: list[str]) -> list[str]:
 
 def _json(text: io.TextIOBase) -> Iterator[list[str]]:
     """Yield a line for each record of JSON, or other lines as they are, some at a time."""
-    whole = text.read(MAX_DOCUMENT)
+    whole = text.read(MAX_DOCUMENT).replace("−", "-")
     if len(whole) == MAX_DOCUMENT:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)

@@ -32,7 +32,7 @@ SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
 OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N", "B", "I", "nu", "strain", "loss"}}
 """Columns beside which it is an eccentricity, or East, a field, a modulus, a loss."""
-WALL = 1e9  # seconds since 1970 or more
+WALL = (1e9, 2e9)  # seconds since 1970, in 2001 to 2033
 COUNTS = ("N", "i", "n")  # if they are whole numbers
 Group = tuple[int, ...]
 """Columns to add up."""
@@ -74,7 +74,7 @@ def choose(
         return None
     time, energy, kinetic = groups
     if not wanted.time:
-        time = _time(names, samples, excluded=energy)
+        time = _time(names, units, samples, excluded=energy)
         if time is None and wanted.step:  # of rows
             time = ()
     if not wanted.energy:
@@ -91,6 +91,7 @@ def find(names: Sequence[str], text: str | None) -> Group | None:
     """
     if not text:
         return ()
+    text = text.replace("−", "-")  # as in what is read
     for parts in ([text], text.split("+")):
         places = [_place(names, part.strip()) for part in parts]
         if -1 not in places:
@@ -122,7 +123,9 @@ def _by_role(names: Sequence[str], places: Iterable[int]) -> dict[str, Group]:
     return {kind: group for (_, kind), group in sorted(found.items(), reverse=True)}
 
 
-def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Group | None:
+def _time(
+    names: Sequence[str], units: Sequence[str], samples: Sequence[Any], excluded: Group
+) -> Group | None:
     """Return the column of times, () if there is none, None if it is not certain."""
     rising = [
         place
@@ -133,13 +136,28 @@ def _time(names: Sequence[str], samples: Sequence[Any], excluded: Group) -> Grou
     is_hot = [_bare(name) == "t" and name[0] == "T" for name in names]
     best = _by_role(names, (n for n in range(len(names)) if n in rising or not is_hot[n]))
     if times := best.get("time", ()) + best.get("step", ()):
-        return (min(times, key=lambda place: sum(samples[place][:1]) > WALL),)
+        return (min(times, key=lambda place: _is_on_the_wall(units[place], samples[place])),)
     if not rising:
         others = (some for name, some in zip(names, samples, strict=True) if not role(name)[0])
         return None if any(map(_is_in_turn, others)) else ()
     steps = np.diff(samples[rising[0]])
     is_even = np.ptp(steps) < 1e-3 * steps.max()  # printed with few digits
     return _only(rising) if is_even or not names[rising[0]] else None
+
+
+def _are_numbered(names: Sequence[str], samples: Sequence[Any]) -> bool:
+    """Return whether a first column without a name may hold the numbers of the rows."""
+    if (samples[0] % 1).any():
+        return False
+    if len(names) < 2 or len(samples[1]) < 2 or role(names[1])[0] not in ("time", "step"):
+        return True
+    return not np.median(np.diff(samples[1])) < 0
+
+
+def _is_on_the_wall(unit: str, sample: Any) -> bool:
+    """Return whether a clock shows these times, in seconds since 1970."""
+    low, high = WALL
+    return unit in ("", "s") and len(sample) > 0 and low < sample[0] < high
 
 
 def _is_in_turn(sample: Any) -> bool:
@@ -193,10 +211,11 @@ def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
 
 
 def _is_wave(values: Any) -> bool:
-    """Return whether a bare E is a field, which turns its sign often, or counts."""
+    """Return whether a bare E is a field, which turns its sign often, or counts from 0."""
     turns = np.diff(values > 0)
     is_wave = np.count_nonzero(turns[1:] > turns[:-1]) > 2
-    return bool(is_wave or (len({*values}) > 2 and not np.mod(values, 1).any()))
+    is_count = values.min(initial=1) == 0 and values.max() > 1 and not np.mod(values, 1).any()
+    return bool(is_wave or is_count)
 
 
 def _is_sum(samples: Sequence[Any], places: Group, may_differ: bool) -> bool:
@@ -262,7 +281,8 @@ class Sheet:
 
     def add_column(self, name: str, unit: str = "") -> None:
         self.kept += (len(self.names),)
-        self.marks += (len(self.names),) * (role(name)[0] == "run")
+        if role(name)[0] == "mark":
+            self.marks += (len(self.names),)
         self.names.append(name)
         self.units.append(unit)
         self._lines.append(array("q"))
@@ -337,8 +357,7 @@ class Sheet:
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
         samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
-        falls = [np.median(np.diff(each, append=np.inf)) < 0 for each in samples[1:2]]
-        if self.names[:1] == [""] and ((samples[0] % 1).any() or any(falls)):
+        if self.names[:1] == [""] and not _are_numbered(self.names, samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
         if self.puts >= SAMPLE:
@@ -365,10 +384,7 @@ class Sheet:
         skipped = self.skipped + seen - rows
         times[~(np.abs(times) < LATEST)] = np.nan
         begins = self._again(lines[here], times)
-        marks = self._sum(self.marks, lines).filled(0)[here]
-        _, firsts = np.unique(marks, return_index=True)
-        if len(firsts) > np.count_nonzero(np.diff(marks)):  # they do not alternate
-            begins[firsts] = True
+        begins[_blocks(self._sum(self.marks, lines).filled(0)[here])] = True
         runs = list(islice(_runs(times, begins), MAX_SERIES))
         if self.skipped > rows:
             why = "most of its rows differ from its head in the number of columns; keep one table."
@@ -411,6 +427,14 @@ class Sheet:
             column[record[fits]] = values[fits]
             total = total + column
         return total
+
+
+def _blocks(marks: Any) -> Any:
+    """Return where the next mark begins, nowhere if one comes back or marks a single row."""
+    begins = np.flatnonzero(np.diff(marks, prepend=np.nan))
+    sizes = np.diff(begins, append=len(marks))
+    are_blocks = len(begins) == len({*marks}) and sizes.min(initial=2) > 1
+    return begins[1:] if are_blocks else []
 
 
 def _runs(times: Any, is_again: Any) -> Iterator[slice]:

@@ -150,9 +150,9 @@ En., Potential Ene, md.Potential_Energy, Energy potential, EPtot, Current Potent
 error: dE/E, |dE/E0|, delta E/E0, rel dE/E, relative dE/E, (E-E0)/E0, |E(t)-E0|/E0, E err, energy \
 error, energy drift, rel. E error, relative energy error
 error: rel err, relative error
-run: method, integrator, solver, scheme, seed, run, run_id, unit, units
+mark: method, integrator, solver, scheme, seed, unit, units
 other: Temp, Temperature, Pres, Press, Pressure, Vol, Volume, Density, E_pair
-: strain energy, wall time, E2
+: strain energy, wall time, E2, run, run_id
 """
 
 

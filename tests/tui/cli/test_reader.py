@@ -106,8 +106,11 @@ def columns(series: Series) -> str | None:
         ("t,x,E", "{t},{k},{w}", None),  # a field
         ("t,x,E", "{t},{k},{b}", None),  # a count
         ("time,t,E", "17327000{n:02},{t},{e}", "t, E"),  # on the wall
+        ("step,t,E", "{s},31536000{n:02},{e}", "t, E"),  # 100 years
+        ("step,t [fs],E", "{s},17327000{n:02},{e}", "t fs, E"),
         ("", "t = {t} E = {e}×10^{f}", None),
         ("", "t = {t} E = -42 {k:07.3f}", None),
+        ("", "t = {t} E = {e} 300 K", "t, E"),
         ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,E", "{t} ps , {e} eV", "t ps, E eV"),
@@ -117,6 +120,7 @@ def columns(series: Series) -> str | None:
         ("  t     E", "{n:<4} {t} {e}", "t, E"),  # pandas
         ("Time Etot", "{t} {e} {k}", None),
         ("Time Etot", "{n} -{t} {e}", None),
+        (",x,t,E", "{n},-{t},{t},{e}", "t, E"),  # pandas
         ("", "{e}", "row, column 1"),
         ("", "{t} {e}", "column 1, column 2"),
         ("seed 7;", "{t} {e}", "column 1, column 2"),
@@ -225,6 +229,7 @@ def array(*unnamed: object, **named: object) -> bytes:
         lzma.compress(rows("{t} {e}").encode()),
         rows("{t}\t{e}").encode("utf-16"),
         TABLE.replace("-", "−"),
+        json.dumps([{"t": t, "E": f"{e}"} for _, t, e, _ in SAMPLES]).replace("-", "−"),
         *(rows(form).replace(".", ",") for form in ("t={t} E={e} J", "t={t}, KE={k}, E={e}")),
         "t;E\n" + rows("{t};{e}").replace(".", ","),
         "| t | E |\n|---|---|\n" + rows("| {t} | {e} |"),
@@ -481,7 +486,11 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (HEAD + rows("{s} {k} {e}", 0, 3) + LOOP + rows("Step = {s}\nTotEng = {e}"), [3, 90]),
         (rows("Step = {s}\nTotEng = {e}") + LOOP + HEAD + rows("{s} {k} {e}", 0, 3), [90, 3]),
         ("method,t,E\n" + rows("euler,{t},{e}", 0, 30) + rows("rk4,{t},{e}", 30), [30, 60]),
-        ("t,E,solver\n" + rows("{t},{e},{f}"), [90]),
+        ("t,E,solver\n" + rows("{t},{e},1\n{t}5,{e},1\n{t}6,{e},2\n{t}7,{e},2"), [360]),
+        ("t,E,seed\n" + rows("{t},{e},{t}"), [90]),
+        ("t,E,method\n0,-345,euler\n" + rows("{t},{e},leapfrog", 1), [90]),
+        ("t,E,run\n" + rows("{t},{e},1", 0, 40) + rows("{t},{e},2", 40), [90]),
+        ("t,E\nnan,-345\n" + rows("{t},{e}"), [90]),
         ("t,E,seed\n" + rows("{s},{e},1\n{s}.5,{e},1", 0, 80) + rows("{s},{e},2", 80), [160, 10]),
         (rows("seed={f} t={t} E={e}", 0, 8) + rows("seed=3 t={t} E={e}", 9), [8, 81]),
         (json.dumps({"a": {"t": TIMES, "E": ENERGIES}, "b": {"t": TIMES, "x": TIMES}}), [90]),
@@ -637,6 +646,7 @@ def test_a_name_may_have_a_plus_and_its_unit_counts_before_its_case_does_not():
     assert find(("E (eV)", "E (J)", "e"), "e (j)") == (1,)
     assert find(("E (eV)", "E (J)", "e"), "E") == (2,)
     assert find(("", "E"), "2+") is None
+    assert find(("t", "E - E0"), "E − E0") == (1,)
 
 
 def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
@@ -650,5 +660,9 @@ def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
 def test_few_rows_do_not_tell_what_belongs_to_an_energy_but_where_it_ended():
     samples = [(0, 1), (1, 2), (-1, -3), (5, 6)]
     assert choose(("t", "KE", "PE", "x"), 4 * ("",), samples, Wanted()).energy == (1, 2)
+    samples = [(0, 1, 2), (5, 6, 1), (345, 346, 344)]  # whole, but no count
+    assert choose(("t", "x", "E"), 3 * ("",), samples, Wanted()).energy == (2,)
+    samples[2] = (0, 2, 3)
+    assert choose(("t", "x", "E"), 3 * ("",), samples, Wanted()).energy == ()
     (series,) = tables("t,E\n" + rows("{t},{e}", 0, 9) + "4.5,\n5.0\n")
     assert (series.diverged_at, series.skipped) == (4.5, 0)
