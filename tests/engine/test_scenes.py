@@ -163,6 +163,8 @@ def test_each_scene_is_shown_with_what_its_sentence_is_about():
     for scene in SCENES.values():
         assert len(scene.cast) <= MAX_METHODS == 6
         assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and a blank
+        for told in re.findall(r"K = z² = ([\d.]+\d)", scene.watch):
+            assert (scene.theta, scene.z**2) == pytest.approx((3.14, float(told)))
 
 
 # What the scenes tell people to watch.
