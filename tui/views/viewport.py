@@ -91,7 +91,7 @@ class Viewport(NamedTuple):
     omega: float  # rad/s, there
     theta_per_dot: float  # rad
     omega_per_dot: float  # rad/s
-    wrap: bool = True  # it shows one turn, in which every angle has its place
+    wrap: bool  # it shows one turn, in which every angle has its place
 
     @classmethod
     def portrait(
