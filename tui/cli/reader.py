@@ -144,7 +144,7 @@ def _json(text: io.TextIOBase) -> Iterator[list[str]]:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
     if document is not whole:
-        for items in _lists(document):
+        for items in sorted(_lists(document), key=len):  # the longest is judged
             yield [*_records(items), "&"]  # a new run
         return
     for lines in _blocks(io.StringIO(whole)):

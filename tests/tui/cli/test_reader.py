@@ -495,6 +495,7 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (rows("seed={f} t={t} E={e}", 0, 8) + rows("seed=3 t={t} E={e}", 9), [8, 81]),
         (json.dumps({"a": {"t": TIMES, "E": ENERGIES}, "b": {"t": TIMES, "x": TIMES}}), [90]),
         (json.dumps({name: {"t": TIMES, "E": ENERGIES} for name in "ab"}), [90, 90]),
+        (json.dumps({"a": {"t": TIMES, "E": ENERGIES}, "b": {"t": [8, 9], "E": [1, 2]}}), [2, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
         (pages(rows("t E\n{s} {e}\nt K", 0, 1), "{t} {k}", 0), [1, 18] * 5),
