@@ -52,6 +52,7 @@ FILES = {
     "settled.csv": "t,E\nps,eV\n"
     + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
+    "ended.csv": TABLE + TABLE + "nan,nan\n",
     "huge.csv": "t,E\n" + lines("{t},{e}e200"),
     "steep.csv": "t,E\n" + lines("{t}e-99,{e}", [(t, 1e290 * (1 + t)) for t, _ in ROWS]),
     "tables.log": 31 * "Step TotEng\n1 2\n2 3\nLoop time\n",
@@ -95,6 +96,7 @@ zero.csv --scale 50
 spike.csv
 settled.csv
 failed.csv
+ended.csv
 huge.csv
 cold.csv --scale kinetic:K
 steps.txt --to 0 --atoms 10 --step 1fs --units energy=eV

@@ -125,6 +125,7 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         await pilot.click(pane, at)
         await complete(pilot, pane)
         assert (live.stepping.h, pane.index) == (point.h, 3)
+        assert pane.pointer is None  # the words follow h until it moves again
         await pilot.press("right")
         assert pane.cursor.steps == RUNGS[3]
         await pilot.press("up")
