@@ -154,7 +154,7 @@ def test_stdin_is_read_where_it_is_open():
             os.dup2(file.fileno(), 0)
         assert pendu("judge", "-").out.startswith("stdin: 300 samples from 0 to 29.9")
         os.close(0)
-        assert pendu("judge", "-").refused(3, "stdin: Bad file descriptor; give ")
+        assert pendu("judge", "-").refused(3, "stdin: ", "; give a log")
     finally:
         os.dup2(stdin, 0)
         os.close(stdin)
