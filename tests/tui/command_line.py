@@ -74,7 +74,7 @@ def link(path: Path, target: Path | str) -> None:
 
 def shortened(text: str) -> str:
     """Round long numbers, of which the last digits depend on the machine."""
-    digits = r"(?<!x)\b\d+\.\d{12,}(e[-+]\d+)?"
+    digits = r"(?<!x)\b(?=[\d.]{14})\d+\.\d+(e[-+]\d+)?"
     return re.sub(digits, lambda found: f"{float(found[0]):.4g}", text)
 
 
