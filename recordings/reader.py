@@ -24,7 +24,7 @@ from pendu_tui.recordings.format import EVENTS, FORMAT_VERSION
 
 MAX_RECORD = 1 << 22  # bytes of a chunk and of its contents; the recorder's have 200 kB
 MAX_EXPANSION = 128  # times the compressed size with its head; the recorder's reach 69
-MAX_SUMMARY = 1 << 26  # bytes, which take a second to read; enough for four days
+MAX_SUMMARY = 1 << 26  # bytes, read in a second; those of 570 000 chunks, five days
 MAX_TIME = (1 << 63) - 1  # ns, of log_time
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _MESSAGE = struct.Struct("<BQHIQQ")  # a message's head, to its log and publish time [ns]

@@ -190,7 +190,7 @@ def _energy(
         name = key(bare[found[0]])
         is_total = name.startswith("tot")  # of what?
         if not units[found[0]]:
-            has_more |= bool(further) and _is_wave(_first(samples, found)[0])
+            has_more |= bool(further) and _is_field_or_count(_first(samples, found)[0])
             is_other |= name == "e" and has_more and not has_parts
             is_other |= is_total and bool(further) and not parts
         may_differ = bool(further) or not is_total
@@ -210,12 +210,12 @@ def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
     return bool(others & OTHER_E.get(names[place], set()))
 
 
-def _is_wave(values: Any) -> bool:
-    """Return whether a bare E is a field, which turns its sign often, or counts from 0."""
-    turns = np.diff(values > 0)
-    is_wave = np.count_nonzero(turns[1:] > turns[:-1]) > 2
+def _is_field_or_count(values: Any) -> bool:
+    """Return whether a bare E is a field, which often changes sign, or counts from 0."""
+    changes = np.diff(values > 0)
+    is_field = np.count_nonzero(changes[1:] > changes[:-1]) > 2
     is_count = values.min(initial=1) == 0 and values.max() > 1 and not np.mod(values, 1).any()
-    return bool(is_wave or is_count)
+    return bool(is_field or is_count)
 
 
 def _is_sum(samples: Sequence[Any], places: Group, may_differ: bool) -> bool:

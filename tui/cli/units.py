@@ -105,7 +105,8 @@ def split_unit(name: str) -> tuple[str, str]:
     name = name.strip()[:MAX_NAME]
     match = _BRACKETS.fullmatch(name)
     if match and not _NO_UNITS.fullmatch(match[2]):
-        return match[1], match[2] * (match[2] != "t")  # E(t)
+        is_argument = match[2] == "t"  # of E(t)
+        return match[1], "" if is_argument else match[2]
     match = _SUFFIX.fullmatch(name)
     kind = "time" if match and _TIME_NAME.fullmatch(match[1]) else "energy"
     if match and plain(kind, match[2]):

@@ -166,11 +166,14 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
     assert used == compiled_steps
 
 
-def test_what_numba_cannot_take_is_never_compiled():
+def test_only_what_numba_can_take_is_compiled_and_has_the_same_bits():
     damped = EXAMPLES["damped"].equations
     plain = [(load(VERLET), PENDULUM), (RK4, damped), (method_of("verlet_compensated"), PENDULUM)]
     assert all(isinstance(compiled(*each), PlainLoops) for each in plain)
-    assert not isinstance(compiled(TAYLOR_20, PENDULUM), PlainLoops)
+    loops = compiled(TAYLOR_20, PENDULUM)
+    assert not isinstance(loops, PlainLoops)
+    start = ((2.0, 0.5), 0.1, 20)
+    assert loops.propagate(*start) == PlainLoops(TAYLOR_20, PENDULUM).propagate(*start)
 
 
 def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):

@@ -277,10 +277,36 @@ def test_an_energy_has_not_left_if_it_was_half_its_band_beyond_start_and_rest(be
 
 
 def test_noise_models_are_weighted_by_their_likelihoods():
-    values = 0.1 * NOISE[:40].cumsum() + NOISE[40:80]
-    # the walks' share, by numerical integrals over slope and variances of each model's likelihood
-    for white, walk in ((0.0, 0.0141), (1.0, 0.00197)):
-        assert Slope(np.arange(40), values, 0.0, white).walk == pytest.approx(walk, rel=0.02)
+    """By integrals over slope and variance, and over those of the octaves beyond the edge."""
+    n = 40
+    j = np.arange(1.0, n)
+    cosines = np.cos(np.pi * np.outer(j, np.arange(n) + 0.5) / n) / math.sqrt(n / 2)
+    values = 0.1 * NOISE[:n].cumsum() + NOISE[n : 2 * n]
+    v, x = cosines @ np.arange(n), cosines @ values
+    slopes = (v @ x / (v @ v)) + np.linspace(-2, 2, 2001)
+    variances = np.exp(np.linspace(-10, 10, 401))
+    likelihoods = {}
+    knees = {f"knee {k}": 1 / (1 + (j / k) ** 2) for k in (7, 15, 31)}
+    for name, shape in {"white": j**0, "pink": 1 / j, "walk": 1 / j**2, **knees}.items():
+        for edge in (7, 15, 31, 39):
+            s = shape[:edge]
+            rests = (((x - slopes[:, None] * v)[:, :edge] ** 2) / s).sum(axis=1)
+            known = (math.tau * variances) ** (-edge / 2) / np.sqrt(s.prod())
+            likelihood = (known * np.exp(-rests[:, None] / 2 / variances)).sum() * (edge + 1) / 2
+            for begin in (begin for begin in (8, 16, 32) if begin > edge):
+                rest = (x - slopes[1000] * v)[begin - 1 : 2 * begin - 1] ** 2
+                known = (math.tau * variances) ** (-len(rest) / 2)
+                octave = known * np.exp(-rest.sum() / 2 / variances)
+                likelihood *= octave.sum() * 0.05 / (2 * math.log(1000))
+            likelihoods[name, edge] = likelihood * (0.3 if name == "pink" else 1)
+    walks = sum(likelihoods["walk", edge] for edge in (7, 15, 31, 39))
+    found = Slope(np.arange(n), values, 0.0).walk
+    assert found == pytest.approx(walks / sum(likelihoods.values()), rel=0.02)
+    rests = ((x - slopes[:, None] * v) ** 2).sum(axis=1)
+    known = math.tau**-19.5 * np.exp(-rests / 2).sum() * 20
+    likelihoods["known"] = known * 2 * math.log(1000) / 0.05
+    found = Slope(np.arange(n), values, 0.0, white=1.0).walk
+    assert found == pytest.approx(walks / sum(likelihoods.values()), rel=0.02)
 
 
 def test_in_white_noise_of_a_known_size_a_slope_is_normal():
