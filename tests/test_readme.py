@@ -13,7 +13,7 @@ import pytest
 
 from pendu_tui.engine.run.verdicts import VERDICTS
 from pendu_tui.tui.cli.commands import COMMANDS
-from pendu_tui.tui.cli.dispatch import parser_of
+from pendu_tui.tui.commands.options import parser_of
 from pendu_tui.tui.screens.dialogs import bindings_of, key_lines
 from pendu_tui.tui.screens.lab import LabScreen
 

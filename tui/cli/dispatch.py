@@ -10,19 +10,15 @@ import os
 import sys
 import threading
 from _thread import interrupt_main
-from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from argparse import Namespace
 from collections.abc import Sequence
 from importlib import import_module
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from pendu_tui.engine.inputs import did_you_mean
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
 from pendu_tui.tui.cli.errors import Exit, UserError, explained, warn
-
-if TYPE_CHECKING:
-    from pendu_tui.tui.cli.options import Parser
 
 ROOM = "pendu_tui.tui.commands"
 
@@ -109,10 +105,10 @@ def _dispatch(arguments: list[str]) -> int:
             return Exit.FINE
     try:
         if arguments and arguments[0].startswith("--print-completion"):
-            completion_parser().parse_known_args(arguments)
+            import_module(f"{ROOM}.options").completion_parser().parse_known_args(arguments)
         name, arguments = split(arguments)
         refuse_dropped(name, arguments)
-        options = parser_of(name).parse_args(arguments)
+        options = import_module(f"{ROOM}.options").parser_of(name).parse_args(arguments)
     except SystemExit:  # after --help or --print-completion
         return Exit.FINE
     module, _, function = COMMANDS[name].place.partition(":")
@@ -159,37 +155,6 @@ def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
     for name in (command, *(f"{command} {word.partition('=')[0]}" for word in words)):
         if name in DROPPED:
             raise UserError(f"{name} has been dropped; use instead: {DROPPED[name]}.")
-
-
-def parser_of(name: str) -> "Parser":
-    """Return a command's parser."""
-    from pendu_tui.tui.cli.options import Parser
-
-    command = COMMANDS[name]
-    parser = Parser(
-        prog=f"pendu-tui {name}",
-        description=f"{command.about[0].upper()}{command.about[1:]}.\n\n{command.more}".strip(),
-        formatter_class=RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    import_module(f"{ROOM}.options").add_options(parser, name)
-    return parser
-
-
-def completion_parser() -> "Parser":
-    """Return a parser of all commands with --print-completion."""
-    import shtab
-
-    from pendu_tui.tui.cli.options import Parser
-
-    parser = Parser(prog="pendu-tui")
-    shtab.add_argument_to(parser, "--print-completion")
-    parser.add_argument("--version", action="store_true", help="print the version")
-    commands = parser.add_subparsers(parser_class=ArgumentParser)
-    for name, each in COMMANDS.items():
-        subparser = commands.add_parser(name, help=each.about)
-        import_module(f"{ROOM}.options").add_options(subparser, name)
-    return parser
 
 
 def refuse_to_replace_inputs(options: Namespace) -> None:

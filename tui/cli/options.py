@@ -1,65 +1,14 @@
-"""Options that several commands share, and the readers of their values."""
+"""Readers of the values of options, and of the names of recordings."""
 
-import argparse
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import InputError, check_name, did_you_mean, number, seconds
-from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.engine.inputs import InputError, did_you_mean, number, seconds
 
 LIST = "FIRST:LAST:HOW_MANY"
-
-
-class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one sentence, and which takes -1e-3 and -pi/2 for numbers."""
-
-    def __init__(self, **settings: Any) -> None:
-        super().__init__(**settings)
-        self._negative_number_matcher = re.compile(r"-(\.?\d|pi|π)")
-
-    def _get_value(self, action: argparse.Action, text: str) -> Any:
-        """Return the value of an option; a ValueError's text is the reason to refuse it."""
-        try:
-            return action.type(text) if callable(action.type) else text
-        except ValueError as error:
-            raise argparse.ArgumentError(action, str(error)) from None
-
-    def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuse what is none of the choices, unless the command itself looks at the text."""
-        if action.choices is not None and not isinstance(action.choices, Suggestions):
-            try:
-                check_name("choice", value, action.choices)
-            except InputError as error:
-                raise argparse.ArgumentError(action, str(error)) from None
-
-    def error(self, message: str) -> NoReturn:
-        sentence = message.removeprefix("argument ")
-        match sentence.partition(": "):
-            case "unrecognized arguments", _, words if words.startswith("-"):
-                option = re.split(r"[\s=]", words)[0]
-                sentence = f"there is no option {option}"
-                sentence += did_you_mean(option, self._option_string_actions)
-        if not sentence.endswith(("?", ".")):
-            sentence += f"; {self.prog} --help shows the options."
-        raise UserError(sentence)
-
-    def parse_args(  # type: ignore[override]
-        self, arguments: Sequence[str], namespace: Any = None
-    ) -> Any:
-        """Parse the arguments; words, such as SCENE, may also come between options."""
-        if any(each.endswith("=--") for each in arguments):  # of which Python 3.11 makes a list
-            self.error("-- is not a value")
-        if {"-h", "--help"} & {*arguments}:  # the next would change the help's text
-            return super().parse_args(arguments, namespace)
-        return self.parse_intermixed_args(arguments, namespace)
-
-
-class Suggestions(list[str]):
-    """`choices` for the tab key only: the command itself checks the text."""
 
 
 def resolve(name: str) -> Path:

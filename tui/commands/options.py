@@ -1,4 +1,4 @@
-"""The options of all commands, by the names that COMMANDS gives them.
+"""The options of all commands, by the names that COMMANDS gives them, and the parsers.
 
 What differs for one command stands under `COMMAND NAME`.  The rows are read off the lists of
 scenes, methods, numbers, verdicts and fields.
@@ -6,12 +6,20 @@ scenes, methods, numbers, verdicts and fields.
 
 import argparse
 import math
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import angle, number, seconds
+from pendu_tui.engine.inputs import (
+    InputError,
+    angle,
+    check_name,
+    did_you_mean,
+    number,
+    seconds,
+)
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import VERDICTS
@@ -20,10 +28,10 @@ from pendu_tui.recordings.files import is_stream
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, MEASURED_NUMBERS, MEASURED_WORDS
 from pendu_tui.tui.cli.commands import COMMANDS
+from pendu_tui.tui.cli.errors import UserError
 from pendu_tui.tui.cli.files import FIGURES
 from pendu_tui.tui.cli.options import (
     LIST,
-    Suggestions,
     above_zero,
     count,
     ladder,
@@ -37,6 +45,10 @@ from pendu_tui.tui.drawing.picture import PALETTES
 from pendu_tui.tui.terminal.options import CALM_FPS, CHARACTER_SETS, FPS, cells
 
 Settings = dict[str, Any]  # of an option, as argparse takes them
+
+
+class Suggestions(list[str]):
+    """`choices` for the tab key only: the command itself checks the text."""
 
 
 def option(
@@ -319,3 +331,74 @@ def _add(parser: argparse._ActionsContainer, command: str, names: Iterable[str])
         action = parser.add_argument(*flags, **settings)
         if is_file:
             action.complete = "file"  # type: ignore[attr-defined]
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one sentence, and which takes -1e-3 and -pi/2 for numbers."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self._negative_number_matcher = re.compile(r"-(\.?\d|pi|π)")
+
+    def _get_value(self, action: argparse.Action, text: str) -> Any:
+        """Return the value of an option; a ValueError's text is the reason to refuse it."""
+        try:
+            return action.type(text) if callable(action.type) else text
+        except ValueError as error:
+            raise argparse.ArgumentError(action, str(error)) from None
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse what is none of the choices, unless the command itself looks at the text."""
+        if action.choices is not None and not isinstance(action.choices, Suggestions):
+            try:
+                check_name("choice", value, action.choices)
+            except InputError as error:
+                raise argparse.ArgumentError(action, str(error)) from None
+
+    def error(self, message: str) -> NoReturn:
+        sentence = message.removeprefix("argument ")
+        match sentence.partition(": "):
+            case "unrecognized arguments", _, words if words.startswith("-"):
+                option = re.split(r"[\s=]", words)[0]
+                sentence = f"there is no option {option}"
+                sentence += did_you_mean(option, self._option_string_actions)
+        if not sentence.endswith(("?", ".")):
+            sentence += f"; {self.prog} --help shows the options."
+        raise UserError(sentence)
+
+    def parse_args(  # type: ignore[override]
+        self, arguments: Sequence[str], namespace: Any = None
+    ) -> Any:
+        """Parse the arguments; words, such as SCENE, may also come between options."""
+        if any(each.endswith("=--") for each in arguments):  # of which Python 3.11 makes a list
+            self.error("-- is not a value")
+        if {"-h", "--help"} & {*arguments}:  # the next would change the help's text
+            return super().parse_args(arguments, namespace)
+        return self.parse_intermixed_args(arguments, namespace)
+
+
+def parser_of(name: str) -> Parser:
+    """Return a command's parser."""
+    command = COMMANDS[name]
+    parser = Parser(
+        prog=f"pendu-tui {name}",
+        description=f"{command.about[0].upper()}{command.about[1:]}.\n\n{command.more}".strip(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add_options(parser, name)
+    return parser
+
+
+def completion_parser() -> Parser:
+    """Return a parser of all commands with --print-completion."""
+    import shtab
+
+    parser = Parser(prog="pendu-tui")
+    shtab.add_argument_to(parser, "--print-completion")
+    parser.add_argument("--version", action="store_true", help="print the version")
+    commands = parser.add_subparsers(parser_class=argparse.ArgumentParser)
+    for name, each in COMMANDS.items():
+        subparser = commands.add_parser(name, help=each.about)
+        add_options(subparser, name)
+    return parser

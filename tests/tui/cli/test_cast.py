@@ -10,8 +10,8 @@ from pendu_tui.engine.methods import METHODS, RK4, TAYLOR_20, USUAL_CAST, Cast, 
 from pendu_tui.engine.methods.own import OwnMethod
 from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.cli.cast import cast_of
-from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.scene import scene_of
+from pendu_tui.tui.commands.options import parser_of
 from tests.tui.command_line import EULER, PENDU, ROOT, pendu
 
 SOURCE = EULER.format(name="kick_drift") + EULER.format(name="rk4")

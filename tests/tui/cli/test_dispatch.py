@@ -18,7 +18,8 @@ from pendu_tui.engine.models import NUMBERS
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli import dispatch
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
-from pendu_tui.tui.cli.dispatch import completion_parser, parser_of, split
+from pendu_tui.tui.cli.dispatch import split
+from pendu_tui.tui.commands.options import completion_parser, parser_of
 from tests.tui.command_line import PENDU, pendu
 
 

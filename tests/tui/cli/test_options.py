@@ -7,9 +7,9 @@ import pytest
 from pendu_tui.engine.inputs import InputError, number
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.cli import units
-from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.options import above_zero, count, ladder, moment, scale, step_sizes, values
 from pendu_tui.tui.cli.scene import scene_of
+from pendu_tui.tui.commands.options import parser_of
 
 
 def scene_from(*arguments: str) -> Scene:

@@ -12,9 +12,9 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.files import DiskError, NameTakenError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
-from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
+from pendu_tui.tui.commands.options import parser_of
 from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen

@@ -7,8 +7,7 @@ import shlex
 import pytest
 
 from pendu_tui.tui.cli.commands import COMMANDS
-from pendu_tui.tui.cli.dispatch import parser_of
-from pendu_tui.tui.commands.options import OPTIONS
+from pendu_tui.tui.commands.options import OPTIONS, parser_of
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import own_method, pendu, shortened

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from pendu_tui.tui.cli.dispatch import parser_of
 from pendu_tui.tui.cli.errors import UserError
+from pendu_tui.tui.commands.options import parser_of
 from pendu_tui.tui.terminal import options
 from pendu_tui.tui.terminal.options import (
     CHARACTER_SETS,
