@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -333,6 +334,19 @@ def _add(parser: argparse._ActionsContainer, command: str, names: Iterable[str])
             action.complete = "file"  # type: ignore[attr-defined]
 
 
+def commands_with(option: str) -> str:
+    """Return the end of a sentence that names the commands with an option, "" if none has it."""
+    having = []
+    for name, command in COMMANDS.items():
+        names = command.options.split()
+        groups = [GROUPS[each][2] for each in names if each in GROUPS]
+        if option in chain(names, *groups):
+            having.append(name)
+    if not having:
+        return ""
+    return f"; it is an option of {', '.join(having)}."
+
+
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one sentence, and which takes -1e-3 and -pi/2 for numbers."""
 
@@ -360,8 +374,8 @@ class Parser(argparse.ArgumentParser):
         match sentence.partition(": "):
             case "unrecognized arguments", _, words if words.startswith("-"):
                 option = re.split(r"[\s=]", words)[0]
-                sentence = f"there is no option {option}"
-                sentence += did_you_mean(option, self._option_string_actions)
+                near = did_you_mean(option, self._option_string_actions)
+                sentence = f"there is no option {option}{commands_with(option) or near}"
         if not sentence.endswith(("?", ".")):
             sentence += f"; {self.prog} --help shows the options."
         raise UserError(sentence)

@@ -57,6 +57,10 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("--print-completion ksh", 2, "--print-completion: "),
         ("stability --scene damped", 2, "no friction"),
         ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),
+        ("run --plain", 2, "no option --plain; it is an option of live, tour, replay.\n"),
+        ("run --DT", 2, "there is no option --DT; pendu-tui run --help"),  # not --dask
+        ("run --METHOD_", 2, "there is no option --METHOD_: did you mean --method?\n"),
+        ("run --target 1", 2, "no option --target; it is an option of accuracy.\n"),
         ("run --resume=x", 2, DROPPED["run --resume"]),
         ("snapshot -x lab.svg", 2, "there is no option -x; pendu-tui snapshot --help"),
         ("accuracy --cost second", 2, "--cost: there is no choice 'second': did you mean seconds?"),
