@@ -32,3 +32,18 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, fiel
     assert share in outcome.err
     answer = pendu(*command, "--json").json
     assert (answer["interrupted"], len(answer[field])) == (True, count)
+
+
+def test_the_search_for_a_target_counts_in_the_progress_but_is_not_kept(monkeypatch):
+    def least_cost(*_, show, **more):
+        show(0.5)
+        raise KeyboardInterrupt
+
+    shown = []
+    bar = nullcontext(lambda *done: shown.append(done))
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.progress", lambda _: bar)
+    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.least_cost", least_cost)
+    outcome = pendu(*ACCURACY, "--target", "1e-3", "--methods", "rk4,verlet", "--json")
+    assert (outcome.code, outcome.json["recommendation"]) == (130, None)
+    assert "50 % of the steps are done and kept" in outcome.err
+    assert [done / whole for done, whole in shown[-2:]] == [0.5, 0.75]
