@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import cycle
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TextIO
 
@@ -170,7 +171,8 @@ class Report:
         elif form == "csv":
             records = list(self.rows if self.records is None else self.records)
             if records:
-                write_csv(out or sys.stdout, list(records[0]), map(dict.values, records))
+                names = list(records[0])
+                write_csv(out or sys.stdout, names, map(itemgetter(*names), records))
         else:
             self._show_table()
 

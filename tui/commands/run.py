@@ -44,10 +44,7 @@ MAX_POINTS = 20_000  # samples for a figure
 MAX_PARTS = 400  # of a figure, each drawn as its largest error
 
 Row = dict[str, Any]
-ALWAYS = [each.name for each in quantities.RECORDED if each.recorded == "always"]
-IF_KNOWN = [
-    each.name for each in quantities.RECORDED if each.recorded == "if known" and each.in_gate
-]
+RECORDED = [each.name for each in quantities.RECORDED if each.recorded == "always"]
 
 
 def run(options: argparse.Namespace) -> int:
@@ -146,11 +143,11 @@ def rows_of(lockstep: Lockstep, sample: Sample, is_whole: bool) -> list[Row]:
     rows = []
     methods = zip(scene.cast, sample.readings, lockstep.judgements, strict=True)
     for method, reading, judgement in methods:
-        row = {"method": method.key, **fields_of(reading, *ALWAYS)}
+        row = {"method": method.key, **fields_of(reading, *RECORDED)}
         if not model.conserves_energy:
             row[quantities.LOG_ENERGY_ERROR.name] = row[model.error.name]
-        optional = fields_of(reading, *IF_KNOWN)
-        row |= {name: value for name, value in optional.items() if value is not None}
+        if reading.max_invariant_error is not None:
+            row[quantities.INVARIANT.name] = reading.max_invariant_error
         row |= {variable.name: reading.extra.get(variable.name) for variable in model.variables}
         theta_error = None
         if reading.diverged_at is None:

@@ -125,6 +125,16 @@ def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, 
     assert pendu(*line, "-o", tmp_path / "new.csv").refused(130, "stays as it was")
 
 
+def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_failed():
+    one_fails = ("run", "--theta", 3, "--h", 0.7, "--time", 7, "--methods", "implicit_m,verlet")
+    rows = list(csv.DictReader(pendu(*one_fails, "--csv").out.splitlines()))
+    methods = pendu(*one_fails, "--json").json["methods"]
+    assert [row["diverged_at"] for row in rows] == ["0.7", ""]
+    for row, fields in zip(rows, methods, strict=True):
+        del fields["progress"]
+        assert row == {name: "" if fields[name] is None else str(fields[name]) for name in fields}
+
+
 LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
 
 
