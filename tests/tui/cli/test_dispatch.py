@@ -14,7 +14,6 @@ from unittest.mock import Mock
 import pytest
 
 from pendu_tui.engine.methods import METHODS
-from pendu_tui.engine.models import NUMBERS
 from pendu_tui.recordings.files import GOLDEN
 from pendu_tui.tui.cli import dispatch
 from pendu_tui.tui.cli.commands import COMMANDS, DROPPED
@@ -141,19 +140,6 @@ def test_help_and_version():
     assert "\n  pendu-tui recordings show latest\n" in pendu("recordings", "--help").out
     assert pendu("--help").out.endswith("\n  pendu-tui run crossover --time 100\n")
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
-
-
-NEEDED = {"export": ["a"], "judge": ["a"], "replay": ["a"], "verify": ["a"]}
-
-
-def test_commands_and_their_defaults(snapshot):
-    texts = []
-    for name in COMMANDS:
-        parser = parser_of(name)
-        texts += [f"\n{name}: {parser.description}", parser.epilog]
-        given = vars(parser.parse_args(NEEDED.get(name, [])))
-        texts += [f"{name} {key} = {given[key]}" for key in sorted({*given} - {*NUMBERS})]
-    snapshot("commands.txt", "\n".join(texts) + "\n")
 
 
 def test_the_parser_takes_the_examples():

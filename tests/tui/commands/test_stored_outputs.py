@@ -108,7 +108,7 @@ def test_options(snapshot):
         texts.append(f"{name} {value} {more}: {each['help'] % each}")
     for name in COMMANDS:
         parser = parser_of(name)
-        texts.append(f"\n{name} {parser._defaults}")
+        texts += [f"\n{name}: {parser.description}", parser.epilog, f"{parser._defaults}"]
         for group in (*parser._action_groups, *parser._mutually_exclusive_groups):
             names = (
                 each.dest + " FILE" * hasattr(each, "complete") for each in group._group_actions
