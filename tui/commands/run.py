@@ -1,9 +1,9 @@
 """Simulate a scene as fast as possible, without the TUI, and judge each method."""
 
-import argparse
 import math
 import time
 from argparse import Namespace
+from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from functools import partial
@@ -14,7 +14,6 @@ from pendu_tui.engine.methods import Method
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run import loops
 from pendu_tui.engine.run.lockstep import Lockstep, Reading, Sample
-from pendu_tui.engine.run.verdicts import Progress
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.recordings.events import SAMPLE_EVERY, simulate, steps_for
 from pendu_tui.tui.cli.cast import check_fits
@@ -47,7 +46,7 @@ Row = dict[str, Any]
 RECORDED = [each.name for each in quantities.RECORDED if each.recorded == "always"]
 
 
-def run(options: argparse.Namespace) -> int:
+def run(options: Namespace) -> int:
     scenes = scenes_of(options)
     if options.time is None:
         raise UserError("--time is missing; use for example --time 60.")
@@ -104,24 +103,22 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
         recorder = Recorder(options.record, overwrite=options.force)
         every = min(every, max(1, round(SAMPLE_EVERY / scene.h)))
     every = options.sample_every or every
-    is_figure = form_of(options) == "figure"
-    if is_figure:
+    samples: deque[Sample] = deque(maxlen=1)
+    if form_of(options) == "figure":
         every = min(every, math.ceil(steps / MAX_POINTS))
-    samples: list[Sample] = []
+        samples = deque()
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(
             scene, options.time, recording and recording.add, every, lockstep=lockstep
         ):
             show(sample.step, steps)
-            if not is_figure:
-                samples.clear()
             samples.append(sample)
             if stopped():
                 if recording:
                     recording.keep_older()
                     options.record = recording.path
                 break
-    return samples
+    return list(samples)
 
 
 def _lines(scene: Scene, samples: Sequence[Sample]) -> Iterator[Line]:
@@ -261,7 +258,7 @@ def verdict_of(row: Row) -> str:
         return f"failed at {row['diverged_at']:g} s"
     if row["progress"] is None:
         return str(row["verdict"])
-    return f"{row['verdict']}: {Progress(**row['progress'])}"
+    return f"{row['verdict']}: {row['reason']}"
 
 
 def _rows_of_list(time: float, expected_steps: int, scene: Scene) -> list[Row]:
