@@ -32,7 +32,9 @@ def folder(tmp_path, monkeypatch):
         Path(name).write_bytes((GOLDEN / "drift.mcap").read_bytes())
 
 
-@pytest.mark.parametrize("line", ["", "crossover", "swing.toml", "swing.mcap", "killed.mcap.part"])
+@pytest.mark.parametrize(
+    "line", ["", "crossover", "swing.toml", "swing.mcap", "killed.mcap.part", "tour"]
+)
 def test_nothing_a_scene_or_a_file_opens_the_lab_which_needs_a_terminal(line):
     assert pendu(*line.split()).refused(4, "not a terminal")
 

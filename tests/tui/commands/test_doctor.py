@@ -1,3 +1,6 @@
+"""`pendu-tui doctor`: what it finds, and what it advises."""
+
+import os
 import re
 from importlib.metadata import PackageNotFoundError
 from types import SimpleNamespace
@@ -8,11 +11,7 @@ from pendu_tui.tui.commands import doctor
 from tests.tui.command_line import link, pendu
 
 
-def findings() -> dict[str, dict[str, str]]:
-    return {each["what"]: each for each in pendu("doctor", "--json").json["findings"]}
-
-
-def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_terminal():
+def test_without_a_terminal_it_says_why_the_lab_cannot_start():
     outcome = pendu("doctor")
     assert (outcome.code, outcome.err) == (0, "")
     assert re.search(r"^encoding +utf-8 +fine", outcome.out, re.MULTILINE)
@@ -20,82 +19,65 @@ def test_it_reports_all_it_has_checked_and_why_the_lab_cannot_start_without_a_te
     assert re.search(lab, outcome.out, re.MULTILINE)
 
 
-@pytest.mark.parametrize("folder", ["file", "file/below", "lost link"])
-def test_it_explains_a_folder_of_recordings_that_cannot_be_used(folder, here, monkeypatch):
-    (here / "file").touch()
-    if folder == "lost link":
-        link(here / folder, "nowhere")
-    monkeypatch.setenv("PENDU_RECORDINGS", folder)
-    found = findings()["recordings"]
-    assert found["found"].replace("\\", "/") == folder
-    assert "PENDU_RECORDINGS" in found["advice"]
-
-
-@pytest.mark.parametrize("missing", ["", "numba"])
-def test_it_tells_the_versions_and_to_install_numba(missing, monkeypatch):
-    def version(package: str) -> str:
-        if package == missing:
-            raise PackageNotFoundError
-        return f"{package}'s"
-
-    monkeypatch.setattr(doctor, "version", version)
-    found = findings()
-    packages = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
-    assert found["versions"]["found"] == ", ".join(f"{each} {each}'s" for each in packages)
-    assert found["numba"]["found"] == ("not installed" if missing else "numba's")
-    assert ("[fast]" in found["numba"]["advice"]) == bool(missing)
-
-
-def test_a_folder_that_is_not_there_yet_is_fine_and_is_not_made(tmp_path, monkeypatch):
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "a" / "b"))
-    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=2e9))
-    found = findings()["recordings"]
-    assert found["found"] == f"{tmp_path / 'a' / 'b'}, 2.0 GB free"
-    assert not found["advice"]
-    assert not list(tmp_path.iterdir())
+USUAL = {
+    "COLUMNS": "60",
+    "LINES": "16",
+    "TERM": "xterm-256color",
+    "COLORTERM": "",
+    "NO_COLOR": "",
+    "PENDU_RECORDINGS": "new/folder",
+    "MISSING": "nothing",
+}
+PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
 
 
 @pytest.mark.parametrize(
-    ("number", "fine", "environment"),
+    ("environment", "what", "found", "advice"),
     [
-        (16777216, True, {"TERM": "xterm-256color", "COLORTERM": "truecolor"}),
-        (256, False, {"TERM": "xterm-256color", "COLORTERM": ""}),
-        (16, True, {"TERM": "xterm", "COLORTERM": "", "NO_COLOR": "1"}),
+        ({}, "lab", "starts here", ""),
+        ({}, "size", "60x16", ""),
+        ({"COLUMNS": "59"}, "size", "59x16", "the lab needs 60x16; 120x40 shows all panes"),
+        ({"LINES": "15"}, "size", "60x15", "the lab needs 60x16; 120x40 shows all panes"),
+        ({}, "console", "older", "use Windows Terminal"),
+        ({"WT_SESSION": "1"}, "console", "Windows Terminal", ""),
+        ({}, "encoding", "latin-1", "PYTHONUTF8=1"),
+        ({}, "colours", "256, TERM=xterm-256color", "COLORTERM=truecolor"),
+        ({"COLORTERM": "truecolor"}, "colours", "16777216, TERM=xterm-256color", ""),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "colours", "16, TERM=xterm", ""),
+        ({}, "recordings", "new/folder, 2.0 GB free", ""),
+        ({"PENDU_RECORDINGS": "file"}, "recordings", "file", "set PENDU_RECORDINGS to a writ"),
+        ({"PENDU_RECORDINGS": "file/below"}, "recordings", "file/below", "set PENDU_RECORDINGS"),
+        ({"PENDU_RECORDINGS": "lost link"}, "recordings", "lost link", "set PENDU_RECORDINGS"),
+        ({}, "python", "3.14.1, Windows arm64", ""),
+        ({}, "versions", ", ".join(f"{each} {each}'s" for each in PACKAGES), ""),
+        ({}, "numba", "numba's", ""),
+        ({"MISSING": "numba"}, "numba", "not installed", "install pendu-tui[fast]"),
     ],
 )
-def test_colours_are_read_from_the_environment(number, fine, environment, monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    for name, value in environment.items():
-        monkeypatch.setenv(name, value)
-    found = findings()["colours"]
-    assert bool(found["advice"]) == (not fine)
-    assert found["found"] == f"{number}, TERM={environment['TERM']}"
+def test_what_is_found_comes_with_advice_unless_it_is_fine(
+    environment, what, found, advice, here, monkeypatch
+):
+    def version(package: str) -> str:
+        if package == os.environ["MISSING"]:
+            raise PackageNotFoundError
+        return f"{package}'s"
 
-
-@pytest.mark.parametrize(("session", "console"), [("1", "Windows Terminal"), ("", "older")])
-def test_on_windows_it_says_which_terminal_to_use(session, console, monkeypatch):
-    monkeypatch.setattr("platform.system", lambda: "Windows")
-    monkeypatch.setattr("platform.python_version", lambda: "3.14.1")
-    monkeypatch.setattr("platform.machine", lambda: "arm64")
+    (here / "file").touch()
+    if found == "lost link":
+        link(here / found, "nowhere")
+    before = [*here.iterdir()]
     monkeypatch.delenv("WT_SESSION", raising=False)
-    if session:
-        monkeypatch.setenv("WT_SESSION", session)
-    found = findings()
-    assert found["python"]["found"] == "3.14.1, Windows arm64"
-    assert found["console"]["found"] == console
-    assert ("use Windows Terminal" in found["console"]["advice"]) == (not session)
-
-
-@pytest.mark.parametrize(("size", "fine"), [("60x16", True), ("59x16", False), ("60x15", False)])
-def test_a_terminal_may_be_as_small_as_the_lab(size, fine, monkeypatch):
+    for name, value in (USUAL | environment).items():
+        monkeypatch.setenv(name, value)
     stdout = SimpleNamespace(isatty=lambda: True, encoding="latin-1")
     monkeypatch.setattr(doctor, "sys", SimpleNamespace(stdout=stdout))
     monkeypatch.setattr(doctor, "check_terminal", lambda: None)
-    for name, value in zip(("COLUMNS", "LINES"), size.split("x"), strict=True):
-        monkeypatch.setenv(name, value)
-    found = findings()
-    assert found["lab"] == {"what": "lab", "found": "starts here", "advice": ""}
-    assert found["size"]["found"] == size
-    advice = "" if fine else "the lab needs 60x16; 120x40 shows all panes"
-    assert found["size"]["advice"] == advice
-    assert "PYTHONUTF8=1" in found["encoding"]["advice"]
+    monkeypatch.setattr(doctor, "version", version)
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=2e9))
+    for name, value in (("system", "Windows"), ("python_version", "3.14.1"), ("machine", "arm64")):
+        monkeypatch.setattr(f"platform.{name}", lambda value=value: value)
+    findings = {each.pop("what"): each for each in pendu("doctor", "--json").json["findings"]}
+    assert findings[what]["found"].replace("\\", "/") == found
+    assert advice in findings[what]["advice"]
+    assert bool(advice) == bool(findings[what]["advice"])
+    assert [*here.iterdir()] == before  # no folder is made

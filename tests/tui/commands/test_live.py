@@ -12,6 +12,7 @@ from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.files import DiskError, NameTakenError, listing
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
+from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
 from pendu_tui.tui.commands.options import parser_of
@@ -42,11 +43,6 @@ def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_
     advice = "with PENDU_RECORDINGS, or use --no-record"
     assert pendu("live", "--plain").refused(5, f"choose another folder, {advice}")
     assert advice not in pendu("live", "--plain", "--record", path).err
-
-
-@pytest.mark.parametrize("command", ["live", "tour", "replay drift"])
-def test_without_a_terminal_there_is_no_screen(command):
-    assert pendu(*command.split(), "--no-record").refused(4, "not a terminal")
 
 
 def test_labs_that_begin_at_once_record_under_names_of_their_own(tmp_path, monkeypatch):
@@ -100,11 +96,12 @@ def asking(tmp_path):
 def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     screens = []
     methods = []
+    watched = []
     library = asking.with_name("library")
     monkeypatch.setenv("PENDU_RECORDINGS", str(library))
     monkeypatch.setattr(lab, "own_methods", lambda options: options.method)
     monkeypatch.setattr(lab, "remember", methods.append)
-    monkeypatch.setattr("pendu_tui.tui.cli.watchdog.watch_calls_in_c", bool)
+    monkeypatch.setattr(watchdog, "watch_calls_in_c", lambda: watched.append("by a process"))
     monkeypatch.setattr(lab, "check_terminal", lambda: None)
     monkeypatch.setattr(lab, "show", lambda screen, options: screens.append(screen) or 0)
     looping = ("--loop", "--paused", "--start-at", 3, "--speed", 2, "--no-record")
@@ -123,6 +120,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     assert screens[-1].record.keywords == {"file": Path("new.mcap")}
     assert [screen.guide is None for screen in screens] == [True, True, False, False]
     assert methods == [[], ["mine.py"]]
+    assert watched == ["by a process"]
     sources = [screen.source for screen in screens]
     given, usual, equal, live = sources
     assert (given.looping, given.playhead.paused, given.playhead.position) == (True, True, 3.0)
