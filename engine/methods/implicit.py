@@ -30,13 +30,13 @@ def implicit(share: float) -> Phases:
     A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.  A
     step for which Newton's iteration finds none is nan.
     """
-    for_numbers = _solving(share, size=abs, any_of=bool, root=lambda negative: math.nan)
+    for_numbers = _solving(share, size=abs, any_of=bool)
 
     @cache
     def for_arrays() -> Phases:
         import numpy as np
 
-        return _solving(share, size=np.abs, any_of=np.any, root=np.sqrt)
+        return _solving(share, size=np.abs, any_of=np.any)
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         if any(hasattr(value, "shape") for value in phase):
@@ -47,15 +47,8 @@ def implicit(share: float) -> Phases:
     return implicit_steps
 
 
-def _solving(
-    share: float,
-    size: Callable[[Any], Any],
-    any_of: Callable[[Any], Any],
-    root: Callable[[Any], Any],
-) -> Phases:
-    """Return the method for numbers with these functions for |x|, any(x) and a root,
-    which is nan below 0.
-    """
+def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], Any]) -> Phases:
+    """Return the method for numbers with these functions for |x| and any(x)."""
 
     def solved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta, omega = phase
@@ -75,7 +68,7 @@ def _solving(
                 if not any_of(unsolved):
                     break
             if any_of(unsolved):
-                inside = inside + root(-1.0 * unsolved)  # nan where there is no solution
+                inside = inside * math.nan**unsolved  # nan ** 0 is 1: a solution stays
             a = force(inside)
             theta = theta + h * (omega + part * a)
             omega = omega + h * a

@@ -193,6 +193,7 @@ def test_a_limit_is_found_from_a_tenth_up_to_sixteen(parts, limit):
     assert measure.linear_limit(slower) == pytest.approx(limit)
 
 
+@pytest.mark.filterwarnings("error")
 def test_a_step_without_a_solution_fails_and_others_of_an_array_do_not():
     far, near = np.array([3.0, 0.1]), np.zeros(2)
     step = IMPLICIT_MIDPOINT.step
