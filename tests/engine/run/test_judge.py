@@ -19,8 +19,9 @@ from pendu_tui.engine.run.loops import PlainLoops, compiled
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
-from tests.bench.judging import exclude, judgements
+from tests.bench.judging import exclude, holds, judgements
 from tests.engine.run.test_record import noise_of
+from tests.sine import needs_rounded_sine
 from tests.truths import is_true, scene_at, truths, verdicts
 
 E, S, V, R = USUAL_CAST
@@ -356,6 +357,16 @@ def test_a_run_is_judged_when_it_is_an_eighth_longer():
             judgements.append(step)
     assert judgements == [64, 72, 82, 94, 106, 120, 136, 156]  # with bins of 2, then 4 looks
     assert judge.judgement.slope == pytest.approx(156 / 0.1, rel=0.02)
+
+
+@needs_rounded_sine
+def test_a_bob_thrown_by_turns_a_step_loses_energy_while_it_rests_below_its_start():
+    start = {"theta": 1.581580747099299, "omega": 18.124266099091454}
+    thrown = Scene(**start, h=0.6112206380406671, cast=(E,))
+    lockstep = moved(thrown, [1000])
+    (judgement,) = lockstep.judgements
+    assert (judgement.verdict, judgement.rests, holds(lockstep)) == ("loses", True, True)
+    assert not holds(moved(thrown, [100]))
 
 
 @pytest.mark.parametrize("name", ["gentle", "crossover", "spin", "damped", "stiff-limit"])
