@@ -193,7 +193,7 @@ class Judge:
         elif found.verdict == BOUNDED and away > max(levels.LEFT * (high - low), rounding):
             found = found._replace(verdict=direction(low), rests=True)
         elif reason := self._doubt(found.verdict, away > rounding):
-            found = found._replace(verdict=UNDECIDED, reason=reason)
+            found = found._replace(verdict=UNDECIDED, reason=reason, rests=False)
         if found.verdict in LEAVES:
             self._left = self._left or found.verdict
         if found.verdict == GROWS and not found.rests:

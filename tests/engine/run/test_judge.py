@@ -245,6 +245,12 @@ def test_an_error_that_beats_must_go_one_way_nine_times_in_ten(every, length, si
     assert judge_of([0.0, *errors], h=0.401).judgement.reason == reason
 
 
+def test_what_is_undecided_is_not_said_to_rest():
+    errors = [0.0] * 1000 + [5.0] * 2000
+    found = [judge_of(errors, h=h).judgement for h in (0.1, 0.401)]
+    assert [(each.verdict, each.rests) for each in found] == [("grows", True), ("undecided", False)]
+
+
 def test_a_symplectic_method_comes_back():
     judgement = judge_of(1e-3 * np.arange(6000), method=method_of("verlet_compensated")).judgement
     assert (judgement.verdict, judgement.reason) == ("undecided", levels.RETURNS)
