@@ -68,7 +68,8 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     if source.exact.regime == "equilibrium":
         return Insight("at rest", "Nothing moves: the pendulum started at rest in equilibrium.")
     is_moment = shot.moment is not None and step == round(shot.moment / h)
-    if is_moment and shot.sentence and source.stepping.h == source.scene.h:
+    is_page = source.playhead.paused and source.stepping.h == source.scene.h
+    if is_moment and is_page and shot.sentence:
         return Insight("watch", shot.sentence)
     if source.history.returned is not None and abs(source.sample.t) < TURN:
         return _returned(source.scene, source.history.returned, hidden)

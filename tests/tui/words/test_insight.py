@@ -161,6 +161,8 @@ def test_an_error_past_anothers_maximum_is_news_after_what_to_watch():
         other = Live(replace(scene, h=0.1, shot=shot), clock=lambda: 0.0)
         other.step(3)
         assert insight(other) == ("watch", sentence or scene.watch)
+        other.pause(False)  # as when a lesson is left
+        assert insight(other) == ("watch", scene.watch)
 
 
 def test_names_of_methods_are_painted_in_their_inks_and_nothing_else():
