@@ -214,9 +214,21 @@ class Live(Source):
             self._runs += 1
             state.run.branch(self._runs)
             self._enter(state.run, state.history)
+        if state.stepping != self.stepping and 0 < self._run.changes[-1].step == self._run.step:
+            self._take_back_changes()
         if state.stepping != self.stepping:
             self.change(state.stepping)
         super().return_to(state)
+
+    def _take_back_changes(self) -> None:
+        """Go on as a new run without the changes at this step, which ended the verdicts."""
+        step = self._run.step
+        self._go_to(step - 1)
+        self._go_to(step)
+        self._runs += 1
+        self._run.branch(self._runs)
+        self._note_start()
+        self._take_sample()
 
     def _enter(self, run: RewindableRun, history: History) -> None:
         self._run = run

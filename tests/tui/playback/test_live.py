@@ -16,6 +16,7 @@ from pendu_tui.engine.run.loops import CompiledLoops, PlainLoops
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Z_LIMITS
 from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.verification import verify
 from pendu_tui.tui.playback import live
 from pendu_tui.tui.playback.source import doubled
 from tests.own_methods import VERLET, load
@@ -223,6 +224,27 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     assert later.events == bench.keeper.events
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
+
+
+def test_a_change_undone_before_the_next_step_takes_no_verdict_away(tmp_path):
+    bench = Lab(record=tmp_path / "lab.mcap")
+    lab = bench.live
+    bench.run(10)
+    before, judged = lab.run_state, lab.judgements
+    assert [each.verdict for each in judged] != ["undecided"] * 4
+    for _ in range(2):
+        lab.change(lab.stepping.next(up=True))
+    lab.return_to(before)
+    assert (lab.stepping, lab.judgements) == (before.stepping, judged)
+    assert lab.sample.run == 2
+    bench.run(1)
+    lab.change(lab.stepping.next(up=True))
+    bench.run(1)
+    lab.return_to(before)  # a step later it is a change from here on
+    assert (lab.stepping, lab.sample.run) == (before.stepping, 2)
+    assert lab.sample.t == pytest.approx(12.0, abs=0.11)
+    lab.close()
+    assert verify(tmp_path / "lab.mcap").identical
 
 
 def test_an_absurd_step_size_is_refused_and_changes_nothing():
