@@ -56,7 +56,6 @@ class PenduApp(App[Exit | BaseException]):
         screen.fps = terminal.fps
         self.character_filter = CharacterSetFilter(terminal.character_set)
         self.lab = screen
-        self._last_notice = ""
         self._watchdog = watchdog()
 
     def export_screenshot(self, **options: Any) -> str:
@@ -88,15 +87,12 @@ class PenduApp(App[Exit | BaseException]):
             self.exit(error)
 
     def notify(self, message: str, **options: Any) -> None:
-        """Show a notice in place of an equal one, so that a held key covers one line only.
+        """Show a notice in place of the last one, so that they cover no number.
 
         Notices have no markup, because units are in brackets, and name files as they are named.
         """
-        message = printable(message, limit=1000)
-        if message == self._last_notice:
-            self.clear_notifications()
-        self._last_notice = message
-        super().notify(message, **{**options, "markup": False})
+        self.clear_notifications()
+        super().notify(printable(message, limit=1000), **{**options, "markup": False})
 
     def finish(self) -> None:
         for source in self.lab.sources:

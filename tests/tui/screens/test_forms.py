@@ -70,6 +70,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         for row in range(4, 9):
             await click(row)
         assert len(form.cast) == MAX_METHODS  # no more than fit
+        assert str(MAX_METHODS) in theatre.notices[0]
         for row in range(10):
             if known[row] in form.cast:
                 await click(row)
@@ -77,7 +78,7 @@ async def test_methods_are_taken_by_keys_and_clicks_in_the_order_that_is_chosen(
         assert not form.cast
         await theatre.press("enter")
         assert theatre.app.screen is form  # not without a method
-        assert [str(MAX_METHODS) in each for each in theatre.notices] == [True, False]
+        assert "at least one" in theatre.notices[0]
         await click(3)
         await theatre.press("home", "space", "down", "space", "space", "enter")
         assert theatre.scene.cast == (known[3], known[0])

@@ -71,7 +71,7 @@ async def test_an_outdated_size_is_ignored_or_two_would_call_each_other_up_for_e
     assert arranged == [Size(80, 24)]
 
 
-async def test_notices_lie_on_the_insight_line_and_replace_equal_ones(snapshot, monkeypatch):
+async def test_notices_lie_on_the_insight_line_and_replace_each_other(snapshot, monkeypatch):
     monkeypatch.setattr(PenduApp, "TOOLTIP_DELAY", 0.01)
     live = Live(DEFAULT_SCENE.altered(h=5e-10), clock=lambda: 0.0)
     live.tick(0.0)
@@ -85,10 +85,9 @@ async def test_notices_lie_on_the_insight_line_and_replace_equal_ones(snapshot, 
             )
         snapshot("notice.txt", looks(app))
         await pilot.press("m", *["minus"] * 9)
-        refused = [each for each in app._notifications if "not a usable" in each.message]
-        assert [(each.severity, each.markup, each.timeout) for each in refused] == [
-            ("warning", False, 15)
-        ]
+        (refused,) = app._notifications
+        assert "not a usable" in refused.message
+        assert (refused.severity, refused.markup, refused.timeout) == ("warning", False, 15)
         app.notify("\x1b[2J" + 996 * "x")
         await pilot.pause()
         assert [*app._notifications][-1].message == "\N{REPLACEMENT CHARACTER}[2J" + 996 * "x"
