@@ -89,7 +89,7 @@ def _returned(scene: Scene, sample: Sample, hidden: Collection[str]) -> Insight:
             miss = FAILED
         if method.key not in hidden:
             misses.append(f"{method.letter} {miss}")
-    text = f"Back at t = 0; distance from the start [rad]: {', '.join(misses)}."
+    text = f"Back at 0, off by [rad]: {', '.join(misses)}."
     return Insight("returned", text)
 
 

@@ -214,6 +214,7 @@ def test_there_and_back_shows_at_the_start_which_methods_are_reversible():
     live.step(1)
     found = insight(live)
     assert found.kind == "returned"
+    assert len(found.text) <= 58  # all of it on the smallest terminal
     missed = dict(each.split() for each in found.text.partition(": ")[2][:-1].split(", "))
     assert float(missed["v"]) < 1e-12  # reversible but for rounding, 1e-16 a step
     assert 1e-9 < float(missed["r"]) < 1e-2  # h⁵
@@ -224,9 +225,7 @@ def test_there_and_back_shows_at_the_start_which_methods_are_reversible():
     explicit, *others = live.history.returned.readings
     readings = (explicit._replace(diverged_at=1.0), *others)
     sample = live.history.returned._replace(readings=readings)
-    text = (
-        f"Back at t = 0; distance from the start [rad]: e failed, s {missed['s']}, r {missed['r']}."
-    )
+    text = f"Back at 0, off by [rad]: e failed, s {missed['s']}, r {missed['r']}."
     assert _returned(scene, sample, {"velocity_verlet"}).text == text
     live.step(round(7.95 / live.scene.h))
     assert insight(live).kind == "returned"
