@@ -57,15 +57,7 @@ class History:
         self._last_row = -1  # the step of the last row
         self._waiting: list[Row] = []
         self._rows: Rows | None = None
-        self._returned: Sample | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
-
-    @property
-    def returned(self) -> Sample | None:
-        """The last sample so far at which reversed time was back at 0."""
-        if self._returned is None or self._returned.step > self.step:
-            return None
-        return self._returned
 
     def add(self, sample: Sample, is_row: bool = True) -> None:
         """Make this the current sample, and keep it if it is a row.
@@ -76,18 +68,12 @@ class History:
         if self.step >= 0 and sample.run != self.sample.run:
             self._last_row = sample.step - 1
             self._filled.truncate(self._last_row)
-            if self._returned and self._returned.step > self._last_row:
-                self._returned = None
-        is_new = sample.step > self._last_row
         change = change_before(self.changes, sample.step)
-        h = change.stepping.h
-        if is_new and sample.step and abs(sample.t) < 1e-6 * abs(h):  # t is rounded
-            self._returned = sample
         if change not in self._modified_starts and change.step <= self.step < sample.step:
             self._modified_starts[change] = self._modified_energies(self.sample, change.stepping)
         self.sample = sample
         self.step = sample.step
-        if is_row and is_new:
+        if is_row and sample.step > self._last_row:
             self._last_row = sample.step
             self._waiting.append(self._row(sample, with_extremes=True))
             if len(self._waiting) >= 64:  # the first paint does not wait for NumPy

@@ -93,6 +93,12 @@ class Source(ABC):
         return self.history.exact
 
     @property
+    def is_back(self) -> bool:
+        """Whether reversed time is at 0 again, but for rounding."""
+        sample = self.sample
+        return sample.step > 0 and abs(sample.t) < 1e-6 * abs(self.stepping.h)
+
+    @property
     def changes(self) -> Sequence[SteppingChange]:
         """The run's changes of step, in order; a recording's include later ones."""
         return self.history.changes

@@ -179,9 +179,7 @@ class LabScreen(SizedScreen[None]):
         """Pause at the moment of a page, and where reversed time is back at 0."""
         if self.lesson.follow(live, before):
             self.show_now()
-            return
-        returned = live.history.returned
-        if returned is not None and before.step < returned.step == live.sample.step:
+        elif live.is_back and before.step < live.sample.step:
             live.pause(True)
             live.mark("Back at the start")
             self.show_now()

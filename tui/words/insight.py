@@ -22,7 +22,7 @@ from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.words.numbers import about, seconds, two_digits
 
 FRESH = 6.0  # s of the clock during which a milestone is news
-TURN = 8.0  # s for each of the lasting insights, and for the return to t = 0
+TURN = 8.0  # s for each of the lasting insights
 UNCHANGED = 0.05  # a smaller change of the energy is not worth mentioning
 MAX_BAND = 0.2  # of the energy; larger losses change the rate of loss
 MAX_PERIOD = 2.0  # small swings; near the separatrix the rate of loss depends on the energy
@@ -71,8 +71,8 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     is_page = source.playhead.paused and source.stepping.h == source.scene.h
     if is_moment and is_page and shot.sentence:
         return Insight("watch", shot.sentence)
-    if source.history.returned is not None and abs(source.sample.t) < TURN:
-        return _returned(source.scene, source.history.returned, hidden)
+    if source.is_back:
+        return _returned(source.scene, source.sample, hidden)
     if found := _news(source, step - FRESH * pace / h, hidden):
         return found
     known = lasting(source, hidden) or [Insight("nothing")]

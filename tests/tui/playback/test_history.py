@@ -205,23 +205,6 @@ def test_at_equal_cost_it_is_the_modified_energy_of_the_steps_really_taken():
         assert cut[index] == pytest.approx(quarter[index], rel=0.1)
 
 
-def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
-    assert run(DRIFT, (200, 0.05), (199, -0.05)).returned is None
-    assert run(DRIFT, (10, 0.05), (40, -0.03)).returned is None  # it goes past
-    assert run(DRIFT, (200, 0.05), (200, -0.05)).returned.step == 400
-    history = run(DRIFT, (200, 0.05), (230, -0.05))
-    assert history.returned.step == 400
-    back = history.returned
-    history.add(back._replace(step=399))
-    assert history.returned is None
-    history.add(back._replace(step=399, t=0.05, run=2))
-    history.add(back._replace(step=450, t=0.1, run=2))
-    assert history.returned is None
-    history = run(DRIFT, (20, 0.05), (25, -0.05))
-    history.add(back._replace(step=41, t=-0.05, run=2))  # also in the past of this run
-    assert history.returned.step == 40
-
-
 def test_the_last_angles_before_a_row_are_known_without_numpy():
     history = filled(6)
     assert history.thetas(3)[0] == (3, 4, 5)
