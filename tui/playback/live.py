@@ -59,11 +59,6 @@ class Live(Source):
         self._enter(run, history or History(scene, run.changes))
 
     @property
-    def next_step(self) -> float:
-        ahead = self._run.x + abs(self.stepping.h) - self.playhead.position
-        return ahead / abs(self.playhead.speed)
-
-    @property
     def events(self) -> Sequence[Event]:
         run = self._run
         return [event for event in self._events if event.run != run.run or event.step <= run.step]

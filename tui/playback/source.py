@@ -104,11 +104,6 @@ class Source(ABC):
         return self.history.changes
 
     @property
-    def next_step(self) -> float | None:
-        """In how many seconds of the clock a lab takes its next step."""
-        return None
-
-    @property
     def run_state(self) -> RunState:
         return RunState(self.playhead.speed, self.stepping, self.history, self.ghost)
 

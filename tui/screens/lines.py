@@ -1,6 +1,5 @@
 """The lines around a view: status, seek bar, lesson, insight, keys, "Terminal too small"."""
 
-import math
 import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
@@ -109,10 +108,6 @@ def _stepping(source: Source, shown: Shown) -> Iterator[Segment]:
     zs = {cast[place]: abs(stepping.own[place]) * fastest for place in shown.places(cast)}
     if warning := limit_warning(zs):
         yield Segment(9, warning)
-    # with a second or more from step to step, the lab would seem to stand still
-    is_slow = abs(stepping.h / source.playhead.speed) >= 1.0
-    if is_slow and not source.playhead.paused and source.next_step is not None:
-        yield Segment(9, f"next step in {max(math.ceil(source.next_step), 1)} s")
 
 
 def _recording(source: Source) -> Iterator[Segment]:
