@@ -220,10 +220,14 @@ class Live(Source):
         step = self._run.step
         self._go_to(step - 1)
         self._go_to(step)
+        self._branch()
+        self._take_sample()
+
+    def _branch(self) -> None:
+        """Go on from here as a new run, which shares this one's past."""
         self._runs += 1
         self._run.branch(self._runs)
         self._note_start()
-        self._take_sample()
 
     def _enter(self, run: RewindableRun, history: History) -> None:
         self._run = run
@@ -239,9 +243,7 @@ class Live(Source):
         """
         stepping.check(self.scene.w0)
         if self._run.in_past:
-            self._runs += 1
-            self._run.branch(self._runs)
-            self._note_start()
+            self._branch()
         with _limited(self.scene, self._run):
             self._run.change(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
