@@ -191,8 +191,8 @@ def _found(
         sign = 1.0 if compare in (operator.gt, operator.ge) else -1.0
         if bound is None or bound > abs(ours):
             return not_within(float(limit), name, slope=ours, bound=bound, sign=sign)
-    unknown = ours == UNDECIDED != limit
-    if not (unknown or compare(ours, limit)):
+    is_unknown = ours == UNDECIDED and limit != UNDECIDED
+    if not (is_unknown or compare(ours, limit)):
         return ""
     if not isinstance(ours, str):
         return f"{name} is {reading.get('shown', {}).get(field) or format(ours, '.3g')}"

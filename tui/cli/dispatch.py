@@ -158,16 +158,12 @@ def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
 
 
 def refuse_to_replace_inputs(options: Namespace) -> None:
-    """Raise UserError if an output is a file that another argument names, even with --force."""
-    arguments = dict(vars(options))
-    outputs = [arguments.pop(name, None) for name in ("output", "record")]
-    inputs: list[str] = []
-    for value in arguments.values():
-        for text in value if isinstance(value, list) else [value]:
-            if isinstance(text, str):
-                inputs += [text, text.rpartition(":")[0]]  # FILE.py:FUNCTION
-    for output in outputs:
-        if isinstance(output, Path) and any(_is_same(output, each) for each in inputs):
+    """Raise UserError if an output is a file that is read, even with --force."""
+    inputs = [vars(options).get(name) for name in ("file", "scene", "scene_option")]
+    for text in options.method:
+        inputs += [text, text.rpartition(":")[0]]  # FILE.py:FUNCTION
+    for output in filter(None, (options.output, options.record)):
+        if any(_is_same(output, each) for each in filter(None, inputs)):
             raise UserError(f"{output} is read by this command; choose another name to write.")
 
 

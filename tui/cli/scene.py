@@ -9,7 +9,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, replace
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -277,9 +277,8 @@ def _cast(names: Sequence[str], folder: Path) -> Cast:
 
 def scene_text(scene: Scene) -> str:
     """Return a scene as TOML, which `read_scenes` reads to the last bit."""
-    default = Shot()
-    shot = {each.name: getattr(scene.shot, each.name) for each in fields(Shot)}
-    shot = {name: value for name, value in shot.items() if value != getattr(default, name)}
+    default = vars(Shot())
+    shot = {name: value for name, value in vars(scene.shot).items() if value != default[name]}
     methods = []
     for method in scene.cast:
         file = getattr(method, "file", "")  # of the user's own

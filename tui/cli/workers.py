@@ -67,11 +67,11 @@ def received(results: Any, process: BaseProcess, seconds: float | None = None) -
 def awaited(results: Any, process: BaseProcess, seconds: float, what: str) -> Any:
     """Return what a process sends within some seconds, and show that it is awaited."""
     with progress(what) as show:
-        for second in range(1, math.ceil(seconds)):
+        for second in range(math.ceil(seconds)):
+            show(second, seconds)
             with suppress(TimeoutError):
                 return received(results, process, 1.0)
-            show(second, seconds)
-        return received(results, process, 1.0)
+        raise TimeoutError
 
 
 @dataclass

@@ -114,9 +114,10 @@ def play(source: Source, options: argparse.Namespace, lesson: Lesson | None = No
     A lab is recorded from its start, a replay from where it continues live.
     """
     if isinstance(source, Live) and not options.no_record:
-        recording_path(options.record)  # a name that cannot be used is refused before the screen
         if options.plain:
             start_recording(source, options.record)
+        else:
+            recording_path(options.record)  # refuses a name before the screen is up
     if options.plain:
         return print_sentences(source, lesson)
     screen = LabScreen(source)

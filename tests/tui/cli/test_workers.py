@@ -110,4 +110,4 @@ def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
     monkeypatch.setattr(workers, "progress", lambda _: show)
     with pytest.raises(TimeoutError):
         awaited(here, process, 4.0, "waiting")
-    assert waits == [1.0, (1, 4.0), 1.0, (2, 4.0), 1.0, (3, 4.0), 1.0]
+    assert waits == [(0, 4.0), 1.0, (1, 4.0), 1.0, (2, 4.0), 1.0, (3, 4.0), 1.0]
