@@ -35,7 +35,8 @@ def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(m
     monkeypatch.setenv("COLUMNS", "30")
     warn(sentence)
     assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"
-    monkeypatch.setattr("sys.stderr", terminal := Terminal())
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
     warn(sentence)
     lines = terminal.getvalue().splitlines()
     assert (len(lines), " ".join(lines)) == (5, f"pendu-tui: {sentence}")

@@ -1,19 +1,11 @@
-"""`pendu-tui scenes` and `pendu-tui methods`."""
+"""`pendu-tui methods`."""
 
 import pytest
 
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.run.loops import available
-from pendu_tui.engine.scenes import SCENES
 from pendu_tui.tui.commands.lists import CLAIMS
 from tests.tui.command_line import pendu
-
-
-def test_scenes_as_json_hold_everything_that_determines_a_run():
-    fields = [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]
-    assert pendu("scenes", "--json").json["scenes"] == fields
-    assert pendu("scenes", "crossover", "--json").json["scenes"][0] in fields
-    assert pendu("scenes", "crosover").refused(2, "crossover")
 
 
 def test_methods_that_are_named_are_listed_alone():
@@ -24,7 +16,6 @@ def test_methods_that_are_named_are_listed_alone():
     answer = pendu("methods", "--json").json
     assert [method["key"] for method in answer["methods"]] == [method.key for method in METHODS]
     assert answer["compiled"] == available()
-    assert pendu("methods", "rk5").refused(2, "rk4")
 
 
 BROKEN = """
@@ -59,7 +50,6 @@ def test_a_gate_compares_what_is_measured_of_ones_own_method_alone(tmp_path):
     ("method", "gate", "code"),
     [
         ("velocity_verlet", "order < 1.9 or symplectic != yes", 0),
-        ("heun", "symplectic != yes", 1),
         ("halving_verlet", "symplectic == yes", 1),  # which is not measured, like its order
     ],
 )

@@ -28,6 +28,8 @@ MISTAKES = {
         "--fail-if 'rk4.verdict == grows'": "is not understood",
         "--fail-if 'theta_error > 1'": "no field 'theta_error'",
     },
+    "methods": {"rk5": "did you mean rk4?"},
+    "scenes": {"crosover": "did you mean crossover?"},
     "methods --fail-if": dict.fromkeys(
         ["'verdict == grows'", "'symplectic < 1'", "'symplectic == no_'"], "--fail-if"
     ),
