@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Callable, Iterable, Iterator
 
+from pendu_tui.engine.quantities import DIVERGED_AT
 from pendu_tui.recordings.format import EXTRA, MOMENT, READING, Field, values_of
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.tui.cli.errors import Exit, progress, warn
@@ -45,8 +46,8 @@ def _rows(
         cast = recording.run_of(sample.run).scene.cast
         for method, reading in zip(cast, sample.readings, strict=True):
             place = (clock, sample.run, sample.step, sample.t, method.key)
-            values = [*map(values_of(reading).get, names)]
+            known = {name: value for name, value in values_of(reading).items() if value is not None}
             if reading.diverged_at is not None:  # a recording repeats the last finite numbers
-                values = [value if value == reading.diverged_at else None for value in values]
+                known = {DIVERGED_AT.name: reading.diverged_at}
             # NaN, because readers take an empty column for text
-            yield *place, *("NaN" if value is None else value for value in values)
+            yield *place, *(known.get(name, "NaN") for name in names)

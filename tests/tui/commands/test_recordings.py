@@ -121,12 +121,16 @@ def test_export_to_stdout_is_the_file(tmp_path):
 
 
 def test_after_a_failure_export_writes_nan_and_not_the_last_finite_numbers(tmp_path):
-    run = ("--theta", "3", "--h", "0.7", "--time", "7", "--methods", "implicit_m,verlet")
-    pendu("run", *run, "--record", tmp_path / "a.mcap")
+    run = ("--theta", "3", "--omega", "0.7", "--h", "0.7", "--time", "7")
+    methods = ("--methods", "implicit_m,verlet")
+    pendu("run", *run, *methods, "--record", tmp_path / "a.mcap")
     rows = list(csv.DictReader(pendu("export", tmp_path / "a.mcap").out.splitlines()))
     failed = [row for row in rows if row["method"] == "implicit_midpoint"][1:]
     assert failed
-    assert {(row["energy_error"], row["diverged_at_s"]) for row in failed} == {("NaN", "0.7")}
+    numbers = {
+        (row["omega_rad_per_s"], row["energy_error"], row["diverged_at_s"]) for row in failed
+    }
+    assert numbers == {("NaN", "NaN", "0.7")}
     assert "NaN" not in {
         row["energy_error"] for row in rows if row["method"] != "implicit_midpoint"
     }
