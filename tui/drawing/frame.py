@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.tui.drawing.canvas import Canvas
-from pendu_tui.tui.drawing.picture import FRAME, TEXT, Ink, Picture, Row
+from pendu_tui.tui.drawing.picture import FRAME, TEXT, Ink, Row
 
 Floats = NDArray[np.float64]
 Value = TypeVar("Value", float, Floats)
@@ -326,7 +326,3 @@ def spread(wanted: Sequence[float], room: int) -> list[int]:
 
 def _mean(group: Sequence[float]) -> int:
     return math.floor(sum(group) / len(group) + 0.5)
-
-
-def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
-    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height)

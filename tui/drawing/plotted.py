@@ -20,7 +20,6 @@ from pendu_tui.tui.drawing.frame import (
     log_axis,
     log_x_axis,
     number_ticks,
-    too_small,
 )
 from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture
 
@@ -84,7 +83,7 @@ def loglog_chart(
     Points that are not finite and positive are left out; reference lines are clipped.
     """
     if width < MIN_COLUMNS or height < MIN_ROWS:
-        return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
+        return _too_small(width, height)
     axes = LogLog.fitting(series, width, height)
     canvas = axes.canvas
     curves = [(one, *axes.curve(one)) for one in series]
@@ -160,7 +159,7 @@ def record_chart(
     """
     width, height = size
     if width < MIN_COLUMNS or height < MIN_ROWS:
-        return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
+        return _too_small(width, height)
     trend = errors.mean() + (slope or 0.0) * (times[[0, -1]] - times.mean())
     edges = [trend + sigmas * (deviation or 0.0) for sigmas in (-2, 2)]
     span = np.concatenate([errors, *edges])
@@ -191,3 +190,8 @@ def _spans(times: Floats, errors: Floats, count: int) -> tuple[Floats, Floats]:
     low = np.minimum.reduceat(errors, first)
     high = np.maximum.reduceat(errors, first)
     return np.repeat(times[first], 2), np.stack([low, high], axis=1).ravel()
+
+
+def _too_small(width: int, height: int) -> Picture:
+    text = f"A chart needs {MIN_COLUMNS}×{MIN_ROWS} characters."
+    return Picture.of_text(text, width, height)

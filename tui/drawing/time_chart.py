@@ -20,7 +20,6 @@ from pendu_tui.tui.drawing.frame import (
     log_axis,
     log_time_axis,
     time_axis,
-    too_small,
 )
 from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, Picture, faint, inks
 from pendu_tui.tui.playback.rows import Window
@@ -128,10 +127,11 @@ def time_chart(
     largest magnitude of the half swing that ends there, so that zeros do not tear the lines.  With
     logarithmic time a power law is straight.  A CROSSING is where one error passes another for
     good.  `names` of the cast stand beside their lines.  The same methods of a ghost lie behind,
-    fainter.  `changes` of the step are pairs of x [s] and a label.
+    fainter.  `changes` of the step are pairs of x [s] and a label.  A pane smaller than the least
+    chart cuts it off.
     """
-    if width < MIN_COLUMNS or height < MIN_ROWS:
-        return TimePlot(too_small(width, height, MIN_COLUMNS, MIN_ROWS))
+    width = max(width, MIN_COLUMNS)
+    height = max(height, MIN_ROWS)
     runs = _runs(window, cast, shown, ghost)
     plot, times, sides = _plot(runs, window, shown, width, height - 1)
     low, high = sides[0]
