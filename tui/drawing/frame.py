@@ -201,11 +201,15 @@ class End(NamedTuple):
     """The end of a line."""
 
     column: int  # after its last point
-    row: float  # of its last point, from the top
-    ink: int
+    rows: Floats  # (2, columns): the highest and lowest of the line in the field's columns
     letter: str
     name: str
-    rows: Floats  # (2, columns): the highest and lowest of the line in the field's columns
+    ink: int
+
+    @property
+    def row(self) -> float:
+        """The row of its last point, from the top."""
+        return float(self.rows[:, self.column - 1].mean()) - 0.5
 
 
 class Frame:
@@ -263,7 +267,7 @@ class LineChart(Frame):
         super().__init__(x_axis, y_axis, columns, rows, room=ROOM)
         self.canvas = Canvas(self.width, rows)
 
-    def picture(self) -> list[Row]:
+    def framed(self) -> list[Row]:
         return self.around(self.canvas.picture().rows)
 
     def name_lines(self, ends: Iterable[End]) -> None:

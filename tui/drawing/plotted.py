@@ -107,7 +107,7 @@ def loglog_chart(
                 canvas.label(column, row, one.mark, QUIET)
     above = y_label[:width].ljust(width)
     below = x_label[:width].rjust(width)
-    return Picture([[(above, TEXT)], *axes.picture(), [(below, TEXT)]])
+    return Picture([[(above, TEXT)], *axes.framed(), [(below, TEXT)]])
 
 
 def plotted(
@@ -181,7 +181,7 @@ def record_chart(
     ):
         curve = (chart.right(x).tolist(), chart.up(y).tolist(), is_dotted)
         chart.canvas.braille(plotted([curve], chart.width, rows), ink)
-    return Picture([[(title[:width].ljust(width), TEXT)], *chart.picture()])
+    return Picture([[(title[:width].ljust(width), TEXT)], *chart.framed()])
 
 
 def _spans(times: Floats, errors: Floats, count: int) -> tuple[Floats, Floats]:

@@ -1,8 +1,7 @@
 """A chart of one quantity of all methods over time, which can be read out by column."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -23,7 +22,7 @@ from pendu_tui.tui.drawing.frame import (
 )
 from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, Picture, faint, inks
 from pendu_tui.tui.playback.rows import Window
-from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.playback.shown import Quantity, Shown
 
 MIN_COLUMNS = 20
 MIN_ROWS = 4
@@ -39,22 +38,25 @@ class Reading(NamedTuple):
     values: list[float]  # in the order of `places`; nan where not known
 
 
-@dataclass(frozen=True, slots=True)
-class TimePlot:
-    """A chart and its numbers."""
+class TimePlot(LineChart):
+    """A chart that can be read out by column; its heights are log10 of values if `shown.log`."""
 
     picture: Picture
-    places: Sequence[int] = ()  # in the cast
-    left: int = 0  # the column of the first moment
-    times: Sequence[float] = ()  # s, at the middle of each column
-    values: Floats | None = None  # (columns, methods)
-    ends: tuple[float, float] = (0.0, 1.0)  # of the time axis: s, or log10 of it
-    log_time: bool = False
+    places: Sequence[int]  # in the cast
+    values: Floats  # (columns, methods)
+
+    def __init__(
+        self, x_axis: Axis, y_axis: Axis, columns: int, rows: int, *, shown: Shown, times: Floats
+    ) -> None:
+        super().__init__(x_axis, y_axis, columns, rows)
+        self.shown = shown
+        self.times = times  # s, at the middle of each column
+        self._limit = min(math.log10(LARGEST), y_axis.high) if shown.log else LARGEST
 
     def at(self, column: int) -> Reading | None:
         """Return the values in a column, or in the last column before it that has any."""
         at = column - self.left
-        if self.values is None or not 0 <= at < len(self.times):
+        if not 0 <= at < self.columns:
             return None
         known = np.flatnonzero(~np.isnan(self.values[: at + 1]).all(axis=1))
         if not len(known):
@@ -68,38 +70,110 @@ class TimePlot:
 
         The moment at the column, or in the middle, stays there.  Returns None for the whole run.
         """
-        low, high = self.ends
+        low = self.x_axis.low
+        high = self.x_axis.high
+        log_time = self.shown.has_log_time
         share = 0.5
         if column is not None:
-            share = min(max((column - self.left + 0.5) / len(self.times), 0.0), 1.0)
+            share = min(max((column - self.left + 0.5) / self.columns, 0.0), 1.0)
         length = factor * (high - low)
         begin = low + share * (high - low - length)
-        limits = _time_axis(whole, Shown(log_time=self.log_time), len(self.times))
+        limits = _time_axis(whole, Shown(log_time=log_time), self.columns)
         begin = min(max(begin, limits.low), max(limits.high - length, limits.low))
         end = min(begin + length, limits.high)
         if begin == limits.low and end == limits.high:
             return None
-        return (10.0**begin, 10.0**end) if self.log_time else (begin, end)
+        return (10.0**begin, 10.0**end) if log_time else (begin, end)
+
+    def draw_marks(self, changes: Sequence[tuple[float, str]]) -> None:
+        """Draw the changes of the step and the reference line."""
+        canvas = self.canvas
+        for x, text in changes:
+            value = math.log10(max(x, FLOOR)) if self.shown.has_log_time else x
+            if self.x_axis.low < value < self.x_axis.high:
+                at = 2 * self.columns * self.x_axis.share(value)
+                canvas.line(at, 0, at, canvas.height, FRAME, dotted=True)
+                begin = min(int(at) // 2 + 1, canvas.columns - len(text))
+                canvas.label(begin, self.rows - 1, text, QUIET)
+        for text, level in _levels(self.shown).items():
+            down = canvas.height * min(1 - self.y_axis.share(level), 1.0)
+            canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
+            row = max(int(down) // 4 - 1, 0)
+            canvas.label(1, row, text, EXACT)
+
+    def on_chart(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+        """Return the values with nan for those after a curve has left the chart."""
+        gone = self._beyond(low, high)
+        gone[1:] &= gone[:-1].copy()
+        gone[:1] = False
+        return np.where(gone, np.nan, low), np.where(gone, np.nan, high)
+
+    def _beyond(self, low: Floats, high: Floats) -> Mask:
+        return (high > self._limit) | (low < -LARGEST)
+
+    def draw_curves(self, inks: Iterable[int], low: Floats, high: Floats) -> None:
+        for ink, lows, highs in zip(inks, low.T, high.T, strict=True):
+            x, y = _outline(self.up(lows), self.up(highs))
+            down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
+            self.canvas.path(2 * x + 1.5, down, ink)
+
+    def draw_crossings(self, high: Floats, repeats: float) -> None:
+        """Mark where one error passes another for good."""
+        row = (self.y_axis.high - self.y_axis.low) / self.rows
+        for column, value in _crossings(high / row, self.times, repeats):
+            self.canvas.label(column, self.row(value * row), CROSSING, TEXT)
+
+    def ends(
+        self, labels: Iterable[tuple[str, str, int]], run: "_Run", low: Floats, high: Floats
+    ) -> Iterator[End]:
+        """Yield the ends of curves; write the latest value of those that left the chart."""
+        beyond = self._beyond(low, high)
+        rows = self.rows - np.stack([self.up(high), self.up(low)])
+        for place, (letter, name, ink) in enumerate(labels):
+            known = np.flatnonzero(~np.isnan(high[:, place]))
+            if not len(known):
+                continue
+            column = int(known[-1]) + 1
+            if beyond[known[-1], place]:
+                value = max(run.high[-1, place], run.low[-1, place], key=abs)
+                self._write_value(column, letter, value, ink)
+            else:
+                yield End(column, rows[:, :, place], letter, name, ink)
+
+    def _write_value(self, column: int, letter: str, value: float, ink: int) -> None:
+        """Write what a curve has come to where it left the chart."""
+        rows = range(self.rows)
+        arrow = "↑"
+        if value < 0 and not self.shown.log:
+            rows = rows[::-1]
+            arrow = "↓"
+        number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
+        text = f"{arrow}{letter}{number}"
+        column = min(column, self.canvas.columns - len(text))
+        self.canvas.label_where_blank([(column, row) for row in rows], text, ink)
 
 
 class _Run(NamedTuple):
-    """The quantity of some methods of a run, or of a ghost."""
+    """The quantity of the methods shown, in a run or in its ghost."""
 
     window: Window
-    inks: list[int]
     low: Floats  # (rows, methods)
     high: Floats
 
-    def columns(self, edges: Floats, log: bool, log_time: bool) -> tuple[Floats, Floats]:
+    @classmethod
+    def of(cls, window: Window, quantity: Quantity, places: Sequence[int]) -> "_Run":
+        return cls(window, window.low[quantity][:, places], window.high[quantity][:, places])
+
+    def columns(self, edges: Floats, shown: Shown) -> tuple[Floats, Floats]:
         """Return the lowest and the highest value in each column, (columns, methods).
 
         On a logarithmic axis both are log10 of the largest magnitude at the column.
         """
         x = self.window.x
-        if not log:
+        if not shown.log:
             return per_column(x, self.low, self.high, edges)
         hold = self.window.repeats
-        if not log_time:  # in whole columns, or moving charts would flicker
+        if not shown.has_log_time:  # in whole columns, or moving charts would flicker
             column = (edges[-1] - edges[0]) / (len(edges) - 1)
             hold = column * math.ceil(hold / column)
         magnitude = np.maximum(np.fmax(abs(self.low), abs(self.high)), FLOOR)
@@ -118,7 +192,7 @@ def time_chart(
     height: int,
     *,
     names: Sequence[str] = (),
-    ghost: tuple[Window, Cast] | None = None,
+    ghost: Window | None = None,
     changes: Sequence[tuple[float, str]] = (),
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
@@ -126,156 +200,53 @@ def time_chart(
     A column spans the lowest to the highest value in it.  On a logarithmic axis it shows the
     largest magnitude of the half swing that ends there, so that zeros do not tear the lines.  With
     logarithmic time a power law is straight.  A CROSSING is where one error passes another for
-    good.  `names` of the cast stand beside their lines.  The same methods of a ghost lie behind,
+    good.  `names` of the cast stand beside their lines.  A ghost of the same cast lies behind,
     fainter.  `changes` of the step are pairs of x [s] and a label.  A pane smaller than the least
     chart cuts it off.
     """
-    width = max(width, MIN_COLUMNS)
-    height = max(height, MIN_ROWS)
-    runs = _runs(window, cast, shown, ghost)
-    plot, times, sides = _plot(runs, window, shown, width, height - 1)
-    low, high = sides[0]
-    values = np.where(abs(low) > abs(high), low, high)
-    if shown.log:
-        values = 10.0**high
-    plot.draw_marks(changes)
-    sides = [plot.on_chart(*side) for side in sides]
-    for run, side in zip(runs, sides, strict=True):
-        plot.draw_curves(run.inks, *side)
-    low, high = sides[0]
-    if shown.log:
-        plot.draw_crossings(high, times, window.repeats)
     places = shown.places(cast)
-    labels = [(cast[place].letter, names[place] if names else "") for place in places]
-    plot.name_lines(plot.ends(runs[0], low, high, labels))
-    return TimePlot(
-        Picture(plot.picture()),
-        places=places,
-        left=plot.left,
-        times=times.tolist(),
-        values=values,
-        ends=(plot.x_axis.low, plot.x_axis.high),
-        log_time=plot.log_time,
-    )
+    runs = [_Run.of(window, shown.quantity, places)]
+    if ghost is not None:
+        runs.append(_Run.of(ghost, shown.quantity, places))
+    plot, sides = _plot(runs, shown, max(width, MIN_COLUMNS), max(height, MIN_ROWS) - 1)
+    low, high = sides[0]
+    plot.places = places
+    plot.values = 10.0**high if shown.log else np.where(abs(low) > abs(high), low, high)
+    plot.draw_marks(changes)
+    colours = [inks(cast)[place] for place in places]
+    (low, high), *behind = [plot.on_chart(*side) for side in sides]
+    plot.draw_curves(colours, low, high)
+    for side in behind:
+        plot.draw_curves(map(faint, colours), *side)
+    if shown.log:
+        plot.draw_crossings(high, window.repeats)
+    labels = [
+        (cast[place].letter, names[place] if names else "", ink)
+        for place, ink in zip(places, colours, strict=True)
+    ]
+    plot.name_lines(plot.ends(labels, runs[0], low, high))
+    plot.picture = Picture(plot.framed())
+    return plot
 
 
 def _plot(
-    runs: "list[_Run]", window: Window, shown: Shown, width: int, rows: int
-) -> "tuple[_Plot, Floats, list[tuple[Floats, Floats]]]":
-    """Return the axes, the time [s] of each column, and each run's values in the columns."""
+    runs: Sequence[_Run], shown: Shown, width: int, rows: int
+) -> tuple[TimePlot, list[tuple[Floats, Floats]]]:
+    """Return the axes, and each run's values in the columns."""
     levels = _levels(shown)
     label_width = 5  # enough for decades
     if not shown.log:
         y_axis = _linear_y_axis(runs, levels, rows)
         label_width = y_axis.label_width
     columns = columns_beside(label_width, width)
-    x_axis = _time_axis(window, shown, columns)
+    x_axis = _time_axis(runs[0].window, shown, columns)
     moments = np.linspace(x_axis.low, x_axis.high, 2 * columns + 1)
     if shown.has_log_time:
         moments = 10.0**moments
-    sides = [run.columns(moments[::2], shown.log, shown.has_log_time) for run in runs]
+    sides = [run.columns(moments[::2], shown) for run in runs]
     if shown.log:
         y_axis = _log_y_axis(np.hstack([high for _, high in sides]), levels, rows)
-    plot = _Plot(x_axis, y_axis, columns, rows)
-    plot.levels = levels
-    plot.log_time = shown.has_log_time
-    if shown.log:
-        plot.limit = min(math.log10(LARGEST), y_axis.high)
-    return plot, moments[1::2], sides
-
-
-def _runs(
-    window: Window, cast: Cast, shown: Shown, ghost: tuple[Window, Cast] | None
-) -> list[_Run]:
-
-    def run(window: Window, cast: Cast) -> _Run:
-        places = [place for place, method in enumerate(cast) if method.key in keys]
-        low = window.low[shown.quantity][:, places]
-        high = window.high[shown.quantity][:, places]
-        return _Run(window, [inks(cast)[place] for place in places], low, high)
-
-    keys = {cast[place].key for place in shown.places(cast)}
-    runs = [run(window, cast)]
-    if ghost is not None:
-        behind = run(*ghost)
-        runs.append(behind._replace(inks=[faint(ink) for ink in behind.inks]))
-    return runs
-
-
-class _Plot(LineChart):
-    """The axes of a chart over time, whose values are logarithms if `limit` is one."""
-
-    limit = LARGEST
-    levels: dict[str, float]
-    log_time: bool
-
-    def draw_marks(self, changes: Sequence[tuple[float, str]]) -> None:
-        """Draw the changes of the step and the levels."""
-        canvas = self.canvas
-        for x, text in changes:
-            value = math.log10(max(x, FLOOR)) if self.log_time else x
-            if self.x_axis.low < value < self.x_axis.high:
-                at = 2 * self.columns * self.x_axis.share(value)
-                canvas.line(at, 0, at, canvas.height, FRAME, dotted=True)
-                begin = min(int(at) // 2 + 1, canvas.columns - len(text))
-                canvas.label(begin, self.rows - 1, text, QUIET)
-        for text, level in self.levels.items():
-            down = canvas.height * min(1 - self.y_axis.share(level), 1.0)
-            canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)
-            row = max(int(down) // 4 - 1, 0)
-            canvas.label(1, row, text, EXACT)
-
-    def on_chart(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-        """Return the values with nan for those after a curve has left the chart."""
-        gone = self._beyond(low, high)
-        gone[1:] &= gone[:-1].copy()
-        gone[:1] = False
-        return np.where(gone, np.nan, low), np.where(gone, np.nan, high)
-
-    def draw_curves(self, inks: Sequence[int], low: Floats, high: Floats) -> None:
-        for place, ink in enumerate(inks):
-            x, y = _outline(self.up(low[:, place]), self.up(high[:, place]))
-            down = np.minimum(4 * (self.rows - y), 4 * self.rows - 1)
-            self.canvas.path(2 * x + 1.5, down, ink)
-
-    def _beyond(self, low: Floats, high: Floats) -> Mask:
-        return (high > self.limit) | (low < -LARGEST)
-
-    def draw_crossings(self, high: Floats, times: Floats, repeats: float) -> None:
-        """Mark where one error passes another for good."""
-        row = (self.y_axis.high - self.y_axis.low) / self.rows
-        for column, value in _crossings(high / row, times, repeats):
-            self.canvas.label(column, self.row(value * row), CROSSING, TEXT)
-
-    def ends(
-        self, run: _Run, low: Floats, high: Floats, labels: Sequence[tuple[str, str]]
-    ) -> Iterator[End]:
-        """Yield the ends of curves; where one has left the chart, write its value instead."""
-        beyond = self._beyond(low, high)
-        rows = self.rows - np.stack([self.up(high), self.up(low)])
-        for place, (ink, (letter, name)) in enumerate(zip(run.inks, labels, strict=True)):
-            known = np.flatnonzero(~np.isnan(high[:, place]))
-            if not len(known):
-                continue
-            at = int(known[-1])
-            if beyond[at, place]:
-                value = max(run.high[-1, place], run.low[-1, place], key=abs)
-                self._write_value(at + 1, letter, value, ink)
-                continue
-            row = float(rows[:, at, place].mean()) - 0.5
-            yield End(at + 1, row, ink, letter, name, rows[:, :, place])
-
-    def _write_value(self, column: int, letter: str, value: float, ink: int) -> None:
-        """Write what a curve has come to where it left the chart."""
-        rows = range(self.rows)
-        arrow = "↑"
-        if value < 0 and self.limit == LARGEST:
-            rows = rows[::-1]
-            arrow = "↓"
-        number = f" {value:.0e}".replace("e+", "e") if math.isfinite(value) else ""
-        text = f"{arrow}{letter}{number}"
-        column = min(column, self.canvas.columns - len(text))
-        self.canvas.label_where_blank([(column, row) for row in rows], text, ink)
+    return TimePlot(x_axis, y_axis, columns, rows, shown=shown, times=moments[1::2]), sides
 
 
 def _levels(shown: Shown) -> dict[str, float]:
@@ -353,7 +324,7 @@ def _log_y_axis(largest: Floats, levels: dict[str, float], rows: int) -> Axis:
     return log_axis(bottom, max([top, *levels.values()]), rows)
 
 
-def _linear_y_axis(runs: list[_Run], levels: dict[str, float], rows: int) -> Axis:
+def _linear_y_axis(runs: Sequence[_Run], levels: dict[str, float], rows: int) -> Axis:
     lowest = np.hstack([run.low.ravel() for run in runs])
     highest = np.hstack([run.high.ravel() for run in runs])
     if np.isnan(highest).all():

@@ -129,7 +129,7 @@ class TimeChart(Pane):
             back = until - look.stretch.begin
         ghost = None
         if source.ghost is not None:
-            ghost = source.ghost.window(until, back), source.ghost.scene.cast
+            ghost = source.ghost.window(until, back)
         changes = [(change.x, f"h {change.stepping.h:.4g}") for change in source.changes[1:]]
         names = [short_name(method) for method in self.cast]
         return time_chart(
@@ -171,7 +171,7 @@ class TimeChart(Pane):
     def zoom(self, factor: float) -> None:
         """Zoom by `factor` about the pointer, down to 8 rows of the history."""
         plot = self.plot
-        if plot is None or plot.values is None:
+        if plot is None:
             return
         window = self.source.history.window()
         ends = plot.zoomed(window, factor, self.pointer)
@@ -180,7 +180,7 @@ class TimeChart(Pane):
                 self.post_message(Zoomed(None))
         elif factor >= 1 or len(window.cut(*ends).x) >= 8:
             run = self.source.sample.run
-            self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
+            self.post_message(Zoomed(Stretch(run, *ends, plot.shown.has_log_time)))
 
 
 SMALL = 22  # columns of the stage on the smallest screen

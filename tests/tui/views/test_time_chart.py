@@ -6,8 +6,7 @@ from textual.geometry import Size
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
-from pendu_tui.tui.drawing.picture import Picture
-from pendu_tui.tui.drawing.time_chart import TimePlot, time_chart
+from pendu_tui.tui.drawing.time_chart import time_chart
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown, Stretch
 from pendu_tui.tui.views.lab import TimeChart
@@ -90,8 +89,9 @@ def test_where_every_method_has_a_shadow_energy_its_chart_has_keys_below():
     pane = TimeChart()
     pane.source = Live(WHOLE.with_cast(WHOLE.cast[1:3]))
     pane.room = Size(44, 12)
-    told = pane._below(TimePlot(Picture()), pane.source, Shown(quantity="shadow_error"))
-    assert told == "e: quantity, w: window, z: zoom, y: axes"
+    pane.shown = Shown(quantity="shadow_error")
+    pane.picture(pane.source, pane.source.sample)
+    assert pane.border_subtitle == "e: quantity, w: window, z: zoom, y: axes"
 
 
 def charted(fps, scene, *, changes=False, returns=False):
