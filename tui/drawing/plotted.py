@@ -23,7 +23,7 @@ from pendu_tui.tui.drawing.frame import (
 )
 from pendu_tui.tui.drawing.picture import QUIET, TEXT, Picture
 
-MIN_COLUMNS = 20
+MIN_COLUMNS = 20  # smaller charts have so many, too
 MIN_ROWS = 6
 
 
@@ -49,15 +49,17 @@ class LogLog(LineChart):
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> "LogLog":
+        width = max(width, MIN_COLUMNS)
+        rows = max(height, MIN_ROWS) - 3
         points = np.concatenate(
             [np.empty((0, 2)), *(one.logs() for one in series if not one.dotted)]
         )
         if not len(points):
             points = np.array([(0.0, -4.0), (1.0, 0.0)])
         (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-        y_axis = log_axis(bottom, top, height - 3)
+        y_axis = log_axis(bottom, top, rows)
         columns = columns_beside(y_axis.label_width, width)
-        return cls(log_x_axis(left, right, columns), y_axis, columns, height - 3)
+        return cls(log_x_axis(left, right, columns), y_axis, columns, rows)
 
     def curve(self, series: Series) -> tuple[list[float], list[float]]:
         """Return x and y in characters from the lower left corner; references are clipped."""
@@ -82,8 +84,6 @@ def loglog_chart(
 
     Points that are not finite and positive are left out; reference lines are clipped.
     """
-    if width < MIN_COLUMNS or height < MIN_ROWS:
-        return _too_small(width, height)
     axes = LogLog.fitting(series, width, height)
     canvas = axes.canvas
     curves = [(one, *axes.curve(one)) for one in series]
@@ -105,6 +105,7 @@ def loglog_chart(
             near = [(at, down) for down in (row, row - 1, row + 1) for at in beside]
             if not canvas.label_where_blank(near, f" {one.mark}", QUIET):
                 canvas.label(column, row, one.mark, QUIET)
+    width = axes.left + axes.width
     above = y_label[:width].ljust(width)
     below = x_label[:width].rjust(width)
     return Picture([[(above, TEXT)], *axes.framed(), [(below, TEXT)]])
@@ -157,13 +158,11 @@ def record_chart(
     Dotted lines through their mean have the `slope`, and lie two `deviation`s beside it.  A column
     of dots spans the lowest to the highest error in it.
     """
-    width, height = size
-    if width < MIN_COLUMNS or height < MIN_ROWS:
-        return _too_small(width, height)
+    width = max(size[0], MIN_COLUMNS)
+    rows = max(size[1], MIN_ROWS) - 2
     trend = errors.mean() + (slope or 0.0) * (times[[0, -1]] - times.mean())
     edges = [trend + sigmas * (deviation or 0.0) for sigmas in (-2, 2)]
     span = np.concatenate([errors, *edges])
-    rows = height - 2
     y_axis = linear_axis(span.min(), span.max(), rows)
     first = times[0]
     last = times[-1]
@@ -190,8 +189,3 @@ def _spans(times: Floats, errors: Floats, count: int) -> tuple[Floats, Floats]:
     low = np.minimum.reduceat(errors, first)
     high = np.maximum.reduceat(errors, first)
     return np.repeat(times[first], 2), np.stack([low, high], axis=1).ravel()
-
-
-def _too_small(width: int, height: int) -> Picture:
-    text = f"A chart needs {MIN_COLUMNS}×{MIN_ROWS} characters."
-    return Picture.of_text(text, width, height)

@@ -24,7 +24,7 @@ from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, Picture, fa
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Quantity, Shown
 
-MIN_COLUMNS = 20
+MIN_COLUMNS = 20  # smaller charts have so many, too
 MIN_ROWS = 4
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 LARGEST = 1e6  # larger values are off the chart, which leaves room for the other methods
@@ -201,8 +201,7 @@ def time_chart(
     largest magnitude of the half swing that ends there, so that zeros do not tear the lines.  With
     logarithmic time a power law is straight.  A CROSSING is where one error passes another for
     good.  `names` of the cast stand beside their lines.  A ghost of the same cast lies behind,
-    fainter.  `changes` of the step are pairs of x [s] and a label.  A pane smaller than the least
-    chart cuts it off.
+    fainter.  `changes` of the step are pairs of x [s] and a label.
     """
     places = shown.places(cast)
     runs = [_Run.of(window, shown.quantity, places)]

@@ -23,7 +23,7 @@ from pendu_tui.engine.studies.accuracy import (
     with_all_methods,
 )
 from pendu_tui.tui.drawing.picture import FRAME, Picture, ink_of
-from pendu_tui.tui.drawing.plotted import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
+from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
 from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Chooser, Memo, StepSizeChosen, StudyView
 from pendu_tui.tui.words.studies import COSTS, front_words, point_words
@@ -53,8 +53,6 @@ def placed(
     series: Sequence[Series], points: Sequence[Point], kind: ErrorKind, width: int, height: int
 ) -> Placed:
     """Return the cells of points on the chart of error over force evaluations."""
-    if width < MIN_COLUMNS or height < MIN_ROWS:
-        return []
     axes = LogLog.fitting(series, width, height)
     drawn = [point for point in points if 0 < point.errors[kind] < math.inf]
     return [(*axes.cell(point.force_evaluations, point.errors[kind]), point) for point in drawn]
