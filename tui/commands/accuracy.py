@@ -173,7 +173,7 @@ class Results:
         yield ""
         columns = min(get_terminal_size((MAX_COLUMNS, ROWS)).columns, MAX_COLUMNS)
         series = accuracy_series(self.points, self.kind, self.cost, self.scene.cast)
-        chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS)
+        chart = accuracy_chart(series, self.kind, self.cost, columns, ROWS).picture
         yield from lines_of(chart, PALETTES["dark"])
         if self.options.all:
             yield f"\n{front_words(front(self.points, self.kind, self.cost), self.cost)}"

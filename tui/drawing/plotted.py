@@ -47,6 +47,8 @@ class Series:
 class LogLog(LineChart):
     """Two logarithmic axes that fit some series, below a line of words and above one."""
 
+    picture: Picture
+
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> "LogLog":
         width = max(width, MIN_COLUMNS)
@@ -79,7 +81,7 @@ class LogLog(LineChart):
 
 def loglog_chart(
     series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str
-) -> Picture:
+) -> LogLog:
     """Draw marked points and dotted reference lines on two logarithmic axes that fit the points.
 
     Points that are not finite and positive are left out; reference lines are clipped.
@@ -108,7 +110,8 @@ def loglog_chart(
     width = axes.left + axes.width
     above = y_label[:width].ljust(width)
     below = x_label[:width].rjust(width)
-    return Picture([[(above, TEXT)], *axes.framed(), [(below, TEXT)]])
+    axes.picture = Picture([[(above, TEXT)], *axes.framed(), [(below, TEXT)]])
+    return axes
 
 
 def plotted(

@@ -28,9 +28,6 @@ from pendu_tui.tui.playback.source import Source
 from pendu_tui.tui.views.view import Chooser, Memo, StepSizeChosen, StudyView
 from pendu_tui.tui.words.studies import COSTS, front_words, point_words
 
-Placed = list[tuple[int, int, Point]]
-"""Column and row in the chart, and the point drawn there."""
-
 MARKS: dict[Flaw, str] = {"lost": "x", "rounding": "~"}
 """The marks of points whose error says nothing about the order."""
 
@@ -45,29 +42,8 @@ BESIDE = 0.2  # the dotted line of an order runs at this share of the errors
 
 def accuracy_chart(
     series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int
-) -> Picture:
+) -> LogLog:
     return loglog_chart(series, width, height, x_label=COSTS[cost], y_label=ERROR_LABELS[kind])
-
-
-def placed(
-    series: Sequence[Series], points: Sequence[Point], kind: ErrorKind, width: int, height: int
-) -> Placed:
-    """Return the cells of points on the chart of error over force evaluations."""
-    axes = LogLog.fitting(series, width, height)
-    drawn = [point for point in points if 0 < point.errors[kind] < math.inf]
-    return [(*axes.cell(point.force_evaluations, point.errors[kind]), point) for point in drawn]
-
-
-def nearest(places: Placed, x: int, y: int) -> Point | None:
-    """Return the point nearest to a cell, if there is one within 6 columns or 3 rows."""
-
-    def distance(place: tuple[int, int, Point]) -> float:
-        return math.hypot(place[0] - x, 2 * (place[1] - y))
-
-    near = min(places, key=distance, default=None)
-    if near is not None and distance(near) <= 6:
-        return near[2]
-    return None
 
 
 def accuracy_series(
@@ -134,6 +110,7 @@ class AccuracyPane(Chooser[Point]):
         self.points: dict[tuple[str, int], Point] = {}  # by method's key and steps
         self.all = False  # whether to include methods outside the cast
         self._chosen: ErrorKind | None = None
+        self._drawn: Sequence[Point] = ()
         self._chart = Memo(self._charted)
         self._study = Memo(self._begun)
 
@@ -198,10 +175,6 @@ class AccuracyPane(Chooser[Point]):
         return not self.is_computing and self._chart.arguments == self._state
 
     @property
-    def placed(self) -> Placed:
-        return self._chart.result[1] if self._chart.arguments else []
-
-    @property
     def aim(self) -> Point | None:
         return self.pointer or self.cursor or self.present(self.index)
 
@@ -219,14 +192,14 @@ class AccuracyPane(Chooser[Point]):
         if self.cursor is not None:  # it may be on another method's line
             key = self.cast[self.index].key, self.cursor.steps
             self.cursor = self.points.get(key, self.cursor)
-        chart, _ = self._chart(*self._state)
+        chart = self._chart(*self._state).picture
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
         self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
         words = self.words(*self._sentences(), rows=self.room.height - len(chart.rows))
         return Picture([*chart.rows, *words])
 
-    def _charted(self, room: Size, *_: object) -> tuple[Picture, Placed]:
+    def _charted(self, room: Size, *_: object) -> LogLog:
         words = 6 if self.all else 4  # `all` adds the letters of all methods
         size = room.width, max(room.height - words, min(room.height, CHART_ROWS))
         points = [point for place in self.places for point in self.points_of(self.cast[place])]
@@ -234,9 +207,9 @@ class AccuracyPane(Chooser[Point]):
         if self.cursor is not None:
             marks.append(("O", self.cursor))
         series = accuracy_series(points, self.chart, "evaluations", self.cast, marks=marks)
-        chart = accuracy_chart(series, self.chart, "evaluations", *size)
-        points += [point for _, point in marks]
-        return chart, placed(series, points, self.chart, *size)
+        drawn = [*points, *(point for _, point in marks)]
+        self._drawn = [point for point in drawn if 0 < point.errors[self.chart] < math.inf]
+        return accuracy_chart(series, self.chart, "evaluations", *size)
 
     def _sentences(self) -> list[str]:
         words = ["the current h is not on this chart; the arrows choose another"]
@@ -278,7 +251,15 @@ class AccuracyPane(Chooser[Point]):
         self.draw()
 
     def place_under(self, event: events.MouseEvent) -> Point | None:
-        return nearest(self.placed, *event.get_content_offset_capture(self))
+        """Return the nearest point that is drawn within 6 columns or 3 rows."""
+        x, y = event.get_content_offset_capture(self)
+
+        def distance(point: Point) -> float:
+            column, row = self._chart.result.cell(point.force_evaluations, point.errors[self.chart])
+            return math.hypot(column - x, 2 * (row - y))
+
+        near = min(self._drawn, key=distance, default=None)
+        return near if near is not None and distance(near) <= 6 else None
 
     def choose(self, place: Point) -> None:
         self.described = place.method.key

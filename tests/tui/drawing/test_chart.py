@@ -10,7 +10,7 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FRAME
-from pendu_tui.tui.drawing.plotted import LogLog, Series, loglog_chart
+from pendu_tui.tui.drawing.plotted import Series, loglog_chart
 from pendu_tui.tui.drawing.time_chart import _crossings, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown, Stretch
@@ -78,11 +78,11 @@ def test_charts_as_they_are_stored(snapshot):
         Series(FRAME, "up", [1e3, 1e4], [1e-3, 1e-2], dotted=True),
     ]
     texts = [look(each.picture) for each in pictures]
-    texts.append(look(loglog_chart([], 40, 9, x_label="cost", y_label="error")))
-    picture = loglog_chart(series, 60, 18, x_label="cost", y_label="error")
-    column, row = LogLog.fitting(series, 60, 18).cell(3e3, 3e-2)
-    assert cells(picture)[row, column] == ("e", 0)
-    snapshot("charts.txt", "\n".join([*texts, look(picture)]))
+    texts.append(look(loglog_chart([], 40, 9, x_label="cost", y_label="error").picture))
+    chart = loglog_chart(series, 60, 18, x_label="cost", y_label="error")
+    column, row = chart.cell(3e3, 3e-2)
+    assert cells(chart.picture)[row, column] == ("e", 0)
+    snapshot("charts.txt", "\n".join([*texts, look(chart.picture)]))
 
 
 def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapshot):
@@ -169,8 +169,8 @@ def test_any_points_make_a_loglog_chart(data, width, height):
         Series(ink, "esvr?"[ink], [x for x, _ in points], [y for _, y in points], dotted)
         for ink, (points, dotted) in enumerate(data)
     ]
-    picture = loglog_chart(series, width, height, x_label="h [s]", y_label="error")
-    assert size(picture) == (max(width, 20), max(height, 6))
+    chart = loglog_chart(series, width, height, x_label="h [s]", y_label="error")
+    assert size(chart.picture) == (max(width, 20), max(height, 6))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ from pendu_tui.tui.views.accuracy import (
     AccuracyPane,
     accuracy_chart,
     accuracy_series,
-    nearest,
 )
 from pendu_tui.tui.words.studies import COSTS, front_words
 from tests.tui.drawn import look
@@ -40,11 +39,6 @@ def is_complete(pane: AccuracyPane) -> bool:
 
 async def complete(pilot, pane: AccuracyPane) -> None:
     await until(pilot, lambda: is_complete(pane))
-
-
-def test_a_point_is_found_within_six_columns_or_three_rows():
-    cells = (16, 5), (17, 5), (10, 2), (10, 1)
-    assert [nearest([(10, 5, "here")], *cell) for cell in cells] == ["here", None] * 2
 
 
 accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)
@@ -84,7 +78,7 @@ def test_charts_of_points_with_flaws_and_marks_and_a_line_for_each_order(snapsho
     for kind, cost in zip(ERROR_LABELS, ("evaluations", "seconds", "evaluations"), strict=True):
         marks = [("@", points[1]), ("O", points[2]), ("@", points[6])]
         series = accuracy_series(points, kind, cost, USUAL_CAST[1:], marks=marks)
-        texts.append(look(accuracy_chart(series, kind, cost, 76, 16)))
+        texts.append(look(accuracy_chart(series, kind, cost, 76, 16).picture))
     snapshot("accuracy.txt", "\n".join(texts))
 
 
@@ -117,11 +111,15 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
     async with accuracy_view() as (pilot, pane, live):
         point = pane.points["rk4", RUNGS[2]]
-        ((column, row),) = (place[:2] for place in pane.placed if place[2] is point)
+        column, row = pane._chart.result.cell(point.force_evaluations, point.errors["energy"])
         assert pane.text.splitlines()[row][column] == "r"
         at = (column + 1, row + 1)  # the frame
         await pilot.hover(pane, (at[0] + 3, at[1]))
         assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a small")
+        pane._drawn = [point]
+        for right, up, found in ((6, 0, point), (7, 0, None), (0, 3, point), (0, 4, None)):
+            await pilot.hover(pane, (at[0] + right, at[1] - up))
+            assert pane.pointer is found
         await pilot.click(pane, at)
         await complete(pilot, pane)
         assert (live.stepping.h, pane.index) == (point.h, 3)
@@ -143,7 +141,7 @@ async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
         assert pane.cast[:4] == USUAL_CAST
         assert {*pane.cast} == {*GENERAL}
         assert all(letter in pane.text for letter in "fbm")
-        charts = [pane._charted(Size(60, rows))[0] for rows in (8, 11, 14, 30)]
+        charts = [pane._charted(Size(60, rows)).picture for rows in (8, 11, 14, 30)]
         assert [len(chart.rows) for chart in charts] == [8, 9, 9, 24]
         await pilot.press(*["tab"] * 3, "left")
         assert pane.cast[pane.index] not in USUAL_CAST
