@@ -48,7 +48,6 @@ class PhasePane(Chooser[State]):
     def __init__(self) -> None:
         super().__init__()
         self.neighbours: Neighbours | None = None
-        self.ring: Neighbourhood | None = None
         self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
 
@@ -57,6 +56,13 @@ class PhasePane(Chooser[State]):
         if not self.drawable or self.neighbours is None:
             return self.sample is not None
         return self.neighbours.step == self.source.sample.step
+
+    @property
+    def ring(self) -> "Neighbourhood | None":
+        """The ring of this run, as far as it has been carried."""
+        if self.neighbours is None:
+            return None
+        return self.neighbours.ring_of(self.source.scene, self.source.sample.run)
 
     @property
     def _cells(self) -> tuple[int, int]:
@@ -84,30 +90,23 @@ class PhasePane(Chooser[State]):
         return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        from pendu_tui.tui.views.portrait import (
-            Portrait,
-            caption,
-            framed,
-            method_points,
-            phase_picture,
-            ring_text,
-        )
+        from pendu_tui.tui.views import portrait
 
         self._carry_ring(source, sample)
         below = "click: start, wheel: zoom, g: ring"
         if self.shown.ring:
-            below = ring_text(source, self.neighbours) or below
+            below = portrait.ring_text(source, self.neighbours) or below
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
-        portrait = Portrait.of(self.viewport, source.scene.equations)
-        points = method_points(source, sample, self.shown, self.ring)
-        plot = phase_picture(portrait, points, self.cursor, self.aim, self.shown.line)
-        words = caption(source, self.aim, self.room.width)
-        return Picture([*framed(portrait.viewport, plot), words])
+        ground = portrait.Portrait.of(self.viewport, source.scene.equations)
+        points = portrait.method_points(source, sample, self.shown, self.ring)
+        plot = portrait.phase_picture(ground, points, self.cursor, self.aim, self.shown.line)
+        words = portrait.caption(source, self.aim, self.room.width)
+        return Picture([*portrait.framed(ground.viewport, plot), words])
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         scene = source.scene
         if not self.shown.ring or scene.why_no_ring or scene is self._ringless:
-            self.neighbours = self.ring = None
+            self.neighbours = None
             return
         from pendu_tui.engine.studies.ring import Neighbours
 
@@ -120,12 +119,10 @@ class PhasePane(Chooser[State]):
             steps = 1
         try:
             with limited():
-                self.ring = self.neighbours.follow(
-                    scene, sample.run, sample.step, source.changes, steps
-                )
+                self.neighbours.follow(scene, sample.run, sample.step, source.changes, steps)
         except OwnMethodError as error:
             self._ringless = scene
-            self.neighbours = self.ring = None
+            self.neighbours = None
             self.notify(str(error), severity="warning")
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -211,15 +208,15 @@ class SectionPane(PhasePane):
     ) -> "Section":
         """Begin to compute a section, of which there is nothing yet."""
         from pendu_tui.engine.studies.section import pieces, spread
-        from pendu_tui.tui.views.portrait import ORBIT_STEPS, Section
+        from pendu_tui.tui.views import portrait
 
         self._orbits = 0
         starts = spread(STARTS, viewport.across, viewport.up)
-        self.compute(pieces, method, model, h, starts, ORBIT_STEPS)
-        return Section(viewport, model, method, ink)
+        self.compute(pieces, method, model, h, starts, portrait.ORBIT_STEPS)
+        return portrait.Section(viewport, model, method, ink)
 
     def _map(self, source: Source) -> Picture:
-        from pendu_tui.tui.views.portrait import framed, orbit_of
+        from pendu_tui.tui.views import portrait
         from pendu_tui.tui.words.studies import orbit_words
 
         method = self.cast[self.index]
@@ -231,13 +228,14 @@ class SectionPane(PhasePane):
             title += f", computing {10 * self._orbits // STARTS / 10:.0%}"
         self.write_titles(title, "wheel: zoom, tab: next method, x: back")
         start = self.cursor or State(source.scene.theta, source.scene.omega)
-        plot = section.picture(orbit_of(method, model, h, start)[0], start, self.cursor)
-        _, kind = orbit_of(method, model, h, self.aim or start)
+        orbit, kind = portrait.orbit_of(method, model, h, start)
+        plot = section.picture(orbit, start, self.cursor)
         where = "start"
         if self.aim:
             where = f"{self.aim.theta:g}, {self.aim.omega:g}"
+            _, kind = portrait.orbit_of(method, model, h, self.aim)
         words = f"{where}: {orbit_words(method, kind)}"
-        return Picture([*framed(self.viewport, plot), [(words, TEXT)]])
+        return Picture([*portrait.framed(self.viewport, plot), [(words, TEXT)]])
 
     def forget(self) -> None:
         self._section.forget()
@@ -257,7 +255,7 @@ class AreaTable(ErrorTable):
     @property
     def more(self) -> Sequence[Column]:
         ring = self._pane.ring
-        if ring is None or len(ring.area_ratios) != len(self.cast):  # of the run before
+        if ring is None:
             return ()
         ratios = dict(zip(self.cast, ring.area_ratios, strict=True))
         return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
