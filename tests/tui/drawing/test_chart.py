@@ -10,11 +10,11 @@ from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.scenes import Line
 from pendu_tui.tui.drawing.frame import spread
 from pendu_tui.tui.drawing.picture import FRAME
-from pendu_tui.tui.drawing.plotted import Series, loglog_chart
+from pendu_tui.tui.drawing.plotted import ENERGY, TREND, Series, loglog_chart, record_chart
 from pendu_tui.tui.drawing.time_chart import _crossings, time_chart
 from pendu_tui.tui.playback.rows import Window
 from pendu_tui.tui.playback.shown import Shown, Stretch
-from tests.tui.drawn import cells, look, size
+from tests.tui.drawn import cells, look, places, size
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)
@@ -219,3 +219,35 @@ def test_letters_have_rows_of_their_own_in_the_order_of_their_lines(wanted, room
     own = [math.floor(each + 0.5) for each in wanted]
     if len(set(own)) == len(own) and all(0 <= row < room for row in own):
         assert rows == own  # moved only where they must
+
+
+RECORDED = np.linspace(0, 50, 4000)
+ERRORS = 1e-3 * np.sin(7 * RECORDED) + 1e-4 * RECORDED
+
+
+def record(size=(80, 16), errors=ERRORS, slope=1e-4, deviation=7e-4, unit="ps"):
+    return record_chart(
+        RECORDED, errors, size, slope=slope, deviation=deviation, title="energy error", unit=unit
+    )
+
+
+def rows_of(picture, ink):
+    """Return the rows with dots of this ink, from the top."""
+    return sorted({row for _, row in places(picture, ink)})
+
+
+def test_energy_trend_and_axes_fill_the_size_given(snapshot):
+    picture = record()
+    snapshot("record.txt", look(picture))
+    assert size(picture) == (80, 16)
+    spike = ERRORS.copy()
+    spike[2001] = 0.05
+    assert rows_of(record(errors=spike), ENERGY)[0] <= 2  # a column spans all errors in it
+    assert [bool(rows_of(record(slope=slope), TREND)) for slope in (0.0, None)] == [True, False]
+    assert " 50 ─" in record(unit="").text
+
+
+@pytest.mark.parametrize("room", [(20, 6), (21, 40), (200, 10), (19, 6), (20, 5)])
+def test_any_size_from_20_by_6_has_a_chart(room):
+    columns, rows = room
+    assert size(record(size=room)) == (max(columns, 20), max(rows, 6))

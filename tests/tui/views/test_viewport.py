@@ -1,4 +1,4 @@
-"""From cells and dots to phase space and back."""
+"""From cells and dots to phase space and back, and how far the pendulums in a picture swing."""
 
 import math
 
@@ -7,8 +7,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import State
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.tui.views.viewport import Viewport
+from pendu_tui.tui.views.viewport import Viewport, amplitude, reach
+from tests.tui.harness import Lab
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))
@@ -69,3 +71,36 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     assert before.y(lowest.omega) == pytest.approx(47, abs=0.5)
     rightmost = before.stepped(State(before.theta_at(79.0), 0.0), 9.0, 0.0)
     assert before.x(rightmost.theta) == pytest.approx(79, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"), [("drift", 1.0, 1.25), ("gentle", 0.1, 0.125), ("large-swing", 2.5, 3)]
+)
+def test_the_swing_decides_and_explicit_euler_leaves_it_until_it_needs_the_whole_circle(
+    name, low, high
+):
+    scene = SCENES[name]
+    lab = Lab(scene)
+    widest = []
+    for _ in range(20):
+        sample = lab.run(1)
+        found = reach(scene, lab.live.stepping, sample, range(4))
+        assert low <= found.frame <= high
+        assert max(abs(reading.theta) for reading in sample.readings[1:]) <= found.frame
+        widest.append(found.widest)
+    assert widest == sorted(widest)  # so the picture never jumps back
+    assert amplitude(scene.equations, scene.theta, 0.0) == pytest.approx(scene.theta, abs=1e-9)
+    assert low <= widest[0] <= widest[-1] == math.pi
+
+
+def test_the_frame_leaves_out_a_method_beyond_its_limit():
+    lab = Lab(SCENES["gentle"])
+    lab.live.change(Stepping(0.7))  # z = 2.2
+    lab.run(20)
+    found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
+    assert found.frame < 0.12 < found.widest
+    lab.live.start(SCENES["gentle"])
+    lab.live.change(Stepping(2.4, equal_cost=True))  # its own z is 1.9
+    lab.run(20)
+    found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
+    assert 0.12 < found.frame == found.widest

@@ -1,19 +1,20 @@
-"""Panes of the lab: when they are drawn, words that fit, and clicks on events."""
+"""Panes of the lab: when they are drawn, words that fit, clicks on events, and the table."""
 
 from functools import partial
 
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.scenes import Scene
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
-from pendu_tui.tui.views.error_table import ErrorTable
+from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_column
 from pendu_tui.tui.views.lab import EventList, TimeChart
 from pendu_tui.tui.views.phase import PhasePane, SectionPane
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Pane, View
+from pendu_tui.tui.words.cards import head_text
 from tests.tui.harness import lab
 
 
@@ -61,3 +62,28 @@ def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():
     texts = "one two", "three four five"
     assert pane.words(*texts, rows=2) == [[("one two", TEXT)], [("three fo …", TEXT)]]
     assert pane.words(*texts, rows=3)[-1] == [("five", TEXT)]
+
+
+async def test_a_head_under_the_pointer_says_what_it_means():
+    async with lab() as theatre:
+        shown = theatre.pane(ErrorTable)
+        head = theatre.text(ErrorTable).splitlines()[0]
+        first, second = shown._head[:2]
+        for at, name in ((len(first) - 1, first), (len(first), second)):
+            await theatre.pilot.hover(ErrorTable, offset=(at, 0))
+            assert shown.tooltip == head_text(name.strip())
+        await theatre.pilot.hover(ErrorTable, offset=(head.index("verdict"), 2))
+        assert shown.tooltip is None
+
+
+async def test_a_click_on_a_row_shows_its_method_alone():
+    async with lab() as theatre:
+        for row, places in ((0, [0, 1, 2, 3]), (4, [3]), (1, [0, 1, 2, 3]), (1, [0])):
+            await theatre.click(ErrorTable, 5, row)
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(DEFAULT_SCENE.cast) == places
+
+
+def test_every_head_has_a_meaning():
+    for column in (*COLUMNS, *map(extra_column, SCENES["stiff-limit"].equations.extra_columns)):
+        assert head_text(column.head.narrow) == head_text(column.head.wide) is not None

@@ -1,5 +1,6 @@
-"""Phase space under mouse and keyboard, in the lab and over the whole screen."""
+"""Phase space under mouse and keyboard, in the lab and over the whole screen, its ring and its map."""
 
+import math
 import re
 from contextlib import asynccontextmanager
 from unittest.mock import Mock
@@ -8,13 +9,17 @@ import pytest
 from textual import events
 
 from pendu_tui.engine.methods.own import OwnMethodError
-from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.scenes import SCENES, Line, Scene
 from pendu_tui.engine.studies.ring import Neighbours
-from pendu_tui.tui.views.phase import AreaTable, PhasePane
+from pendu_tui.tui.playback.live import Live
+from pendu_tui.tui.views.phase import AreaTable, PhasePane, SectionPane, area_text
+from pendu_tui.tui.views.portrait import ring_text
 from pendu_tui.tui.views.viewport import LEFT
 from tests.tui.harness import lab, until
 
 DRIFT = SCENES["drift"]
+RESONANT = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
 
 
 @asynccontextmanager
@@ -194,3 +199,113 @@ async def test_no_start_is_too_much_for_it(scene):
         text = pane.text + theatre.text(AreaTable)
         assert "libration" in text or "rotation" in text
         assert not re.search("nan|inf", text)
+
+
+def followed(live, steps=200):
+    """A ring carried by so many steps."""
+    ring = Neighbours(0.1)
+    ring.follow(live.scene, live.sample.run, live.sample.step, live.changes, steps)
+    return ring
+
+
+@pytest.mark.parametrize(
+    ("ratio", "text"),
+    [
+        (1.0, "1"),
+        (1 + 2**-52, "1 + 2.2e-16"),
+        (1 - 3e-7, "1 - 3.0e-07"),
+        (0.99783850123, "0.997838501"),
+        (3.42e12, "3.420e+12"),
+        (999.5, "999.500000000"),
+        (1000.5, "1.000e+03"),
+        (1.1e-3, "0.001100000"),
+        (0.9e-3, "9.000e-04"),
+        (0.0, "< 1e-308"),
+        (math.inf, "> 1e308"),
+    ],
+)
+def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, text):
+    assert area_text(ratio) == text
+
+
+def test_a_ring_that_is_behind_says_by_how_many_steps():
+    live = Live(Scene())
+    live.step(200)
+    assert ring_text(live, followed(live)) == "ring, radius 0.1 rad"
+    assert ring_text(live, followed(live, 50)) == "ring, radius 0.1 rad, 150 steps behind"
+    of_before = followed(live)
+    live.start(live.scene)
+    live.step(7)
+    assert ring_text(live, of_before).endswith(", 7 steps behind")
+    stiff = Live(SCENES["stiff-slow"])
+    assert ring_text(stiff, None) == stiff.scene.why_no_ring != ""
+
+
+def test_with_friction_the_true_motion_leaves_less_area_even_after_a_change_of_h():
+    live = Live(SCENES["damped"])
+    live.step(100)
+    live.change(Stepping(0.05, cast=live.scene.cast))
+    live.step(100)
+    left = f"{math.exp(-0.05 * 7.5):.9f}"
+    ring = followed(live)
+    assert f"the true motion leaves {left} of its area" in ring_text(live, ring)
+
+
+@pytest.fixture(autouse=True)
+def _few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pendu_tui.tui.views.phase.STARTS", 30)
+
+
+async def section_of(theatre, *keys: str) -> SectionPane:
+    """The pane with a section that is complete, after these keys."""
+    await theatre.press("f3", *keys)
+    await theatre.run(0.2)
+    pane = theatre.pane(SectionPane)
+    await until(theatre.pilot, lambda: pane.shown.section and pane.settled)
+    pane.draw()
+    return pane
+
+
+@pytest.mark.parametrize("size", [(60, 16), (120, 40)])
+async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(size):
+    async with lab(RESONANT, size=size) as theatre:
+        pane = await section_of(theatre, "x")
+        assert pane.border_title == "Own map of Velocity Verlet: h 0.348011 s, z 1.09"
+        words = "start: A chain of islands: 1 turn in every 6 steps, 1:6."
+        assert pane.text.splitlines()[-1] == words
+        assert pane._section.result._near.any()  # other orbits, too
+        await theatre.pilot.hover(pane, offset=(LEFT + 2, 2))
+        words = pane.text.splitlines()[-1]
+        assert words.startswith("{:g}, {:g}: ".format(*pane.pointer))
+        assert "islands" not in words
+        pane._orbits = 15
+        pane.draw()
+        assert str(pane.border_title).endswith(", computing 50%")
+        assert not pane.settled
+        await theatre.press("f2")
+        assert pane.settled  # out of sight
+        await theatre.press("f3")
+        await theatre.press("n")
+        pane.draw()
+        own = theatre.source.stepping.own[2]
+        assert own < theatre.source.stepping.h
+        assert f"h {own:g} s" in str(pane.border_title)
+        await theatre.stage.start(stiff := SCENES["stiff-slow"])
+        await theatre.pilot.pause()
+        assert " ".join(pane.text.split()) == stiff.why_not_mapped
+        assert pane.settled
+        await theatre.press("x")
+        assert str(pane.border_title).startswith("Phase space")
+        await theatre.press("u", "u", "x")
+        assert "E/Es" in pane.text
+        half = pane.viewport.up[1]
+        for quantity, size in (("omega", 3), ("theta_error", 1)):
+            pane.shown = pane.shown._replace(line=Line(quantity, -2 * half, "fence"))
+            assert pane.viewport.up[1] == pytest.approx(size * half, rel=0.2)
+
+
+async def test_a_key_that_comes_at_once_after_that_of_a_view_reaches_its_pane():
+    async with lab(RESONANT) as theatre:
+        for key in ("f3", "x"):
+            theatre.app.post_message(events.Key(key, None))
+        await until(theatre.pilot, lambda: theatre.stage.shown.section)
