@@ -201,13 +201,6 @@ async def test_no_start_is_too_much_for_it(scene):
         assert not re.search("nan|inf", text)
 
 
-def followed(live, steps=200):
-    """A ring carried by so many steps."""
-    ring = Neighbours(0.1)
-    ring.follow(live.scene, live.sample.run, live.sample.step, live.changes, steps)
-    return ring
-
-
 @pytest.mark.parametrize(
     ("ratio", "text"),
     [
@@ -228,27 +221,27 @@ def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, text):
     assert area_text(ratio) == text
 
 
-def test_a_ring_that_is_behind_says_by_how_many_steps():
-    live = Live(Scene())
-    live.step(200)
-    assert ring_text(live, followed(live)) == "ring, radius 0.1 rad"
-    assert ring_text(live, followed(live, 50)) == "ring, radius 0.1 rad, 150 steps behind"
-    of_before = followed(live)
-    live.start(live.scene)
-    live.step(7)
-    assert ring_text(live, of_before).endswith(", 7 steps behind")
+def test_a_ring_says_how_far_it_is_behind_and_what_the_true_motion_leaves_of_it():
+    drift = Live(DRIFT)
+    damped = Live(SCENES["damped"])
+    for live in (drift, damped):
+        live.step(100)
+        live.change(Stepping(0.05, cast=live.scene.cast))
+        live.step(100)
+    left = math.exp(-0.05 * 7.5)
+    for live, steps, words in (
+        (damped, 200, f": the true motion leaves {left:.9f} of its area"),
+        (drift, 200, ""),
+        (drift, 50, ", 150 steps behind"),
+    ):
+        ring = Neighbours(0.1)
+        ring.follow(live.scene, live.sample.run, live.sample.step, live.changes, steps)
+        assert ring_text(live, ring) == f"ring, radius 0.1 rad{words}"
+    drift.start(DRIFT)
+    drift.step(7)
+    assert ring_text(drift, ring) == "ring, radius 0.1 rad, 7 steps behind"  # of the run before
     stiff = Live(SCENES["stiff-slow"])
     assert ring_text(stiff, None) == stiff.scene.why_no_ring != ""
-
-
-def test_with_friction_the_true_motion_leaves_less_area_even_after_a_change_of_h():
-    live = Live(SCENES["damped"])
-    live.step(100)
-    live.change(Stepping(0.05, cast=live.scene.cast))
-    live.step(100)
-    left = f"{math.exp(-0.05 * 7.5):.9f}"
-    ring = followed(live)
-    assert f"the true motion leaves {left} of its area" in ring_text(live, ring)
 
 
 @pytest.fixture(autouse=True)

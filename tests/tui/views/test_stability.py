@@ -43,16 +43,14 @@ def half_lost() -> np.ndarray:
     return cells
 
 
-DARK = PALETTES["dark"]
-
-
 FRAME = Frame(Axis(0.0, 3.0, {1.0: "1", 2.0: "2"}), Axis(0.0, math.pi, {math.pi / 2: "90"}), 30, 6)
 
 
 def panel(cells, index, **options) -> str:
     values = drawing.scores(cells[:, index], STEPS)
     method = USUAL_CAST[index]
-    rows = drawing.panel(FRAME, values, method, index, DARK, title=method.label, **options)
+    dark = PALETTES["dark"]
+    rows = drawing.panel(FRAME, values, method, index, dark, title=method.label, **options)
     return Picture(rows).text
 
 
@@ -97,41 +95,33 @@ def test_colours_of_held_lost_and_unknown_swings_differ_for_every_method(theme: 
     assert drawing.colour(-1, ink, palette) not in held | lost
 
 
-LADDER_GRID = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]), 300, (RK4,))
-
-
-def cells(*rows: tuple[int, float, int]) -> np.ndarray:
-    """Outcomes (z, method, theta)."""
-    return np.array([*rows], CELL).reshape(-1, 1, 1)
-
-
-LADDER = cells(
-    (300, 1e-3, HOLDS),
-    (300, 2e-2, HOLDS),
-    (300, 0.2, CHAOTIC),
-    (40, 0.9, OVER_THE_TOP),
-    (3, 5.0, GROWS),
-)
-BEGUN = cells((300, 1e-3, HOLDS), *[(0, 0.0, UNKNOWN)] * 4)
-HELD = cells(*[(300, 1e-3, HOLDS)] * 5)
-LOST = cells(*[(0, 2.0, GROWS)] * 5)
+LADDER = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]), 300, (RK4,))
+OUTCOMES = {
+    "h": (300, 1e-3, HOLDS),
+    "e": (300, 2e-2, HOLDS),
+    "c": (300, 0.2, CHAOTIC),
+    "o": (40, 0.9, OVER_THE_TOP),
+    "g": (3, 5.0, GROWS),
+    "?": (0, 0.0, UNKNOWN),
+}
 
 
 @pytest.mark.parametrize(
     ("outcomes", "z", "sentence"),
     [
-        (LADDER, 1, "0.5 s, 90°: held, error 2e-2; lost at h 0.75 s"),
-        (LADDER, 2, "0.75 s, 90°: chaotic; held at h 0.5 s"),
-        (LADDER, 3, "1 s, 90°: over the top, step 41; held at h 0.5 s"),
-        (LADDER, 4, "1.25 s, 90°: grows, step 4; held at h 0.5 s"),
-        (HELD, 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
-        (LOST, 0, "0.25 s, 90°: grows, step 1; lost at every h on this map"),
-        (BEGUN, 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),
-        (LADDER_GRID.unknown(), 0, "0.25 s, 90°: not computed yet"),
+        ("hecog", 1, "0.5 s, 90°: held, error 2e-2; lost at h 0.75 s"),
+        ("hecog", 2, "0.75 s, 90°: chaotic; held at h 0.5 s"),
+        ("hecog", 3, "1 s, 90°: over the top, step 41; held at h 0.5 s"),
+        ("hecog", 4, "1.25 s, 90°: grows, step 4; held at h 0.5 s"),
+        ("hhhhh", 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
+        ("ggggg", 0, "0.25 s, 90°: grows, step 4; lost at every h on this map"),
+        ("h????", 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),
+        ("?????", 0, "0.25 s, 90°: not computed yet"),
     ],
 )
 def test_a_verdict_tells_the_outcome_and_the_nearest_cliff(outcomes, z, sentence):
-    assert drawing.verdict(LADDER_GRID, outcomes, 0, (z, 0), w0=2.0) == f"RK4 at h {sentence}"
+    cells = np.array([OUTCOMES[each] for each in outcomes], CELL).reshape(-1, 1, 1)
+    assert drawing.verdict(LADDER, cells, 0, (z, 0), w0=2.0) == f"RK4 at h {sentence}"
 
 
 @pytest.fixture(autouse=True)
