@@ -11,21 +11,20 @@ import json
 import lzma
 import re
 import zlib
-from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from functools import partial
-from itertools import accumulate, chain, compress, islice
+from itertools import chain
 from statistics import mode
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from pendu_tui.tui.cli.errors import unreadable
 from pendu_tui.tui.cli.layouts import FAILED, LAYOUTS, NUMBER, Layout, is_energy, role
-from pendu_tui.tui.cli.tables import Group, Sheet, Wanted, choose, known_names
+from pendu_tui.tui.cli.tables import Sheet, Wanted, choose, known_names
 from pendu_tui.tui.cli.units import UNIT, is_unit, plain, split_unit
 
 MAX_LINE = 1 << 20  # characters
@@ -243,9 +242,12 @@ def number(text: str) -> float | None:
 
     It may have a decimal comma, Fortran's D, a unit or brackets.
     """
-    text = text.strip("()[] \t\r\n\"'")
-    with suppress(ValueError):
+    try:
         return float(text)
+    except ValueError:
+        text = text.strip("()[] \t\r\n\"'")
+    with suppress(ValueError):
+        return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):
         return float("nan")
     if not _BEGINS.match(text):
@@ -270,44 +272,16 @@ def _seconds(date: str) -> float | None:
     return None
 
 
-def _numbers(fields: list[str], are_marks: bool = False) -> Sequence[float | None]:
-    """Return the number in each field, or for each text."""
-    if are_marks:
-        return [zlib.crc32(field.encode()) for field in fields]
-    text = "\n".join(fields).replace(",", ".")  # commas may be decimal
-    with suppress(ValueError):
-        return [*map(float, text.split("\n"))]
-    return [*map(number, fields)]
-
-
-def _units_in(fields: list[str]) -> list[str | None]:
-    """Return the unit in each field, None without one."""
-    return [match and match[2] for match in map(_WITH_UNIT.fullmatch, fields)]
+def _units_in(fields: list[str]) -> dict[int, str]:
+    """Return the units behind the numbers in some fields, by their places."""
+    found = map(_WITH_UNIT.fullmatch, fields)
+    return {place: match[2] for place, match in enumerate(found) if match}
 
 
 Form = tuple[str | None, int, str]
 """The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
-
-
-class Found(NamedTuple):
-    """Values for some columns of a sheet, found at these lines."""
-
-    sheet: Sheet
-    lines: list[int]
-    places: Group = ()
-    columns: Sequence[Sequence[float | None]] = ()
-    needed: int = 0  # how many columns need a value, from the first
-
-    def blanks(self) -> list[int]:
-        """Return where the columns that need a value have their first blank."""
-        columns = self.columns[: self.needed]
-        return [self.lines[values.index(None)] for values in columns if None in values]
-
-    def put(self, end: int) -> None:
-        """Add what is above this line to the sheet."""
-        if count := bisect_left(self.lines, end):
-            columns = [values[:count] for values in self.columns]
-            self.sheet.put(self.lines[:count], self.places, columns)
+Prints = dict[str, tuple[str, int]]
+"""The unit of each name that is printed in a line, and where its value begins."""
 
 
 class _Text:
@@ -318,12 +292,12 @@ class _Text:
         self._line = 0
         self._tables = [Sheet(wanted)]  # the first has no columns
         self._form: Form = (None, -1, "")  # of a row of the last table
-        self._cells: list[str | None] = []  # the units in its fields
-        self._page: set[str] = set()  # its head, which may be repeated on each page
+        self._cells: dict[int, str] = {}  # the units in its fields
+        self._page: dict[str, list[list[str]]] = {}  # its head, which may be repeated on each page
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
-        self._shapes: dict[str, tuple[Group, Group]] = {}
-        """What a line holds, by its text with \\0 for each number: some columns, and the place of
-        each where `_NUMBERS` divides the line, 0 for a number that ended.
+        self._shapes: dict[str, list[tuple[str, str, int]]] = {}
+        """What a line holds, by its text with \\0 for each number: names, their units, and where
+        their values are if `_NUMBERS` divides the line, 0 for a number that ended.
         """
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._units = ("", "")  # of times and energies, if the layout has only these
@@ -338,18 +312,10 @@ class _Text:
 
     def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
-        size = 1
         for lines in map(_unmarked, blocks):
-            first = 0
-            while first < len(lines):
-                known = self._read_known(lines[first : first + size])
-                first += known
-                self._line += known
-                if first < len(lines):
-                    self._line += 1
-                    self._read_new(lines[first])
-                    first += 1
-                size = 2 * known + 1
+            for line in lines:
+                self._line += 1
+                self._read(line)
             is_empty = not any(sheet.puts for sheet in (*self._tables, *self._prints))
             if is_empty and self._line > MAX_LINES_BEFORE:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
@@ -362,97 +328,66 @@ class _Text:
                 named.append(sheet)
         return sorted(named or self._tables[1:] or self._prints, key=lambda sheet: sheet.line)
 
-    def _read_known(self, lines: list[str]) -> int:
-        """Read lines up to the first that is not like earlier ones.  Return how many."""
+    def _read(self, line: str) -> None:
+        """Read a row like the last one, printed values, or a line of a new form."""
+        over = self._above.get(self._over, [])
+        self._over = ""
         if self._is_over:
-            return 0
-        start = self._line + 1
-        texts = self._joined(start, lines)
-        heads = [at for at, text in texts.items() if text in self._page]
-        for at in heads:
-            del texts[at]
-        rows = self._rows_in(texts)
-        for at in rows.lines:
-            del texts[at]
-        found = [rows, *self._prints_in(texts)]
-        end = min([start + len(lines), *chain(*(each.blanks() for each in found))])
-        last = max([0, *rows.lines[: bisect_left(rows.lines, end)]])
-        end = min([end, *(head for head in heads if head > last)])  # no row is below it
-        for each in found:
-            each.put(end)
-        if end > start:
-            self._over = ""
-        self._tables[-1].heads += heads[: bisect_left(heads, end)]
-        return end - start
+            self._read_new(line, "")
+        elif line in self._above:
+            self._over = line
+        elif over and len(values := line.split()) == len(over):
+            for name, value in zip(over, values, strict=True):
+                self._print(name, value, self._unit(name))
+        elif line in self._page:
+            self._heads[line] = self._page[line]
+        elif line not in self._heads and not self._is_next_row(line):
+            fields = _NUMBERS.split(line)
+            shape = "\0".join(fields[::2])
+            if shape not in self._shapes:
+                self._read_new(line, shape)
+                return
+            for name, unit, place in self._shapes[shape]:
+                self._print(name, fields[place] if place else "nan", unit)
 
-    def _joined(self, start: int, lines: list[str]) -> dict[int, str]:
-        """Return these lines but for words, those of names with the line of numbers below them."""
-        texts = {at: line for at, line in enumerate(lines, start) if line not in self._heads}
-        if self._over:
-            texts[start] = self._over + lines[0]
-        for at in [at for at, text in texts.items() if text in self._above and at + 1 in texts]:
-            texts[at] += texts.pop(at + 1)
-        return texts
-
-    def _rows_in(self, lines: dict[int, str]) -> Found:
-        """Return the rows of the last table in these lines."""
-        sheet = self._tables[-1]
+    def _is_next_row(self, line: str) -> bool:
+        """Add a row like the last one to its table.  Return whether it is one."""
         delimiter, width, opening = self._form
-        if self._heads or self._begins:
-            return Found(sheet, [])
+        if self._begins or not line.startswith(opening):
+            return False
+        if self._heads and not self._heads.keys() <= self._page.keys():
+            return False
         if opening:
-            lines = {at: line for at, line in lines.items() if line.startswith(opening)}
-            if _GLUED.search("\n".join(lines.values())):
-                lines = {at: _GLUED.sub(r" \g<0>", line) for at, line in lines.items()}
-        rows = {
-            at: line
-            for at, line in lines.items()
-            if len(_split(line, delimiter)) == width
-            and (delimiter or "," not in line)
-            and line.lstrip()[:1] not in _MARKS
-        }
-        fields = _split((delimiter or " ").join(rows.values()), delimiter)
-        if len(fields) != len(rows) * width:  # a quotation mark is left open
-            return Found(sheet, [])
-        if any(self._cells) and _units_in(fields) != self._cells * len(rows):
-            return Found(sheet, [])
-        columns = [_numbers(fields[place::width], place in sheet.marks) for place in sheet.kept]
-        return Found(sheet, [*rows], sheet.kept, columns, needed=1)
+            line = _GLUED.sub(r" \g<0>", line)
+        fields = _split(line, delimiter)
+        if len(fields) != width or (not delimiter and "," in line) or line.lstrip()[:1] in _MARKS:
+            return False
+        if self._cells and _units_in(fields) != self._cells:
+            return False
+        sheet = self._tables[-1]
+        values = self._values(fields)
+        if values[0] is None:
+            return False
+        if self._heads:
+            sheet.heads.append(self._line)
+            self._heads.clear()
+        sheet.put(self._line, sheet.kept, values)
+        return True
 
-    def _prints_in(self, lines: dict[int, str]) -> Iterator[Found]:
-        """Yield what lines of known shapes hold, and None for the first of another shape."""
-        if not lines:
-            return
-        fields = _NUMBERS.split("\n".join(lines.values()))
-        shapes = "\0".join(fields[::2]).split("\n")
-        unknown = (at for at, shape in zip(lines, shapes, strict=True) if shape not in self._shapes)
-        for at in islice(unknown, 1):
-            yield Found(self._prints[-1], [at], (), [[None]], needed=1)
-        starts = [0, *accumulate(2 * shape.count("\0") for shape in shapes)]
-        for shape in {*shapes} & self._shapes.keys():
-            places, picks = self._shapes[shape]
-            here = [each == shape for each in shapes]
-            first = [*compress(starts, here)]
-            texts = ([fields[at + pick] if pick else "nan" for at in first] for pick in picks)
-            if places:
-                columns = [*map(_numbers, texts)]
-                yield Found(self._prints[-1], [*compress(lines, here)], places, columns)
+    def _values(self, fields: list[str]) -> list[float | None]:
+        """Return the number, or that of its mark, in each field of a row that is kept."""
+        sheet = self._tables[-1]
+        values = [number(fields[place]) for place in sheet.kept]
+        for place in sheet.marks:
+            values[sheet.kept.index(place)] = zlib.crc32(fields[place].encode())
+        return values
 
-    def _read_new(self, line: str) -> None:
+    def _read_new(self, line: str, shape: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
         if _OBJECT.match(line) and _is_broken(line):
             self._prints[-1].skipped += 1
             return
-        prints: dict[str, int] = {}
-        over = self._over
-        self._over = ""
-        fields = [*re.finditer(r"\S+", line)]
-        if over and len(fields) == len(self._above[over]):
-            for name, field in zip(self._above[over], fields, strict=True):
-                self._print(name, field[0])
-                prints[name] = len(over) + field.start()
-            self._remember(over + line, prints)
-            return
+        prints: Prints = {}
         is_read = False
         for layout in LAYOUTS:
             for match in layout.pattern.finditer(line):
@@ -465,23 +400,22 @@ class _Text:
         if is_nothing or prints:
             self._remember(line, prints)
 
-    def _remember(self, line: str, prints: dict[str, int]) -> None:
+    def _remember(self, line: str, prints: Prints) -> None:
         """Remember what lines of this shape hold: these prints, where their values begin."""
         starts = {match.start(): 2 * n + 1 for n, match in enumerate(_NUMBERS.finditer(line))}
-        holds = {}
-        for name, start in prints.items():
-            place = self._prints[-1].places.get(name)
-            pick = 0 if _IS_FAILED.match(line, start) else starts.get(start)
-            if place is None or pick is None or _NUMBERS.search(name):
+        holds = []
+        for name, (unit, start) in prints.items():
+            place = 0 if _IS_FAILED.match(line, start) else starts.get(start)
+            if place is None or _NUMBERS.search(name):
                 return  # another name may have this shape
-            holds[place] = pick
+            holds.append((name, unit, place))
         shape = _NUMBERS.sub("\0", line)
         is_text = not starts or re.search(r"[^\W\d_]", shape)
         is_odd = None in map(number, _NUMBERS.findall(line))  # as in a version, 1.2.3
         if is_text and not is_odd and len(self._shapes) < MAX_SHAPES:
-            self._shapes[shape] = (tuple(holds), tuple(holds.values()))
+            self._shapes[shape] = holds
 
-    def _take(self, layout: Layout, match: re.Match[str], prints: dict[str, int]) -> bool:
+    def _take(self, layout: Layout, match: re.Match[str], prints: Prints) -> bool:
         """Take what a layout found.  Return whether that is all there is in the line."""
         line = match.string
         groups = {name: text for name, text in match.groupdict().items() if text}
@@ -498,8 +432,9 @@ class _Text:
             case {"value": value}:
                 name = groups.get("name", "Step")
                 name += "'" * (name in prints)  # so that no energy is certain
-                self._print(name, value, groups.get("unit", ""))
-                prints[name] = match.start("value")
+                unit = groups.get("unit") or self._unit(name)
+                self._print(name, value, unit)
+                prints[name] = (unit, match.start("value"))
                 return "name" in groups
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
@@ -528,12 +463,11 @@ class _Text:
         self._is_over = False
         self._passed += max(self._form[1] - 1, 0)
         self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
-        self._shapes.clear()
 
-    def _print(self, name: str, text: str, unit: str = "") -> None:
+    def _print(self, name: str, text: str, unit: str) -> None:
         value = number(text)
         if value is not None:
-            self._prints[-1].print(name, unit or self._unit(name), self._line, value)
+            self._prints[-1].print(name, unit, self._line, value)
 
     def _unit(self, name: str) -> str:
         """Return the unit of a column by its name, or that of its layout's times or energies."""
@@ -550,7 +484,7 @@ class _Text:
         bare = text.lstrip(_MARKS + " \t") if is_comment else text
         fields, delimiter = self._fields(bare)
         is_like = (len(fields), "") == self._form[1:]
-        numbers = _numbers(fields)
+        numbers = [*map(number, fields)]
         if numbers.count(None) < len(fields):
             if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
                 return False
@@ -583,18 +517,17 @@ class _Text:
 
     def _row(self, fields: list[str], delimiter: str | None, opening: str = "") -> bool:
         """Add a row to the last table, or to one that begins here.  Return whether it is a row."""
-        numbers = _numbers(fields)
+        numbers = [*map(number, fields)]
         is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
         sheet = self._tables[-1]
         if is_row:
-            values = [_numbers([fields[place]], place in sheet.marks) for place in sheet.kept]
-            sheet.put([self._line], sheet.kept, values)
-            for place, unit in enumerate(_units_in(fields)):
+            sheet.put(self._line, sheet.kept, self._values(fields))
+            for place, unit in _units_in(fields).items():
                 sheet.check_unit(place, unit, self._line)
         elif sheet.names and opening == self._form[2] and (opening or numbers[0] is not None):
             is_below_row = sheet.last == self._line - 1
             if any(value != value for value in numbers[1:]):  # some of what ended are missing
-                sheet.put([self._line], sheet.kept, [[float("nan")]] * len(sheet.kept))
+                sheet.put(self._line, sheet.kept, [float("nan")] * len(sheet.kept))
             elif is_below_row and len(numbers) < self._form[1] and None not in numbers:
                 sheet.put_cut(self._line, numbers)
             else:
@@ -617,7 +550,7 @@ class _Text:
             last.heads.append(self._line)
         for line, ways in self._heads.items():
             if names in ways and len(self._page) < MAX_HEADS:
-                self._page.add(line)
+                self._page[line] = ways
             elif not any(map(self._worth, ways)):  # it never will be a head
                 self._remember(line, {})
         if not goes_on:
@@ -687,7 +620,7 @@ class _Text:
         for place, field in enumerate(fields):
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"
-            units[place] = self._cells[place] or units[place] or self._shared * (place > 0)
+            units[place] = self._cells.get(place) or units[place] or self._shared * (place > 0)
         return units
 
 

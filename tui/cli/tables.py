@@ -288,24 +288,16 @@ class Sheet:
         self._lines.append(array("q"))
         self._values.append(array("d"))
 
-    def put(
-        self, lines: Sequence[int], places: Group, columns: Sequence[Sequence[float | None]]
-    ) -> None:
-        """Add the values of some columns at these lines; None is a blank."""
-        for place, column in zip(places, columns, strict=True):
-            values = column
-            here = lines
-            if None in column:
-                values = [value for value in column if value is not None]
-                here = [
-                    line for line, value in zip(lines, column, strict=True) if value is not None
-                ]
-            self._lines[place].extend(here)
-            self._values[place].extend(values)  # type: ignore[arg-type]
-        self.last = lines[-1]
+    def put(self, line: int, places: Group, values: Sequence[float | None]) -> None:
+        """Add the values of some columns at this line; None is a blank."""
+        for place, value in zip(places, values, strict=True):
+            if value is not None:
+                self._lines[place].append(line)
+                self._values[place].append(value)
+        self.last = line
         self.error = ""
-        self.puts += len(lines)
-        if self.puts - len(lines) < SAMPLE <= self.puts:
+        self.puts += 1
+        if self.puts == SAMPLE:
             self.choose()
 
     def put_cut(self, line: int, numbers: Sequence[Any]) -> None:
@@ -324,7 +316,7 @@ class Sheet:
             if ahead <= 0 or ahead > 10 * (known[1] - known[0]):
                 self.skipped += 1
                 return
-        self.put([line], time, [[row[place]] for place in time])
+        self.put(line, time, [row[place] for place in time])
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
         """Add a value that is printed with its name.  Once is not repeatedly."""
@@ -335,12 +327,13 @@ class Sheet:
             self.print(name, *first)
         if name in self.places:
             place = self.places[name]
-            self.put([line], (place,), [[value]])
-            self.check_unit(place, unit, line)
+            self.put(line, (place,), (value,))
+            if unit != self.units[place]:
+                self.check_unit(place, unit, line)
         elif len(self._once) < MAX_NAMES:
             self._once[name] = (unit, line, value)
 
-    def check_unit(self, place: int, unit: str | None, line: int) -> None:
+    def check_unit(self, place: int, unit: str, line: int) -> None:
         """Note that a value has another unit than those above."""
         name = self.names[place]
         own = self.units[place]
