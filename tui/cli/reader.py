@@ -11,6 +11,7 @@ import json
 import lzma
 import re
 import zlib
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -30,7 +31,6 @@ from pendu_tui.tui.cli.units import UNIT, is_unit, plain, split_unit
 MAX_LINE = 1 << 20  # characters
 MAX_LINES_BEFORE = 100_000  # the first row
 MAX_LINES = 5_000_000  # some seconds; the input may be endless
-BLOCK = 1 << 16  # characters
 MAX_DOCUMENT = 1 << 27  # characters of JSON
 MAX_INNER = 9  # of an array in a record
 MAX_COLUMNS = 5000
@@ -80,37 +80,31 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
             except (EOFError, OSError, lzma.LZMAError, zlib.error):
                 raise unreadable("it cannot be unpacked; is it whole?") from None
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
-        return _Text(wanted, file).read(map(_records, _lists(_arrays(stream))))
+        return _Text(wanted, file).read(_document(_arrays(stream)))
     encoding = "utf-8-sig"
     if start.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
     elif b"\0" in start:
         raise unreadable("this is not text; save a table as CSV (a recording: pendu-tui export).")
     text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
-    blocks = _blocks(text)
-    if start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
-        blocks = _json(text)
-    return _Text(wanted, file).read(blocks)
+    is_json = start.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")
+    return _Text(wanted, file).read(_json(text) if is_json else _lines(text))
 
 
-def _blocks(text: io.TextIOBase) -> Iterator[list[str]]:
-    """Yield some lines at a time.  Raises UserError where there is no end to them."""
-    count = 0
-    rest = ""
-    above: list[str] = []
-    while chunk := text.read(BLOCK):
-        *lines, rest = (rest + chunk.replace("−", "-")).split("\n")
-        count += len(lines)
-        if count > MAX_LINES:
+def _lines(text: io.TextIOBase) -> Iterator[str]:
+    """Yield the lines.  Raises UserError where there is no end to them."""
+    above: deque[str] = deque(maxlen=MAX_ABOVE)
+    for count, line in enumerate(iter(partial(text.readline, MAX_LINE), "")):
+        if count == MAX_LINES:
             raise unreadable(f"more than {MAX_LINES:,} lines; leave some out.")
-        if len(rest) > MAX_LINE:
+        if len(line) == MAX_LINE:
             raise unreadable("a line is longer than 1 MB; is this a table?")
-        yield lines
-        above = (above + lines)[-MAX_ABOVE:]
-    yield [_uncut(rest, above)]
+        line = line.replace("−", "-")
+        yield line[:-1] if line.endswith("\n") else _uncut(line, above)
+        above.append(line)
 
 
-def _uncut(line: str, above: list[str]) -> str:
+def _uncut(line: str, above: Iterable[str]) -> str:
     """Return the last line, with a word for its last number if the file was cut in that.
 
     It is then shorter than in all lines above that look the same.
@@ -127,30 +121,32 @@ def _uncut(line: str, above: list[str]) -> str:
     return f"{line.removesuffix(number)}cut"
 
 
-def _unmarked(lines: list[str]) -> list[str]:
-    """Return lines without commas between thousands, in those that have decimal points, too."""
-    text = "\n".join(lines)
-    if not _MAY_BE_MARKED.search(text):
-        return lines
-    unmarked = partial(_MARKED.sub, lambda found: found[0].replace(",", ""))
-    return [unmarked(line) if _HAS_POINT.search(line) else line for line in lines]
+def _unmarked(line: str) -> str:
+    """Return a line without commas between thousands if it has decimal points, too."""
+    if not _MAY_BE_MARKED.search(line) or not _HAS_POINT.search(line):
+        return line
+    return _MARKED.sub(lambda found: found[0].replace(",", ""), line)
 
 
-def _json(text: io.TextIOBase) -> Iterator[list[str]]:
-    """Yield a line for each record of JSON, or other lines as they are, some at a time."""
+def _json(text: io.TextIOBase) -> Iterator[str]:
+    """Yield a line for each record of JSON, or other lines as they are."""
     whole = text.read(MAX_DOCUMENT).replace("−", "-")
     if len(whole) == MAX_DOCUMENT:
         raise unreadable(f"more than {MAX_DOCUMENT:,} characters of JSON; leave some out.")
     document = _parsed(whole)
     if document is not whole:
-        for items in sorted(_lists(document), key=len):  # the longest is judged
-            yield [*_records(items), "&"]  # a new run
+        yield from _document(document)
         return
-    for lines in _blocks(io.StringIO(whole)):
-        joined = "".join(lines)
-        if joined.count("{") > len(lines) or "[" in joined:
-            lines = _records([*map(_parsed, lines)])
-        yield lines
+    for line in _lines(io.StringIO(whole)):
+        is_nested = line.count("{") > 1 or "[" in line
+        yield _record(_parsed(line)) if is_nested else line
+
+
+def _document(document: Any) -> Iterator[str]:
+    """Yield a line for each record of a document, the longest list last, as it is judged."""
+    for items in sorted(_lists(document), key=len):
+        yield from map(_record, items)
+        yield "&"  # a new run
 
 
 def _parsed(text: str) -> Any:
@@ -167,15 +163,11 @@ def _is_broken(line: str) -> bool:
     return not bare.endswith((",", "{", "[")) and _parsed(bare) is bare
 
 
-def _records(items: list[Any]) -> list[str]:
-    """Return a line for each object or row."""
-    lines = []
-    for item in items:
-        if isinstance(item, dict):
-            lines.append(_encoded(_flat(item)))
-        else:
-            lines.append(" ".join(map(str, item if isinstance(item, list) else [item])))
-    return lines
+def _record(item: Any) -> str:
+    """Return the line of an object or a row."""
+    if isinstance(item, dict):
+        return _encoded(_flat(item))
+    return " ".join(map(str, item if isinstance(item, list) else [item]))
 
 
 def _encoded(record: dict[str, Any]) -> str:
@@ -310,14 +302,13 @@ class _Text:
         self._is_over = False  # the data have ended
         self._begins = False  # a new run
 
-    def read(self, blocks: Iterable[list[str]]) -> list[Sheet]:
+    def read(self, lines: Iterable[str]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
-        for lines in map(_unmarked, blocks):
-            for line in lines:
-                self._line += 1
-                self._read(line)
-            is_empty = not any(sheet.puts for sheet in (*self._tables, *self._prints))
-            if is_empty and self._line > MAX_LINES_BEFORE:
+        for line in lines:
+            self._line += 1
+            self._read(_unmarked(line))
+            is_late = self._line == MAX_LINES_BEFORE
+            if is_late and not any(sheet.puts for sheet in (*self._tables, *self._prints)):
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
             if len(self._tables) + len(self._prints) > MAX_TABLES:
                 raise unreadable(f"more than {MAX_TABLES:,} tables; leave some out.")

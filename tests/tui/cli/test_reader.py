@@ -240,18 +240,6 @@ def array(*unnamed: object, **named: object) -> bytes:
         "t,E\n" + rows("{t},{e}\n,7"),
         "t E K\n"
         + rows("{t} {e} {k}").replace("\n9.0 ", "\nthe time passed\ntotal energy drift\n9.0 "),
-    ],
-)
-def test_documents_arrays_and_compressed_files_are_tables(data):
-    (series,) = tables(data)
-    assert list(series.times) == TIMES
-    assert list(series.energies) == ENERGIES
-
-
-@pytest.mark.parametrize("size", [30, 1 << 16])
-@pytest.mark.parametrize(
-    "text",
-    [
         "t,E\n" + rows("{t},{e}\n#{n},5\nwriting {s} to file"),
         "ETITLE: TS TOTAL\n" + rows("ENERGY: {t} {e}\nInfo: {n} 1"),
         rows(" time = {t}\n kinetic = {k}\n total energy = {e}"),
@@ -259,9 +247,8 @@ def test_documents_arrays_and_compressed_files_are_tables(data):
         "".join(rows("t = {t}, E = {e}" + ", x = 1" * (n % 2), n, n + 1) for n in range(90)),
     ],
 )
-def test_blocks_of_any_size_hold_the_same(text, size, monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.cli.reader.BLOCK", size)
-    (series,) = tables(text)
+def test_text_documents_arrays_and_compressed_files_are_tables(data):
+    (series,) = tables(data)
     assert list(series.times) == TIMES
     assert list(series.energies) == ENERGIES
 
@@ -334,12 +321,8 @@ def test_rows_at_the_end_without_time_or_energy_have_failed_unless_they_are_rare
     assert series.skipped == skipped
 
 
-@pytest.mark.parametrize("size", [30, 1 << 16])
 @pytest.mark.parametrize("form", ["{t},{e}", "{t} {e}", "{t};{e:}", "t = {t}, E = {e}"])
-def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(
-    form, size, monkeypatch
-):
-    monkeypatch.setattr("pendu_tui.tui.cli.reader.BLOCK", size)
+def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(form):
     for end, samples, diverged_at in (
         ("-344.9", 90, None),
         ("-344.9\n", 91, None),
