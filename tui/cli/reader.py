@@ -321,24 +321,26 @@ class _Text:
 
     def _read(self, line: str) -> None:
         """Read a row like the last one, printed values, or a line of a new form."""
-        over = self._above.get(self._over, [])
+        over = self._above.get(self._over)
         self._over = ""
         if self._is_over:
-            self._read_new(line, "")
-        elif line in self._above:
-            self._over = line
+            self._read_new(line)
         elif over and len(values := line.split()) == len(over):
             for name, value in zip(over, values, strict=True):
                 self._print(name, value, self._unit(name))
+        elif self._is_next_row(line) or line in self._heads:
+            pass
+        elif line in self._above:
+            self._over = line
         elif line in self._page:
             self._heads[line] = self._page[line]
-        elif line not in self._heads and not self._is_next_row(line):
+        else:
             fields = _NUMBERS.split(line)
-            shape = "\0".join(fields[::2])
-            if shape not in self._shapes:
-                self._read_new(line, shape)
+            prints = self._shapes.get("\0".join(fields[::2]))
+            if prints is None:
+                self._read_new(line)
                 return
-            for name, unit, place in self._shapes[shape]:
+            for name, unit, place in prints:
                 self._print(name, fields[place] if place else "nan", unit)
 
     def _is_next_row(self, line: str) -> bool:
@@ -348,9 +350,9 @@ class _Text:
             return False
         if self._heads and not self._heads.keys() <= self._page.keys():
             return False
-        if opening:
-            line = _GLUED.sub(r" \g<0>", line)
         fields = _split(line, delimiter)
+        if opening and len(fields) != width:
+            fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
         if len(fields) != width or (not delimiter and "," in line) or line.lstrip()[:1] in _MARKS:
             return False
         if self._cells and _units_in(fields) != self._cells:
@@ -373,7 +375,7 @@ class _Text:
             values[sheet.kept.index(place)] = zlib.crc32(fields[place].encode())
         return values
 
-    def _read_new(self, line: str, shape: str) -> None:
+    def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
         if _OBJECT.match(line) and _is_broken(line):
             self._prints[-1].skipped += 1
