@@ -31,15 +31,18 @@ class _Carried:
 
 
 class Neighbourhood:
-    """A ring of neighbouring starts, carried along by each method.
+    """A ring of neighbouring starts of a run, carried along by each method.
 
     The area ratio is the product of the steps' Jacobian determinants at the centre, because the
     area of the ring itself suffers from rounding and folding.  A method whose numbers stop being
     finite keeps its last ring.
     """
 
-    def __init__(self, scene: Scene, radius: float) -> None:
-        """Put 64 starts around the scene's: `radius` in theta, `radius`·w0 in omega."""
+    def __init__(self, scene: Scene, radius: float, run: int = 1) -> None:
+        """Put 64 starts around the scene's: `radius` [rad] in theta, `radius`·w0 in omega."""
+        self.radius = radius
+        self.step = 0
+        self._run = (scene, run)
         self._model = scene.equations
         angle = np.linspace(0.0, 2 * math.pi, 64, endpoint=False)
         ring = (
@@ -59,12 +62,34 @@ class Neighbourhood:
         """The area over that at the start, of an infinitesimal ring; inf if it overflows."""
         return tuple(math.exp(c.log_area) if c.log_area < 709 else math.inf for c in self._carried)
 
+    def is_of(self, scene: Scene, run: int) -> bool:
+        """Return whether this is the ring of a run."""
+        return self._run == (scene, run)
+
+    def following(
+        self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
+    ) -> "Neighbourhood":
+        """Return the ring carried towards a step of a run, by at most `most` steps.
+
+        It is another ring for another run, or on a way back.  `changes` are all of the run's, in
+        order; those of its past stay, since a branch is another.
+        """
+        ring = self
+        if not self.is_of(scene, run) or step < self.step:
+            ring = Neighbourhood(scene, self.radius, run)
+        target = min(step, ring.step + most)
+        while ring.step < target:
+            stop = min([target, *(change.step for change in changes if change.step > ring.step)])
+            ring.advance(stop - ring.step, change_before(changes, stop).stepping)
+        return ring
+
     def advance(self, n: int, stepping: Stepping) -> None:
         """Carry everything forward by n steps of the lockstep."""
         with np.errstate(all="ignore"):
             for carried, part in zip(self._carried, stepping.parts, strict=True):
                 if not carried.lost:
                     self._carry(carried, n * part, stepping.h / part)
+        self.step += n
 
     def _carry(self, carried: _Carried, steps: int, h: float) -> None:
         method = carried.method
@@ -84,40 +109,3 @@ class Neighbourhood:
                 carried.log_area = log_area
         except OVERFLOW:  # also the logarithm of a determinant 0
             carried.lost = True
-
-
-class Neighbours:
-    """The neighbours of a run's start, carried to the run's present step.
-
-    They take the run's own steps, changes of the stepping included.  Going back starts over.
-    """
-
-    def __init__(self, radius: float) -> None:
-        self.radius = radius  # rad
-        self.step = 0
-        self._begun: tuple[Scene, int] | None = None
-        self._ring: Neighbourhood | None = None
-
-    def ring_of(self, scene: Scene, run: int) -> Neighbourhood | None:
-        """Return the ring as far as it has been carried; None if it is not of this run."""
-        return self._ring if self._begun == (scene, run) else None
-
-    def follow(
-        self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
-    ) -> Neighbourhood:
-        """Carry the ring towards a step of a run, by at most `most` steps.
-
-        `changes` are all of the run's, in order; those of its past stay, since a branch is another.
-        """
-        ring = self.ring_of(scene, run)
-        if ring is None or step < self.step:
-            ring = Neighbourhood(scene, self.radius)
-            self._ring = ring
-            self._begun = (scene, run)
-            self.step = 0
-        target = min(step, self.step + most)
-        while self.step < target:
-            stop = min([target, *(change.step for change in changes if change.step > self.step)])
-            ring.advance(stop - self.step, change_before(changes, stop).stepping)
-            self.step = stop
-        return ring

@@ -26,7 +26,7 @@ from pendu_tui.tui.views.view import Chooser, Memo, StudyView
 from pendu_tui.tui.views.viewport import LEFT, Viewport, amplitude, reach
 
 if TYPE_CHECKING:  # NumPy is imported after the first paint
-    from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
+    from pendu_tui.engine.studies.ring import Neighbourhood
     from pendu_tui.engine.studies.section import Points
     from pendu_tui.tui.views.portrait import Section
 
@@ -47,7 +47,7 @@ class PhasePane(Chooser[State]):
 
     def __init__(self) -> None:
         super().__init__()
-        self.neighbours: Neighbours | None = None
+        self.neighbours: Neighbourhood | None = None
         self._ringless: Scene | None = None  # its own method failed to carry a ring
         self.zoomed: Viewport | None = None  # None: the whole portrait
 
@@ -60,9 +60,10 @@ class PhasePane(Chooser[State]):
     @property
     def ring(self) -> "Neighbourhood | None":
         """The ring of this run, as far as it has been carried."""
-        if self.neighbours is None:
+        ring = self.neighbours
+        if ring is None or not ring.is_of(self.source.scene, self.source.sample.run):
             return None
-        return self.neighbours.ring_of(self.source.scene, self.source.sample.run)
+        return ring
 
     @property
     def _cells(self) -> tuple[int, int]:
@@ -108,18 +109,20 @@ class PhasePane(Chooser[State]):
         if not self.shown.ring or scene.why_no_ring or scene is self._ringless:
             self.neighbours = None
             return
-        from pendu_tui.engine.studies.ring import Neighbours
+        from pendu_tui.engine.studies.ring import Neighbourhood
 
         # large enough to see, small enough to stay a ring for a while
         radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         if self.neighbours is None or self.neighbours.radius != radius:
-            self.neighbours = Neighbours(radius)
+            self.neighbours = Neighbourhood(scene, radius, sample.run)
         steps = 100  # a frame, which cost 5 ms
         if has_own(scene):
             steps = 1
         try:
             with limited():
-                self.neighbours.follow(scene, sample.run, sample.step, source.changes, steps)
+                self.neighbours = self.neighbours.following(
+                    scene, sample.run, sample.step, source.changes, steps
+                )
         except OwnMethodError as error:
             self._ringless = scene
             self.neighbours = None

@@ -14,7 +14,7 @@ from pendu_tui.engine.models.model import Model, State
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.scenes import Line
-from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
+from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.engine.studies.section import OrbitKind, Points, kind_of, orbit
 from pendu_tui.tui.drawing.canvas import Canvas
 from pendu_tui.tui.drawing.frame import Axis, Frame, in_pi, nice, number_ticks, theta_ticks
@@ -208,16 +208,16 @@ def method_points(
     return points
 
 
-def ring_text(source: Source, neighbours: Neighbours | None) -> str:
+def ring_text(source: Source, ring: Neighbourhood | None) -> str:
     """Return what there is to say about the ring, or why there is none."""
-    if neighbours is None:
+    if ring is None:
         return source.scene.why_no_ring
     step = 0
-    if neighbours.ring_of(source.scene, source.sample.run):
-        step = neighbours.step
+    if ring.is_of(source.scene, source.sample.run):
+        step = ring.step
     change = change_before(source.changes, step)
     left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
-    text = f"ring, radius {neighbours.radius:g} rad"
+    text = f"ring, radius {ring.radius:g} rad"
     if left != 1:
         text += f": the true motion leaves {left:.9f} of its area"
     if behind := source.sample.step - step:

@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.engine.run.rewindable import RewindableRun
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.studies.ring import Neighbourhood, Neighbours
+from pendu_tui.engine.studies.ring import Neighbourhood
 
 DRIFT = SCENES["drift"]
 
@@ -47,60 +47,59 @@ def test_a_method_that_overflows_keeps_its_last_ring():
         assert neighbourhood.area_ratios[0] == pytest.approx(ratio)
 
 
-def rings(neighbours, run, most=10_000):
-    return np.array(neighbours.follow(run.scene, run.run, run.step, run.changes, most).rings)
+def followed(ring, run, most=10_000):
+    return ring.following(run.scene, run.run, run.step, run.changes, most)
 
 
-def expected(*stretches, scene=DRIFT):
-    ring = Neighbourhood(scene, 0.1)
+def has_taken(ring, *stretches):
+    """Whether a ring is one that has taken so many steps of each h."""
+    expected = Neighbourhood(DRIFT, 0.1)
     for steps, h in stretches:
-        ring.advance(steps, Stepping(h))
-    return np.array(ring.rings)
+        expected.advance(steps, Stepping(h))
+    return np.array_equal(ring.rings, expected.rings)
 
 
 def test_neighbours_take_the_steps_of_the_run_whenever_they_follow():
-    run, early = RewindableRun(DRIFT, 1), Neighbours(0.1)
+    run, early = RewindableRun(DRIFT, 1), Neighbourhood(DRIFT, 0.1)
     for steps, h in ((7, 0.02), (5, -0.02)):
         run.forward(steps)
-        rings(early, run)
+        assert followed(early, run) is early
         run.change(Stepping(h))  # counts for the next step
-        rings(early, run)
+        followed(early, run)
     run.forward(3)
-    there = expected((7, 0.05), (5, 0.02), (3, -0.02))
-    assert np.array_equal(rings(early, run), there)
-    assert np.array_equal(rings(Neighbours(0.1), run), there)
+    for ring in (early, Neighbourhood(DRIFT, 0.1)):
+        assert has_taken(followed(ring, run), (7, 0.05), (5, 0.02), (3, -0.02))
 
 
 def test_neighbours_follow_so_many_steps_at_once_and_in_each_methods_own():
-    run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
+    run, ring = RewindableRun(DRIFT, 1), Neighbourhood(DRIFT, 0.1)
     run.change(Stepping(0.2, True, DRIFT.cast))
     run.forward(12)
     for step in (5, 10, 12):
-        found = rings(neighbours, run, most=5)
-        ring = neighbours.ring_of(DRIFT, 1)
-        assert neighbours.step == step
-    rings(neighbours, run)
-    assert neighbours.ring_of(DRIFT, 1) is ring  # it has not begun again
-    assert np.array_equal(found, [*expected((48, 0.05))[:3], expected((12, 0.2))[3]])
+        assert followed(ring, run, most=5).step == step
+    own = [Neighbourhood(DRIFT, 0.1) for _ in range(2)]
+    for alone, steps, h in zip(own, (48, 12), (0.05, 0.2), strict=True):
+        alone.advance(steps, Stepping(h))
+    assert np.array_equal(ring.rings, [*own[0].rings[:3], own[1].rings[3]])
 
 
 def test_they_go_back_with_the_run_and_begin_again_with_another():
-    run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
+    run = RewindableRun(DRIFT, 1)
     run.forward(20)
-    rings(neighbours, run)
+    ring = followed(Neighbourhood(DRIFT, 0.1), run)
     run.go_to(15)
-    assert np.array_equal(rings(neighbours, run), expected((15, 0.05)))
+    ring = followed(ring, run)
+    assert has_taken(ring, (15, 0.05))
     run.branch(2)  # a run of its own, that shares the first 15 steps
     run.change(Stepping(0.1))
     run.forward(2)
-    assert np.array_equal(rings(neighbours, run), expected((15, 0.05), (2, 0.1)))
-    gentle = RewindableRun(SCENES["gentle"], 3)
-    gentle.forward(4)
-    assert neighbours.ring_of(gentle.scene, 3) is None
-    assert neighbours.ring_of(DRIFT, 2) is not None
-    assert np.array_equal(
-        rings(neighbours, gentle), expected((4, gentle.scene.h), scene=gentle.scene)
-    )
+    ring = followed(ring, run)
+    assert has_taken(ring, (15, 0.05), (2, 0.1))
+    gentle = RewindableRun(SCENES["gentle"], 2)
+    assert ring.is_of(DRIFT, 2)
+    assert not ring.is_of(gentle.scene, 2)
+    assert followed(ring, gentle).is_of(gentle.scene, 2)
+    assert followed(ring, gentle).radius == 0.1
 
 
 def test_a_ring_is_as_wide_in_theta_as_in_omega_over_w0():

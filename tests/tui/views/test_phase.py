@@ -11,7 +11,7 @@ from textual import events
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Line, Scene
-from pendu_tui.engine.studies.ring import Neighbours
+from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.views.phase import AreaTable, PhasePane, SectionPane, area_text
 from pendu_tui.tui.views.portrait import ring_text
@@ -148,7 +148,7 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         await theatre.press("f3")
         await until(theatre.pilot, lambda: pane.neighbours and pane.settled)
         source = theatre.source
-        expected = Neighbours(pane.neighbours.radius).follow(
+        expected = Neighbourhood(source.scene, pane.neighbours.radius).following(
             source.scene, 1, source.sample.step, source.changes, 1000
         )
         assert pane.ring.area_ratios == expected.area_ratios
@@ -168,7 +168,7 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         theatre.stage.show_now()
         assert (pane.neighbours.radius, pane.neighbours.step) == (pytest.approx(0.01), 1)
         fail = Mock(side_effect=OwnMethodError("No ring."))
-        monkeypatch.setattr(Neighbours, "follow", fail)
+        monkeypatch.setattr(Neighbourhood, "following", fail)
         pane.draw()
         assert pane.ring is None
         await theatre.run(0.1)
@@ -234,8 +234,8 @@ def test_a_ring_says_how_far_it_is_behind_and_what_the_true_motion_leaves_of_it(
         (drift, 200, ""),
         (drift, 50, ", 150 steps behind"),
     ):
-        ring = Neighbours(0.1)
-        ring.follow(live.scene, live.sample.run, live.sample.step, live.changes, steps)
+        ring = Neighbourhood(live.scene, 0.1)
+        ring.following(live.scene, live.sample.run, live.sample.step, live.changes, steps)
         assert ring_text(live, ring) == f"ring, radius 0.1 rad{words}"
     drift.start(DRIFT)
     drift.step(7)

@@ -10,7 +10,7 @@ import pytest
 from pendu_tui.engine.methods import RK4, VELOCITY_VERLET
 from pendu_tui.engine.models.model import State
 from pendu_tui.engine.scenes import SCENES, Line
-from pendu_tui.engine.studies.ring import Neighbours
+from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.engine.studies.section import iterate
 from pendu_tui.tui.drawing.picture import Picture
 from pendu_tui.tui.playback.shown import Shown, Stretch, quantities
@@ -93,7 +93,7 @@ def test_tables_and_titles(snapshot):
 
 def test_phase_space(snapshot):
     live = after(DRIFT, 12)
-    ring = Neighbours(0.1).follow(DRIFT, 1, live.sample.step, live.changes, 1000)
+    ring = Neighbourhood(DRIFT, 0.1).following(DRIFT, 1, live.sample.step, live.changes, 1000)
     views = (
         (Viewport.portrait(46, 15, DRIFT), Shown(exact=True), None),
         (Viewport.portrait(78, 17, DRIFT, 1.1, 2.0), Shown(hidden=frozenset({"rk4"})), ring),
