@@ -1,7 +1,5 @@
 """Small recordings for tests, the same each time."""
 
-import math
-from collections.abc import Sequence
 from pathlib import Path
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
@@ -71,43 +69,24 @@ def record(path: Path, entries: list[Entry]):
     return path
 
 
-def with_changes(
-    scene: Scene,
-    time: float,
-    recorder: Recorder,
-    changes: Sequence[tuple[int, float]],
-    sample_every: int,
-):
-    """`simulate` with changes, each a step and h from there on; the clock always runs forwards."""
+def run_of(scene: Scene, *acts: int | Stepping):
+    """The entries of a run whose clock shows the simulated time.
+
+    A number takes so many steps to a sample; a stepping is a change.
+    """
     lockstep = Lockstep(scene, judged=True)
     clock = 0.0
-    remaining = time
-    recorded = 0  # milestones
-
-    def sampled():
-        nonlocal recorded
-        sample = lockstep.sample()
-        recorder.add(sample, clock)
-        for milestone in lockstep.milestones[recorded:]:
-            recorder.add(noticed(1, milestone), clock)
-        recorded = len(lockstep.milestones)
-        return sample
-
-    recorder.add(start(scene=scene), 0.0)
-    yield sampled()
-    for step, h in (*changes, (math.inf, 0.0)):
-        begin = clock
-        first = lockstep.step
-        size = abs(lockstep.stepping.h)
-        last = first + max(0, round(remaining / size))
-        end = int(min(step, last))
-        while lockstep.step < end:
-            lockstep.advance(min(sample_every, end - lockstep.step))
-            clock = begin + (lockstep.step - first) * size
-            yield sampled()
-        if end == last:
-            return
-        remaining -= (end - first) * size
-        if h != lockstep.stepping.h:
-            recorder.add(Event("set_h", 1, end, lockstep.t, h=h), clock)
-            lockstep.set_stepping(Stepping(h, cast=scene.cast))
+    noted = 0  # milestones
+    entries = [Entry(clock, start(scene=scene))]
+    for act in acts:
+        if isinstance(act, Stepping):
+            lockstep.set_stepping(act)
+            event = Event("set_h", 1, lockstep.step, lockstep.t, h=act.h)
+            entries.append(Entry(clock, event))
+        else:
+            lockstep.advance(act)
+            clock += act * abs(lockstep.stepping.h)
+            found = (noticed(1, each) for each in lockstep.milestones[noted:])
+            entries += [Entry(clock, value) for value in (lockstep.sample(), *found)]
+            noted = len(lockstep.milestones)
+    return entries

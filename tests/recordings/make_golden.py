@@ -7,31 +7,30 @@ of the methods are measured against these files.
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.recordings.events import Event
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
+from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.recordings.events import Event, noticed
 from pendu_tui.recordings.files import GOLDEN, golden_names
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
-from tests.recordings.examples import samples_of, with_changes
-
-
-class Later:
-    """A recorder for a run that follows others."""
-
-    def __init__(self, recorder: Recorder, run: int):
-        self._recorder, self._run, self._begin = recorder, run, recorder.seconds
-
-    def add(self, value: Sample | Event, clock: float):
-        self._recorder.add(value._replace(run=self._run), self._begin + clock)
 
 
 def make(name: str, path: Path):
     with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recorder(path) as recorder:
-        for run in golden.runs:
-            steps = [value.step for _, value in samples_of(golden) if value.run == run.number]
-            changes = [(event.step, event.h) for _, event in run.events if event.kind == "set_h"]
-            later = Later(recorder, run.number)
-            list(with_changes(run.scene, run.end - run.begin, later, changes, steps[1]))
+        for clock, value in golden.entries():
+            if isinstance(value, Event) and value.scene is not None:
+                lockstep = Lockstep(value.scene, value.run, judged=True)
+                noted = 0  # milestones
+                recorder.add(value._replace(arithmetic=None), clock)
+            elif isinstance(value, Sample):
+                lockstep.advance(value.step - lockstep.step)
+                recorder.add(lockstep.sample(), clock)
+                for milestone in lockstep.milestones[noted:]:
+                    recorder.add(noticed(value.run, milestone), clock)
+                noted = len(lockstep.milestones)
+            elif value.kind == "set_h":
+                recorder.add(value._replace(t=lockstep.t), clock)
+                lockstep.set_stepping(Stepping(value.h, cast=lockstep.scene.cast))
 
 
 if __name__ == "__main__":

@@ -7,14 +7,15 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings import events
 from pendu_tui.recordings.files import RecordingError
-from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
 from pendu_tui.tui.playback.replay import Replay
-from tests.recordings.examples import samples_of, with_changes
+from tests.recordings.examples import record, run_of, samples_of
 from tests.recordings.killed import HEUN
 from tests.tui.command_line import pendu
 
@@ -22,9 +23,10 @@ from tests.tui.command_line import pendu
 @pytest.mark.parametrize(("name", "scene"), SCENES.items())
 def test_a_scene_is_recorded_verified_recovered_and_replayed(tmp_path, name, scene):
     path, copy = tmp_path / "a.mcap", tmp_path / "copy.mcap"
-    with Recorder(path) as recorder:
-        changes = [(40, -scene.h / 2)]
-        samples = list(with_changes(scene, 60 * scene.h, recorder, changes, sample_every=7))
+    forty = 7, 7, 7, 7, 7, 5
+    entries = run_of(scene, 0, *forty, Stepping(-scene.h / 2, cast=scene.cast), *forty)
+    samples = [value for _, value in entries if isinstance(value, Sample)]
+    record(path, entries)
     assert verify(path).identical
     recover(path, copy)
     with Recording.open(copy, check=True) as recording, Recording.open(path) as original:

@@ -8,7 +8,6 @@ import pytest
 
 from pendu_tui import recordings
 from pendu_tui.engine.methods import VELOCITY_VERLET, method_of
-from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import RecordingError
@@ -16,7 +15,7 @@ from pendu_tui.recordings.format import values_of
 from pendu_tui.recordings.pytest import verify_recordings
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import verify
-from tests.recordings.examples import SCENE, record, start, two_runs
+from tests.recordings.examples import SCENE, record, run_of, start, two_runs
 
 
 def altered(entries, at, method, **numbers):
@@ -29,16 +28,6 @@ def altered(entries, at, method, **numbers):
     changed = list(entries)
     changed[at] = Entry(clock, sample._replace(readings=tuple(readings)))
     return changed
-
-
-def entries_of(scene, *steps):
-    """A recording of samples at these steps."""
-    lockstep = Lockstep(scene)
-    entries = [Entry(0.0, start(scene=scene))]
-    for step in steps:
-        lockstep.advance(step - lockstep.step)
-        entries.append(Entry(lockstep.t, lockstep.sample()))
-    return entries
 
 
 @pytest.fixture
@@ -68,14 +57,14 @@ def test_the_room_offers_what_programs_import_and_nothing_else():
 
 
 def test_a_value_that_an_older_version_did_not_record_is_not_compared(verified):
-    entries = entries_of(SCENES["mean-field"], 10)
+    entries = run_of(SCENES["mean-field"], 10)
     older = altered(entries, 1, 0, max_invariant_error=None)
     assert verified(older).identical
 
 
 def test_a_failure_that_was_not_recorded_is_found(verified):
     scene = replace(SCENE, theta=3.0, h=0.7, cast=(method_of("implicit_midpoint"), VELOCITY_VERLET))
-    entries = entries_of(scene, 10)
+    entries = run_of(scene, 10)
     for arithmetic in (None, arithmetic_here()._replace(sin="another")):
         entries[0] = Entry(0.0, start(scene=scene)._replace(arithmetic=arithmetic))
         assert verified(entries).identical
@@ -90,7 +79,7 @@ def test_a_failure_that_was_not_recorded_is_found(verified):
     [
         (two_runs(), 3, 0, "explicit_euler"),
         (two_runs(), 3, 3, "rk4"),
-        (entries_of(SCENES["stiff-slow"], 0, 50), 2, 0, "velocity_verlet"),
+        (run_of(SCENES["stiff-slow"], 0, 50), 2, 0, "velocity_verlet"),
     ],
     ids=["first", "last", "plane"],
 )
@@ -140,7 +129,7 @@ def test_a_wrong_time_is_found_and_a_folder_with_it_fails_as_a_test(verified, tm
 
 
 def test_minus_zero_differs_from_zero(verified):
-    entries = entries_of(replace(SCENE, theta=0.0), 0)
+    entries = run_of(replace(SCENE, theta=0.0), 0)
     assert verified(entries).identical
     assert verified(altered(entries, 1, 0, omega=-0.0)).first_difference.field == "omega"
 
@@ -194,7 +183,7 @@ def test_no_more_than_a_hundred_steps_a_sample_are_simulated_or_what_the_user_al
 ):
     monkeypatch.setattr("pendu_tui.recordings.verification.MAX_STEPS", 1)
     far = Entry(99.0, Event("set_h", 1, 10**15, 30.0, h=0.1))
-    entries = [*entries_of(SCENE, 0, 1, steps), far]
+    entries = [*run_of(SCENE, 0, 1, steps - 1), far]
     if passes:
         assert verified(entries, lambda *_: None, limit).identical
     else:
