@@ -30,13 +30,13 @@ def implicit(share: float) -> Phases:
     A step solves theta_s = theta + s h omega + (s h)² a(theta_s), with one solution if s z < 1.  A
     step for which Newton's iteration finds none is nan.
     """
-    for_numbers = _solving(share, size=abs, any_of=bool)
+    for_numbers = _solving(share, bool)
 
     @cache
     def for_arrays() -> Phases:
         import numpy as np
 
-        return _solving(share, size=np.abs, any_of=np.any)
+        return _solving(share, np.any)
 
     def implicit_steps(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         if any(hasattr(value, "shape") for value in phase):
@@ -47,8 +47,8 @@ def implicit(share: float) -> Phases:
     return implicit_steps
 
 
-def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], Any]) -> Phases:
-    """Return the method for numbers with these functions for |x| and any(x)."""
+def _solving(share: float, any_of: Callable[[Any], Any]) -> Phases:
+    """Return the method for numbers; `any_of` tells whether any of an array is true."""
 
     def solved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta, omega = phase
@@ -56,15 +56,15 @@ def _solving(share: float, size: Callable[[Any], Any], any_of: Callable[[Any], A
         while True:
             ahead = theta + part * omega
             inside = ahead
-            precision = TOLERANCE * (1 + size(ahead))
-            width = WIDTH * (1 + size(ahead))
+            precision = TOLERANCE * (1 + abs(ahead))
+            width = WIDTH * (1 + abs(ahead))
             unsolved = precision > 0
             for _ in range(MAX_ITERATIONS):
                 a = force(inside)
                 slope = (force(inside + width) - a) / width
                 correction = (ahead + part * part * a - inside) / (1 - part * part * slope)
                 inside = inside + unsolved * correction
-                unsolved = size(correction) > precision
+                unsolved = abs(correction) > precision
                 if not any_of(unsolved):
                     break
             if any_of(unsolved):
