@@ -125,8 +125,6 @@ def order_of(steps: Sequence[float], fluctuations: Sequence[Fluctuation]) -> Ord
     if not all(each.size > 0 for each in fluctuations):
         raise ValueError("an energy that never changes has no order.")
     sizes, uncertainties = np.array(fluctuations).T
-    weights = np.maximum(uncertainties / sizes, 1e-12) ** -2
-    x = np.log(steps)
-    x = x - weights @ x / weights.sum()
-    spread = float(weights @ x**2)
-    return Order(float(weights * x @ np.log(sizes)) / spread, spread**-0.5)
+    weights = 1 / np.maximum(uncertainties / sizes, 1e-12)
+    (power, _), covariance = np.polyfit(np.log(steps), np.log(sizes), 1, w=weights, cov="unscaled")
+    return Order(float(power), math.sqrt(covariance[0, 0]))
