@@ -6,7 +6,7 @@ Arguments that cannot be used raise InputError, a ValueError with a sentence.
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import partial, wraps
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -214,18 +214,11 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "first
     found = judge_record(t[: len(e)], e, failed=diverged_at is not None).scaled(1 / size)
     if not math.isfinite(found.bound or 0):  # beyond doubles
         found = found._replace(slope=None, uncertainty=None, bound=None)
+    judged = found._asdict()
     return Judged(
-        verdict=found.verdict,
-        reason=found.reason,
-        slope=found.slope,
-        uncertainty=found.uncertainty,
-        bound=found.bound,
-        share=found.share,
-        rests=found.rests,
+        **{each.name: judged[each.name] for each in fields(Judged) if each.name in judged},
         error=float(e[-1] - e[0]) / size,
         max_error=float(np.abs(e - e[0]).max()) / size,
-        fluctuation=found.fluctuation,
-        independent=found.independent,
         scale=size,
         diverged_at=diverged_at,
     )
