@@ -4,10 +4,18 @@ import time
 
 import pytest
 
-from tests.recordings.hostile import FILES, false_heads, write
+from pendu_tui.recordings.events import Event
+from pendu_tui.recordings.files import MAGIC
+from pendu_tui.recordings.format import EVENTS
+from tests.recordings.hostile import begun, encoded, false_head, first_sample, write
 from tests.tui.command_line import pendu
 
 MAX_SECONDS = 10.0  # on a busy machine
+LATER = [encoded(first_sample()._replace(step=step), 0.5 + step / 30) for step in range(1, 40)]
+FILES = {
+    "a huge message": lambda: begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]),
+    "h of 0": lambda: begun(encoded(Event("set_h", 1, 0, 0.0, h=0.0), 0.5), *LATER),
+}
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -32,7 +40,7 @@ def test_a_hostile_file_is_answered_in_time_with_a_sentence(tmp_path, name):
 
 def test_work_is_proportional_to_the_size_of_a_file_of_false_chunks(tmp_path):
     path = tmp_path / "heads.mcap"
-    path.write_bytes(false_heads(count=100_000))
+    path.write_bytes(MAGIC + 100_000 * false_head().ljust(100, b"\0"))
     began = time.process_time()
     assert pendu("verify", path).refused(3, "its end is missing")
     assert time.process_time() - began < MAX_SECONDS  # if each chunk of 4 MB were read, 100 s

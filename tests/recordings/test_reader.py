@@ -138,7 +138,7 @@ def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_li
 
 def test_a_chunk_in_which_time_runs_back_or_lasts_for_centuries_is_lost(out):
     for last, passes in ((2.0, True), (1.0, False), (9e9, True), (1e10, False)):
-        marks = (hostile.event(Event("mark", 1, 0, 0.0), clock) for clock in (2.0, last))
+        marks = (hostile.encoded(Event("mark", 1, 0, 0.0), clock) for clock in (2.0, last))
         hostile.write(out, hostile.begun(*marks))
         assert is_whole(out) == passes
 

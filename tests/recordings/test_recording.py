@@ -118,12 +118,9 @@ def test_a_file_that_is_emptied_while_it_is_read_is_one_sentence(tmp_path):
 
 
 def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
-    def entries():
-        yield from hostile.begun()
-        yield hostile.event(start(2))
-        yield hostile.sample(hostile.first_sample(2))[:-1]
-
-    hostile.write(tmp_path / "a.mcap", entries())
+    incomplete = hostile.encoded(hostile.first_sample(2))[:-1]
+    entries = hostile.begun(hostile.encoded(start(2)), incomplete)
+    hostile.write(tmp_path / "a.mcap", entries)
     with pytest.raises(RecordingError, match="a sample is incomplete"):
         Recording.open(tmp_path / "a.mcap")
 
