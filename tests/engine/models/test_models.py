@@ -31,7 +31,7 @@ def test_every_model_has_a_scene_and_no_two_a_number_of_the_same_name():
     variables = [each for model in EQUATIONS for each in model.variables]
     assert all(each.unit or each.about for each in variables)  # which viewers show
     assert [each.name for each in variables if each.relative] == ["spring_energy"]
-    assert DAMPED.error.chart == ("ln(E/E_true)", "|ln(E/E_true)|")
+    assert DAMPED.error.label == "ln(E/E_true)"
 
 
 def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():

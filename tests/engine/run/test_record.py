@@ -21,6 +21,7 @@ from tests.bench.foreign import correlated
 
 T = np.linspace(0, 100, 2000)
 NOISE = np.random.default_rng(5).standard_normal(2000)
+END = T[-62] <= T  # the last of 32 parts
 SINE = math.sqrt(2) * np.sin(7 * T)  # standard deviation 1
 
 
@@ -42,6 +43,7 @@ MAKES = {
     "a walk": (np.cumsum(NOISE), levels.WALKS),
     "a wrong end": (NOISE + 20 * (T > 98), levels.UNLIKE_END),
     "a wobble that gets wider": (T * np.sin(7 * T), levels.WIDENS),
+    "a wobble that gets wider in turns": (NOISE * np.repeat((1, 3, 2, 4), 500), "bounded"),
     "a line that turns back": (NOISE + 2 * np.minimum(T, 160 - T) / 100, levels.TURNED),
 }
 RESTING = {
@@ -134,24 +136,47 @@ def with_chance(noise, chance):
     return energies
 
 
+OPEN = "a trend cannot be excluded"
 SIDES = {
     # the chance of the slope is 0.02, that of its ranks 4e-6 or 2e-5
     "MOVES_BY_RANK": (
         lambda size: np.log1p(10 * T) / math.log(1001) + size * noise_of(200),
-        {0.06: "grows", 0.08: ""},
+        {0.06: "grows", 0.08: OPEN},
     ),
-    "MOVES": (lambda chance: with_chance(noise_of(60, 2), chance), {1.4e-3: "", 7e-4: "grows"}),
+    "MOVES": (lambda chance: with_chance(noise_of(60, 2), chance), {1.4e-3: OPEN, 7e-4: "grows"}),
     # of an eighth of the record, times that share
     "WINDOWS": (
         lambda size: noise_of(1e6, 2) + size * np.clip(T - 87.5, 0, None),
-        {0.19: "", 0.23: "grows"},
+        {0.19: levels.UNLIKE_END, 0.23: "grows"},
     ),
-    "SUSPECT": (lambda chance: with_chance(noise_of(200, 2), chance), {0.07: "bounded", 0.035: ""}),
+    "SUSPECT": (
+        lambda chance: with_chance(noise_of(200, 2), chance),
+        {0.07: "bounded", 0.035: levels.TURNED},
+    ),
     "MATERIAL": (lambda move: SINE + move * T / 100, {0.4: "bounded", 0.6: "grows"}),
-    "LARGE": (lambda move: noise_of(60, 3) + move * T / 100, {0.0: "bounded", 2.0: ""}),
-    "MIN_CYCLES": (lambda n: np.sin(math.tau * n * T / 100 + 1.3), {1.5: "", 2.5: "bounded"}),
+    "LARGE": (lambda move: noise_of(60, 3) + move * T / 100, {0.0: "bounded", 2.0: levels.TURNED}),
+    "MIN_CYCLES": (lambda n: np.sin(math.tau * n * T / 100 + 1.3), {1.5: OPEN, 2.5: "bounded"}),
+    "WIDENING": (
+        lambda last: NOISE * np.repeat((1, 2, 2.5, last), 500),
+        {2.7: "bounded", 2.85: levels.WIDENS},
+    ),
+    "UNLIKE": (
+        lambda shift: noise_of(100, 3) + shift * END,
+        {3.5: "bounded", 3.68: levels.UNLIKE_END},
+    ),
+    "UNLIKE_START": (
+        lambda shift: noise_of(400, 4) - shift * (T < 6.25),
+        {0.7: "bounded", 0.76: "grows"},
+    ),
+    "MATERIAL of an end": (
+        lambda shift: SINE + shift * END,
+        {0.37: "bounded", 0.41: levels.UNLIKE_END},
+    ),
     # beside a swing so slow that nothing else can be told
-    "GONE": (lambda far: np.where(T < 10, 0, far + 0.5 * np.cos(T / 20)), {3: "", 7: "grows"}),
+    "GONE": (
+        lambda far: np.where(T < 10, 0, far + 0.5 * np.cos(T / 20)),
+        {3: levels.WALKS, 7: "grows"},
+    ),
 }
 
 
@@ -159,7 +184,7 @@ SIDES = {
 def test_each_level_has_a_case_on_both_sides(name):
     make, words = SIDES[name]
     for value, word in words.items():
-        assert judge_record(T, 1000 + make(value)).verdict == (word or "undecided")
+        assert told(make(value)).startswith(word)
 
 
 @pytest.mark.parametrize(("last", "growth"), [(0.99, None), (1.01, math.log(2.01) / 63)])
@@ -178,16 +203,6 @@ def test_students_distribution_is_that_of_tables(freedom, t, chance):
 
 
 @pytest.mark.parametrize(
-    ("widths", "reason"),
-    [((1, 2, 3, 4), levels.WIDENS), ((1, 3, 2, 4), ""), ((1, 2, 2.5, 2.9), "")],
-)
-def test_a_band_widens_from_quarter_to_quarter_to_three_times_its_width(widths, reason):
-    half = np.repeat(widths, 16) / 2
-    flat = NOISE[:64] * 0.1
-    assert core.Part(bins_around(flat, half), flat).why_not_bounded() == reason
-
-
-@pytest.mark.parametrize(
     ("rise", "verdict"),
     [
         (0.45e-12 * T / T[-1], "bounded"),
@@ -197,38 +212,6 @@ def test_a_band_widens_from_quarter_to_quarter_to_three_times_its_width(widths, 
 )
 def test_what_roundings_may_add_up_to_is_no_trend(rise, verdict):
     assert judge_record(T, 1 + rise).verdict == verdict
-
-
-def test_eight_bins_may_rise_in_order_by_chance():
-    values = 0.3 * NOISE[:64]
-    values[-8:] = values[:-8].max() + 0.01 * np.arange(8)
-    values[-1] += 1
-    assert core.judge_bins(bins_around(values, 0.3)).reason == levels.UNLIKE_END
-
-
-def value_beyond(others, chance):
-    """Return a value that is so unlike the others only by this chance: Student's t."""
-    count = len(others)
-    spread = np.std(others) * math.sqrt((count + 1) / (count - 1))
-    shifts = np.linspace(0, 10, 2000) * spread
-    chances = np.array([2 - 2 * student(shift, spread, count - 1) for shift in shifts])
-    return np.mean(others) + shifts[np.argmin(abs(chances - chance))]
-
-
-@pytest.mark.parametrize(("chance", "reason"), [(1.3e-3, ""), (0.75e-3, levels.UNLIKE_END)])
-def test_an_end_is_unlike_the_rest_at_a_chance_of_1e_3(chance, reason):
-    assert core.blocks_of(np.arange(7.0), 3).tolist() == [2, 5]  # to the end
-    values = np.random.default_rng(1).standard_normal(64)
-    *others, _ = core.blocks_of(values, 2)
-    values[-2:] = value_beyond(others, chance)
-    assert core.judge_bins(bins_around(values)).reason == reason
-
-
-@pytest.mark.parametrize(("shift", "reason"), [(0.2, ""), (0.3, levels.UNLIKE_END)])
-def test_an_end_that_differs_by_less_than_half_a_deviation_is_like_the_rest(shift, reason):
-    values = 100 + 0.01 * NOISE[:64]
-    values[-2:] += shift
-    assert core.Part(bins_around(values), values).why_not_bounded() == reason
 
 
 @pytest.mark.parametrize("size", [8, 4, 2])
@@ -246,15 +229,6 @@ def test_an_energy_rests_in_the_longest_part_that_is_level(share):
     found = core.judge_bins(bins_around(values, np.where(at == 0, 5, 0.5)))  # wide where it begins
     assert found.rests
     assert found.fluctuation == pytest.approx(math.sqrt((25 + (count - 1) / 4) / count), rel=0.01)
-
-
-@pytest.mark.parametrize(("chance", "has_left"), [(1.4e-4, False), (0.7e-4, True)])
-def test_a_start_is_unlike_the_rest_at_a_chance_of_1e_4(chance, has_left):
-    values = np.random.default_rng(3).standard_normal(64)
-    values[:16] = value_beyond(core.blocks_of(values[16:], 4), chance)
-    whole = core.Part(bins_around(values), values)
-    way = has_left * (values[16:].mean() - values[0])
-    assert core._way_from_start(whole, whole.last(0.75)) == pytest.approx(way)
 
 
 @pytest.mark.parametrize(
@@ -335,6 +309,7 @@ def test_a_wave_explains_95_percent_of_what_a_line_leaves(other, is_wave):
 
 
 def test_bins_are_blocks_of_equally_many_samples():
+    assert core.blocks_of(np.arange(7.0), 3).tolist() == [2, 5]  # to the end
     bins = bins_of(np.arange(128.0), 3 * (-1.0) ** np.arange(128), 1e-12)
     assert bins.times == pytest.approx(2 * np.arange(64) + 0.5)
     for column, value in zip(bins[1:5], (0, -3, 3, 3), strict=True):
