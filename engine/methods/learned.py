@@ -113,8 +113,8 @@ RK4_LEARNED_FIELD = _by_rk4(
     other_names=("learned vector field",),
     formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
-    note="It conserves nothing: within 100 s the true energy of a swing is off by 36 % from 1 rad, "
-    "by 60 % from 1.5, and nine times as large from 0.2.",
+    note="It conserves nothing: within 100 s the true energy of a swing from 1 rad is off by "
+    "36 %, from 1.5 rad by 60 %, and from 0.2 rad it is nine times as large.",
 )
 
 RK4_LEARNED_HAMILTONIAN = _by_rk4(

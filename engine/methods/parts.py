@@ -172,7 +172,7 @@ MEAN_FIELD_SPLITTING = Method(
     reversible=True,
     other_names=("Strang splitting",),
     reference=f"{HAIRER}, II.5",
-    note="Its kicks are counted; each moves the two levels exactly over a step.",
+    note="Its kicks are counted; each turns the two levels exactly over one step.",
     models=("mean_field",),
     takes="parts",
 )

@@ -1,7 +1,7 @@
 """A bob on a stiff spring in the plane: a swing, and a vibration some ten times as fast.
 
-A position is a complex number z = x + iy in units of the spring's length at rest, y upwards and the
-pivot at 0, so methods run on it unchanged: z'' = -k (1 - 1/|z|) z - i w0².
+A position is a complex number q = x + iy in units of the spring's length at rest, y upwards and the
+pivot at 0, so methods run on it unchanged: q'' = -k (1 - 1/|q|) q - i w0².
 """
 
 import cmath
@@ -31,7 +31,7 @@ class SpringParts(NamedTuple):
 
     fast: Callable[[Any], Any]  # position -> the spring's force
     slow: Callable[[Any], Any]  # gravity's
-    solve: Callable[[Any, float], Any]  # (b, c) -> the solution of z = b + c fast(z)
+    solve: Callable[[Any, float], Any]  # (b, c) -> the solution of q = b + c fast(q)
 
 
 def _length(extra: Mapping[str, float]) -> float:
@@ -40,13 +40,13 @@ def _length(extra: Mapping[str, float]) -> float:
 
 @dataclass(frozen=True)
 class Spring(Model):
-    """z'' = -k (1 - 1/|z|) z - i w0²."""
+    """q'' = -k (1 - 1/|q|) q - i w0²."""
 
     w0_squared: float  # g/L [s⁻²], L being the length at rest
     stiffness: float  # k, the spring constant over the mass [s⁻²]
 
     key = "spring"
-    equation = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
+    equation = "q'' = -k (1 - 1/|q|) q - i w0², q = x + iy"
     turns = False  # the angle follows from the position, so it is within ±pi
     parameters = (Number("stiffness", "s⁻²", "spring constant over mass in s⁻²", 1.0, 1e18),)
     variables = (
@@ -98,13 +98,13 @@ class Spring(Model):
 
     def observe(self, phase: Phase) -> Observation:
         """Return angle, angular velocity, position, velocity, and the spring's energy."""
-        z, w = phase
-        turned = 1j * z  # its phase is theta; cmath.phase raises where that underflows
+        q, w = phase
+        turned = 1j * q  # its phase is theta; cmath.phase raises where that underflows
         theta = math.atan2(turned.imag, turned.real)
-        omega = (z.conjugate() * w).imag / abs(z) ** 2
+        omega = (q.conjugate() * w).imag / abs(q) ** 2
         extra = {
-            "x": z.real,
-            "y": z.imag,
+            "x": q.real,
+            "y": q.imag,
             "vx": w.real,
             "vy": w.imag,
             "spring_energy": self.spring_energy(phase),
@@ -119,26 +119,26 @@ class Spring(Model):
         return _length(extra)
 
     def exact_length(self, theta: float, omega: float, t: float) -> float:
-        z, _ = self.exact_phase(theta, omega, t)
-        return float(abs(z))
+        q, _ = self.exact_phase(theta, omega, t)
+        return float(abs(q))
 
     def force(self, sin: Sine = math.sin) -> Force:
         fast, slow, _ = self.parts(sin)
 
-        def spring_force(z: Any) -> Any:
-            return fast(z) + slow(z)
+        def spring_force(q: Any) -> Any:
+            return fast(q) + slow(q)
 
         return spring_force
 
     def parts(self, sin: Sine = math.sin) -> SpringParts:
-        """Return the spring's force, gravity's, and z = b (|b| + c k)/((1 + c k) |b|)."""
+        """Return the spring's force, gravity's, and q = b (|b| + c k)/((1 + c k) |b|)."""
         k = self.stiffness
         gravity = -1j * self.w0_squared
 
-        def fast(z: Any) -> Any:
-            return -k * (1 - 1 / abs(z)) * z
+        def fast(q: Any) -> Any:
+            return -k * (1 - 1 / abs(q)) * q
 
-        def slow(z: Any) -> Any:
+        def slow(q: Any) -> Any:
             return gravity
 
         def solve(b: Any, c: float) -> Any:
@@ -148,16 +148,16 @@ class Spring(Model):
         return SpringParts(fast, slow, solve)
 
     def energy(self, sin: Sine = math.sin) -> Energy:
-        """|w|²/2 + w0² (y + 1) + k/2 (|z| - 1)² [s⁻²]."""
+        """|w|²/2 + w0² (y + 1) + k/2 (|q| - 1)² [s⁻²]."""
         k = self.stiffness
         gravity = self.w0_squared
 
         def total_energy(phase: Phase) -> Any:
-            z, w = phase
-            stretch = abs(z) - 1
+            q, w = phase
+            stretch = abs(q) - 1
             return (
                 (w.real * w.real + w.imag * w.imag) / 2
-                + gravity * (z.imag + 1)
+                + gravity * (q.imag + 1)
                 + k / 2 * stretch * stretch
             )
 
@@ -165,9 +165,9 @@ class Spring(Model):
 
     def spring_energy(self, phase: Phase) -> float:
         """Return vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length in balance of forces."""
-        z, w = phase
-        length = abs(z)
-        along = z / length
+        q, w = phase
+        length = abs(q)
+        along = q / length
         radial = (w * along.conjugate()).real
         across = (w * along.conjugate()).imag
         held = 1 + (-self.w0_squared * along.imag + across * across / length) / self.stiffness

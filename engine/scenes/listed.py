@@ -42,7 +42,7 @@ _FIRST_LOOK = (
     Scene(
         "large-swing",
         theta=2.5,
-        watch="A 143° swing takes 1.64 times as long as a small one; explicit Euler goes over.",
+        watch="A 143° swing lasts 1.64 times a small one; explicit Euler goes over the top.",
     ),
     Scene(
         "crossover",
@@ -121,7 +121,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.80,
         speed=8.0,
-        watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
+        watch="Just below z = 2√2 RK4 halves its energy in 4 steps; others go over the top.",
         shot=Shot(
             log=False,
             seconds=60.0,
@@ -160,7 +160,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(1.1),
         speed=2048.0,
-        watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h.",
+        watch="K = z² = 1.1: no barrier is left, |omega| passes 2 pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -176,8 +176,8 @@ _STABILITY = (
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
         watch="4 steps a swing: Verlet's energy doubles and comes back. Press - to avoid this.",
-        often_said="h over the golden ratio avoids resonances because the ratio is irrational. So "
-        "does 5/8 of h: it is far from the resonance that counts.",
+        often_said="h over the golden ratio avoids resonances because the ratio is irrational. 5/8 "
+        "of h does so too: it is as far from the resonance that counts.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )

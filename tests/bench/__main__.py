@@ -1,7 +1,7 @@
 """Measure what the project promises: one JSON object with each figure beside its limit.
 
-python -m tests.bench                     # everything; takes hours
-python -m tests.bench kill peers          # some benches
+python -m tests.bench                     # all, hours
+python -m tests.bench kill peers          # these
 python -m tests.bench kill --share 0.1    # a tenth of the attempts
 
 A bench is a module with `measure(share)`, which returns figures, and LIMITS, the largest values
@@ -36,6 +36,7 @@ def main() -> int:
     reports = {}
     exit_code = 0
     for name in options.benches or BENCHES:
+        print(name, file=sys.stderr)
         reports[name], passes = report(name, options.share)
         exit_code |= not passes
     print(json.dumps(reports, indent=1))

@@ -33,7 +33,7 @@ COMMANDS = {
         place="lab:live",
     ),
     "tour": Command(
-        "a tour of the lab: nine short steps, with questions and their answers",
+        "a tour of the lab: nine short pages, with questions and their answers",
         "--no-record TERMINAL",
         """\
   pendu-tui tour

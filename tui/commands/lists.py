@@ -22,7 +22,7 @@ CLAIMS = (
 )
 MEASURED = ("order", "linear_limit", "symplectic", "reversible", "force_evaluations")
 NOTE = """
-order: of the theta error over half a period, as measured; claimed: what its author states.
+order: measured from the theta error over half a period; claimed: what the author states.
 evals: force evaluations per step, on average if they vary.
 z limit: for the linear oscillator, z = h·w0; pendu-tui stability finds those of the pendulum."""
 

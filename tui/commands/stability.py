@@ -92,7 +92,7 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
             scene.cast,
             _lines(scene, rows),
             x_label="amplitude / °",
-            y_label="z = h ω₀ from which a swing is lost",
+            y_label="smallest z = h ω₀ at which a swing is lost",
             log="y",
         ),
     )
@@ -142,7 +142,7 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    yield "\nPendulum: the smallest z that loses a swing within so many steps; more steps lower it."
+    yield "\nPendulum: the smallest z at which a swing is lost in these steps; more steps lower it."
     yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
     yield "The amplitudes include the scene's own, if it swings."

@@ -231,14 +231,14 @@ class CastForm(Form[Scene]):
         yield listed
 
     def _line(self, method: Method) -> Text:
-        """Return "2 v Velocity Verlet  order 2  1 force a step"; the digit only if chosen."""
+        """Return "2 v Velocity Verlet  order 2  1 eval a step"; the digit only if chosen."""
         digits = {each: at for at, each in enumerate(self.cast, 1)}
         name = f"{digits.get(method, ' ')} {method.letter} {method.label:<22}"
-        forces = f"{counted(method.force_evaluations, 'force')} a step"
+        evals = f"{counted(method.force_evaluations, 'eval')} a step"
         kind = "symplectic"
         if not method.symplectic:
             kind = "not symplectic"
-        return Text(f"{name} order {method.order:<2} {forces:<16} {kind}")
+        return Text(f"{name} order {method.order:<2} {evals:<16} {kind}")
 
     async def action_take(self) -> None:
         await self.query_one(Choices).run_action("select")

@@ -195,9 +195,9 @@ class LessonPanel(Pane):
             forward = "enter again"
         elif lesson.stage == "asked":
             numbers = range(1, len(lesson.shot.answers) + 1)
-            forward = f"{' '.join(map(str, numbers))} answer  enter the truth"
+            forward = f"{' '.join(map(str, numbers))} answer  enter show answer"
         elif lesson.stage == "watching" and lesson.shot.moment is not None:
-            forward = "enter to the moment"
+            forward = "enter skip ahead"
         elif lesson.index + 1 == len(lesson.pages):
             forward = "enter end"
         title = f" {lesson.title}"

@@ -15,7 +15,7 @@ WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
-    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Beyond its limit in z a method is "
+    "z": "h·w0, the step in units of 1/w0; w0 = sqrt(g/L). Beyond its limit in z a method is "
     "unstable",
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
     "E/Es": "the energy over that of the separatrix: libration (swings) below 1, rotation above",

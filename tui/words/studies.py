@@ -74,4 +74,5 @@ def orbit_words(method: Method, kind: OrbitKind) -> str:
     if kind.island:
         count = f"{counted(turns, 'turn')}{over} in every {steps} steps"
         return f"A chain of islands: {count}, {turns}:{steps}."
-    return f"{shape}: {1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {turns}:{steps}."
+    period = f"{1 / abs(kind.rotation):.5g} steps a turn{over}"
+    return f"{shape}: {period}, nearest fraction {turns}/{steps}."

@@ -59,7 +59,7 @@ def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
         ("damped", "-w0² sin theta - gamma omega; parts rates; force; w0; 2"),
         (
             "spring",
-            "-k (1 - 1/|z|) z - i w0², z = x + iy; parts force; fast solve; omega_s; 3; "
+            "-k (1 - 1/|q|) q - i w0², q = x + iy; parts force; fast solve; omega_s; 3; "
             "spring energy (1 at start)",
         ),
         (

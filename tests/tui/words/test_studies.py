@@ -32,7 +32,7 @@ MAX = 1e-3  # relative drift of a slow spiral
 @pytest.mark.parametrize(
     ("method", "kind", "parts"),
     [
-        (VELOCITY_VERLET, REGULAR, ["Regular", "6.3267 steps", "1:6"]),
+        (VELOCITY_VERLET, REGULAR, ["Regular", "6.3267 steps", "1/6"]),
         (VELOCITY_VERLET, ISLAND, ["islands", "3 turns in every 8 steps", "3:8"]),
         (VELOCITY_VERLET, HALF, ["islands", "1 turn over the top in every 2 steps"]),
         (VELOCITY_VERLET, replace(LOST, chaotic=True, lyapunov=0.2108), ["Chaotic", "e^0.211"]),
@@ -43,12 +43,12 @@ MAX = 1e-3  # relative drift of a slow spiral
         (VELOCITY_VERLET, replace(REGULAR, spins=True), ["turn over the top, nearest"]),
         (VELOCITY_VERLET, replace(LOST, moves=False), ["equilibrium"]),
         (RK4, replace(LOST, drift=-0.3), ["spirals inwards", "no rotation number"]),
-        (RK4, replace(REGULAR, drift=0.3), ["spirals outwards", "6.3267 steps", "1:6"]),
+        (RK4, replace(REGULAR, drift=0.3), ["spirals outwards", "6.3267 steps", "1/6"]),
         (RK4, replace(REGULAR, drift=-0.9 * MAX), ["A slow spiral"]),
         (RK4, replace(REGULAR, drift=-1.1 * MAX), ["spirals inwards"]),
         (
             *(VELOCITY_VERLET, replace(REGULAR, drift=-1.1 * MAX, rotation=-REGULAR.rotation)),
-            ["Regular: 6.3267 steps a turn, nearest 1:6."],
+            ["Regular: 6.3267 steps a turn, nearest fraction 1/6."],
         ),
     ],
 )
