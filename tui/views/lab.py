@@ -211,8 +211,6 @@ def places(columns: int, rows: int) -> dict[str, Region]:
 class PaneLayout(Layout):
     """Arranges the lab's panes by their names; those without a place are hidden."""
 
-    name = "panes"
-
     def __init__(self, panes: Mapping[str, Pane]) -> None:
         self._panes = panes
 
@@ -226,16 +224,6 @@ class PaneLayout(Layout):
             for name, region in regions.items()
             if region
         ]
-
-
-class Arranged(Box):
-    def __init__(self, panes: Mapping[str, Pane]) -> None:
-        super().__init__(*panes.values())
-        self._layout = PaneLayout(panes)
-
-    @property
-    def layout(self) -> PaneLayout:
-        return self._layout
 
 
 class LabView(View):
@@ -252,7 +240,9 @@ class LabView(View):
     def compose(self) -> ComposeResult:
         for pane in self._named.values():
             self.with_source(pane)
-        yield Arranged(self._named)
+        arranged = Box(*self._named.values(), id="panes")
+        arranged.styles.set_rule("layout", PaneLayout(self._named))
+        yield arranged
         yield self.with_source(ErrorTable())
 
     def zoom(self, factor: float) -> None:
