@@ -234,8 +234,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         theta = (np.arange(48) + 0.5) * math.pi / 48
         self.grid = Grid(theta, (np.arange(80) + 0.5) * MAX_Z / 80, PASSES[-1], cast)
         self.cells: Cells = self.grid.unknown()
-        self._title = "Stability (F5)"
-        self._state = ""
+        self._latest: Piece | None = None
 
     @property
     def settled(self) -> bool:
@@ -249,12 +248,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def add(self, result: Piece) -> None:
         part = result.part
         self.cells[part.z, part.method] = result.cells
-        self._title = f"Stability (F5), {part.grid.steps} steps: h [s], amplitude [°]"
-        self._state = (
-            f"Computing {100 * result.done:.0f} %. "  # as a title it would repaint the pane
-        )
-        if result.done == 1 and part.grid.steps == PASSES[-1]:
-            self._state = ""
+        self._latest = result
 
     def here(self, index: int) -> tuple[float, float] | None:
         """Return the (z, amplitude) of a method on screen, if it swings."""
@@ -278,14 +272,20 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if self.cast != self.grid.methods:
             self._begin(self.cast)
             self.compute(pieces, self.grid, PASSES)
-        self.write_titles(self._title)
+        title = "Stability (F5)"
+        words = ""
+        if latest := self._latest:
+            steps = latest.part.grid.steps
+            title += f", {steps} steps: h [s], amplitude [°]"
+            if latest.done < 1 or steps < PASSES[-1]:
+                words = f"Computing {100 * latest.done:.0f} %. "  # a title would repaint the pane
+        self.write_titles(title)
         frame = self._frame
         panels = [self._panel(index, frame) for index in self.places]
-        words = ""
         if self.places and (aim := self.aim(self.index)):
-            words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
+            words += verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
         blank: Row = [("", TEXT)]
-        below = [*self.words(f"{self._state}{words}", rows=2), blank, blank][:2]
+        below = [*self.words(words, rows=2), blank, blank][:2]
         return Picture([*in_pairs(panels), *below, *self._legend])
 
     def _panel(self, index: int, frame: Frame) -> list[Row]:
