@@ -185,19 +185,16 @@ class Canvas:
 
     def label_near(self, places: Iterable[tuple[int, int]], text: str, ink: int) -> None:
         """Write a letter at the first of these cells that is free, but not on other methods."""
-        others = [
-            layer for each, layer in self._layers.items() if 0 <= each < FAINT and each != ink
-        ]
-        found: list[tuple[int, int]] = []
+        others = {each for each in self._layers if 0 <= each < FAINT and each != ink}
+        second: tuple[int, int] | None = None
         for place in places:
             if self.is_free(*place):
-                found.append(place)
-                column, row = place
-                if not any(layer[row * self.columns + column] for layer in others):
-                    found = [place]
-                    break
-        for place in found[:1]:
-            self.label(*place, text, ink)
+                if others.isdisjoint(self.inks_at(*place)):
+                    self.label(*place, text, ink)
+                    return
+                second = second or place
+        if second is not None:
+            self.label(*second, text, ink)
 
     def inks_at(self, column: int, row: int, columns: int = 1) -> set[int]:
         """Return the inks that have dots in some cells of a row, shown or not."""

@@ -44,11 +44,9 @@ def nice(value: float) -> float:
 
 
 _DECADES = sorted(
-    {Fraction(n, d) for n in range(1, 6) for d in range(1, 17)} | {*map(Fraction, (12, 500))}
+    {Fraction(n, d) for n in range(1, 6) for d in range(1, 17)} | {Fraction(12), Fraction(500)}
 )
 """How many decades a row of characters may span."""
-_STEPS = [(float(each), each.numerator * (1 + (each.denominator == 1))) for each in _DECADES]
-"""These, and the decades from a label to the next: a whole number, two rows or more apart."""
 FEW_ROWS = 9
 
 
@@ -59,7 +57,11 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
     one dot beside it.
     """
     need = 3 if rows >= FEW_ROWS else 2
-    for size, step in _STEPS:
+    for decades in _DECADES:
+        size = float(decades)
+        step = decades.numerator  # from a label to the next, which are two rows or more apart
+        if decades.denominator == 1:
+            step *= 2
         first = math.ceil(4 * high / size - 2)
         last = math.floor(4 * (low / size + rows) - 2)
         tops = [top for top in range(first, last + 1) if top % 4 != 2]

@@ -25,6 +25,8 @@ GOOD = -6
 NOBODY = -7
 """The other inks.  QUIET is for less important text; FRAME is too faint for words."""
 
+_COLOURS = {EXACT: "exact", QUIET: "exact", FRAME: "frame", WARN: "warn", GOOD: "good"}
+
 FAINT = 64
 """Added to a method's ink it gives the fainter one of its trail."""
 
@@ -46,8 +48,8 @@ class Palette(NamedTuple):
             return mixed(self.colour(ink - FAINT), self.background, 0.5)
         if ink >= 0:
             return self.methods[ink % len(self.methods)]
-        others = {EXACT: self.exact, QUIET: self.exact, FRAME: self.frame}
-        return (others | {WARN: self.warn, GOOD: self.good}).get(ink, self.text)
+        colour: str = getattr(self, _COLOURS.get(ink, "text"))
+        return colour
 
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the
@@ -119,10 +121,8 @@ def inks(cast: Cast) -> tuple[int, ...]:
 
 def ink_of(method: Method, cast: Cast) -> int:
     """Return a method's ink in a cast; outside it a classic's own, or QUIET."""
-    for each, ink in zip(cast, inks(cast), strict=True):
-        if each.key == method.key:
-            return ink
-    return QUIET if method.hue is None else method.hue
+    known = {each.key: ink for each, ink in zip(cast, inks(cast), strict=True)}
+    return known.get(method.key, QUIET if method.hue is None else method.hue)
 
 
 def faint(ink: int) -> int:
