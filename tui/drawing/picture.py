@@ -5,11 +5,10 @@ become a colour.  Nothing depends on colour alone: methods also have a digit and
 """
 
 import itertools
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 from rich.style import Style
 from rich.text import Text
@@ -178,14 +177,6 @@ class Picture:
                     behind = 0
                     front = width
                 yield y, front, behind
-
-    @classmethod
-    def of_text(cls, text: str, columns: int, rows: int) -> Self:
-        """Wrap and centre a text; lines that do not fit are cut off."""
-        lines = textwrap.wrap(text, max(columns, 1))[:rows]
-        above = (rows - len(lines)) // 2
-        page = [""] * above + lines + [""] * (rows - above - len(lines))
-        return cls(tuple(((line.center(columns), TEXT),) for line in page))
 
 
 def _length(row: Row) -> int:

@@ -11,6 +11,7 @@ from rich.style import Style
 from textual import events
 from textual.binding import Binding
 from textual.screen import Screen, ScreenResultType
+from textual.widget import Widget
 
 from pendu_tui.engine.methods import Cast, Method
 from pendu_tui.engine.run.lockstep import Sample
@@ -326,13 +327,10 @@ class KeyLine(CellWidget):
             self.app.simulate_key(self._keys[event.x])
 
 
-class TooSmall(CellWidget):
+class TooSmall(Widget):
     """Replaces everything on a small terminal; the keys still work."""
 
-    def draw(self) -> None:
-        columns, rows = self.room
+    def render(self) -> str:
+        size = "{}x{}".format(*self.app.size)
         needed = "{}x{}".format(*SMALLEST)
-        text = (
-            f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
-        )
-        self.show(Picture.of_text(text, columns, rows))
+        return f"Terminal too small: {size}, need {needed}. Enlarge it, or press q to quit."

@@ -251,6 +251,3 @@ def test_pictures_are_compared_row_by_row():
     longer = Picture(((("abc", 1), ("xyz", 2), ("ef", 3)),))
     assert list(longer.changes(old, 8)) == [(0, 8, 0)]  # the end moves
     assert Canvas(0, 2).picture().text == "\n"
-    page = Picture.of_text("abc d", 4, 7)
-    assert (page.text, inks_of(page)) == ("\n\nabc\n d\n\n\n", {TEXT})
-    assert Picture.of_text("a b", 0, 1).text == "a"  # before it is laid out

@@ -96,7 +96,7 @@ async def test_notices_lie_on_the_insight_line_and_replace_each_other(snapshot, 
 
 async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_work():
     async with lab(size=(50, 12)) as theatre:
-        assert "Terminal too small: 50x12, need 60x16" in theatre.text(TooSmall)
+        assert "Terminal too small: 50x12, need 60x16" in looks(theatre.app)
         assert not theatre.pane(StatusLine).is_on_screen
         await theatre.press("greater_than_sign")
         assert theatre.playhead.speed == 2
