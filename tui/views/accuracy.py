@@ -169,20 +169,8 @@ class AccuracyPane(Chooser[Point]):
         return sum(len(self.steps) - len(self.points_of(method)) for method in self.cast)
 
     @property
-    def settled(self) -> bool:
-        if self.source.scene.why_not_mapped:
-            return True
-        return not self.is_computing and self._chart.arguments == self._state
-
-    @property
     def aim(self) -> Point | None:
         return self.pointer or self.cursor or self.present(self.index)
-
-    @property
-    def _state(self) -> tuple[object, ...]:
-        computed = self._study.arguments, self.here, len(self.points)
-        chosen = self.index, self.cursor, self.chart
-        return self.room, computed, chosen, self.shown
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
@@ -192,7 +180,9 @@ class AccuracyPane(Chooser[Point]):
         if self.cursor is not None:  # it may be on another method's line
             key = self.cast[self.index].key, self.cursor.steps
             self.cursor = self.points.get(key, self.cursor)
-        chart = self._chart(*self._state).picture
+        computed = self._study.arguments, self.here, len(self.points)
+        chosen = self.index, self.cursor, self.chart
+        chart = self._chart(self.room, computed, chosen, self.shown).picture
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
         self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")

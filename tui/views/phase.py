@@ -53,9 +53,8 @@ class PhasePane(Chooser[State]):
 
     @property
     def settled(self) -> bool:
-        if not self.drawable or self.neighbours is None:
-            return self.sample is not None
-        return self.neighbours.step == self.source.sample.step
+        is_behind = self.neighbours and self.neighbours.step != self.source.sample.step
+        return super().settled and not (is_behind and self.drawable)
 
     @property
     def ring(self) -> "Neighbourhood | None":
@@ -191,12 +190,6 @@ class SectionPane(PhasePane):
         super().__init__()
         self._section = Memo(self._begun)
         self._orbits = 0  # of the section, so far
-
-    @property
-    def settled(self) -> bool:
-        if self.drawable and self.shown.section and not self.source.scene.why_not_mapped:
-            return self._orbits == STARTS
-        return super().settled
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if not self.shown.section:

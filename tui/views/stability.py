@@ -236,12 +236,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.cells: Cells = self.grid.unknown()
         self._latest: Piece | None = None
 
-    @property
-    def settled(self) -> bool:
-        if self.source.scene.why_not_mapped:
-            return True
-        return self.cast == self.grid.methods and not self.is_computing
-
     def forget(self) -> None:
         self._begin(())
 

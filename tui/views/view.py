@@ -232,8 +232,9 @@ class Pane(CellWidget):
         raise NotImplementedError
 
     @property
-    def is_computing(self) -> bool:
-        return not all(worker.is_finished for worker in self.workers)
+    def settled(self) -> bool:
+        """Whether all that it shows has been computed."""
+        return self.sample is not None and all(worker.is_finished for worker in self.workers)
 
     def retry(self) -> None:
         """Compute again what failed."""

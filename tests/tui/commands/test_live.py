@@ -16,10 +16,10 @@ from pendu_tui.tui.cli import watchdog
 from pendu_tui.tui.commands import lab
 from pendu_tui.tui.commands.lab import lesson_of
 from pendu_tui.tui.commands.options import parser_of
-from pendu_tui.tui.drawing.cells import CellWidget
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import TerminalOptions
+from pendu_tui.tui.views.view import Pane
 from tests.tui.command_line import pendu
 
 
@@ -75,7 +75,7 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(here, mon
 async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
     asked = []
     done = property(lambda pane: asked.append(pane) or len(asked) not in {*range(10), 13})
-    monkeypatch.setattr(CellWidget, "settled", done, raising=False)
+    monkeypatch.setattr(Pane, "settled", done)
     monkeypatch.setattr("pendu_tui.tui.playback.live.FRAME_BUDGET", 1e-9)  # it has all the time
     look = TerminalOptions("dark", "ascii")
     still = await lab.still(DEFAULT_SCENE, 1.0, (60, 16), look, keys="e")
