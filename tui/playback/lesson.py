@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, change_before
 from pendu_tui.engine.scenes import Scene, Shot
+from pendu_tui.tui.cli.scene import TOUR, read_scenes
 from pendu_tui.tui.playback.live import Live
 
 ASTRAY = "This is your own run now. Enter begins the page again."
@@ -37,12 +38,10 @@ class Lesson:
     def state(self, state: LessonState) -> None:
         self.index, self.stage, self.choice = state
 
-    def look_up(self, name: str) -> None:
-        """Stand at the page of a scene or, without one, before the first."""
-        names = [page.name for page in self.pages]
-        self.index = -1
-        if name in names:
-            self.index = names.index(name)
+    def index_of(self, name: str) -> int:
+        """Return the index of the page of a scene, -1 without one: before the first page."""
+        named = (index for index, page in enumerate(self.pages) if page.name == name)
+        return next(named, -1)
 
     @property
     def page(self) -> Scene:
@@ -156,6 +155,4 @@ class Lesson:
 
 def tour() -> Lesson:
     """Return the lesson that comes with the program."""
-    from pendu_tui.tui.cli.scene import TOUR, read_scenes
-
     return Lesson("Tour", read_scenes(TOUR).values())

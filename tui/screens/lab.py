@@ -20,11 +20,20 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.recordings import files
 from pendu_tui.tui.cli.errors import explained
+from pendu_tui.tui.cli.scene import scene_text
 from pendu_tui.tui.playback.lesson import Lesson, LessonState, tour
 from pendu_tui.tui.playback.live import Live, has_own
 from pendu_tui.tui.playback.replay import Replay
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.playback.source import RunState, Source, doubled
+from pendu_tui.tui.screens.dialogs import (
+    CastForm,
+    Finder,
+    StartForm,
+    TextScreen,
+    entries,
+    help_text,
+)
 from pendu_tui.tui.screens.keys import KEYS
 from pendu_tui.tui.screens.lines import (
     InsightLine,
@@ -95,7 +104,7 @@ class LabScreen(SizedScreen[None]):
         self._view_in_front = create(self.view, source, shown)
         self._lines: tuple[Pane, ...] = (StatusLine(), SeekBar(), LessonPanel(), InsightLine())
         self.scenes = Lesson("Scene", SCENES.values())
-        self.scenes.look_up(source.scene.name)
+        self.scenes.index = self.scenes.index_of(source.scene.name)
         self._before_lesson: tuple[State, str, deque[State]]
         self._beat = 0  # sixtieths of a second
         self._undo: deque[State] = deque(maxlen=30)  # a state may hold a whole run
@@ -339,8 +348,7 @@ class LabScreen(SizedScreen[None]):
         await self._turn_to((self.lesson.index + 1) % len(self.lesson.pages))
 
     async def action_start_scene(self, name: str) -> None:
-        names = [page.name for page in self.lesson.pages]
-        await self._turn_to(names.index(name))
+        await self._turn_to(self.lesson.index_of(name))
 
     async def _turn_to(self, index: int) -> bool:
         """Begin a page; return whether that was possible."""
@@ -409,7 +417,7 @@ class LabScreen(SizedScreen[None]):
             self.lesson.answer(number + 1)
             self.show_now()
 
-    # Forms, imported when they are needed
+    # Forms
 
     def _ask(self, form: ModalScreen[Any], use: Callable[[Any], object]) -> None:
         """Open a form over the lab, and use its answer unless it is cancelled.
@@ -424,19 +432,13 @@ class LabScreen(SizedScreen[None]):
         self.app.push_screen(form, answered)
 
     def action_find(self, typed: str = "") -> None:
-        from pendu_tui.tui.screens.dialogs import Finder, entries
-
         found = entries(self.lesson.pages, self.active_bindings.values())
         self._ask(Finder(found, typed), self.run_action)
 
     def action_start_values(self) -> None:
-        from pendu_tui.tui.screens.dialogs import StartForm
-
         self._ask(StartForm(self._scene_now()), self.start)
 
     def action_methods(self) -> None:
-        from pendu_tui.tui.screens.dialogs import CastForm
-
         self._ask(CastForm(self._scene_now()), self.start)
 
     def _scene_now(self) -> Scene:
@@ -513,13 +515,9 @@ class LabScreen(SizedScreen[None]):
         self.show_now()
 
     def _show_text(self, title: str, lines: Iterable[str]) -> None:
-        from pendu_tui.tui.screens.dialogs import TextScreen
-
         self.app.push_screen(TextScreen(title, "\n".join(lines)))
 
     def action_help(self) -> None:
-        from pendu_tui.tui.screens.dialogs import help_text
-
         panes = [type(each) for each in self._view_in_front.query(Pane) if each.HELP]
         owners: list[type[Widget]] = [*dict.fromkeys(panes), type(self)]
         # the keys of the view in front come first
@@ -537,8 +535,6 @@ class LabScreen(SizedScreen[None]):
 
     def action_save_scene(self) -> None:
         """Save what is on the screen as a scene file, which a lesson may begin with."""
-        from pendu_tui.tui.cli.scene import scene_text
-
         scene = self.source.scene
         stepping = self.source.stepping
         shot = self.shown.shot(scene, self.view, stepping.equal_cost)

@@ -68,9 +68,7 @@ def test_forward_goes_to_the_moment_the_truth_and_the_next_page_and_ends_after_t
         ("Page 3 of 3: shows", "watching", 0.0, ("It spins.",)),
     ]
     assert lesson.index == 0
-    for name, index in (("tells", 1), ("drift", -1)):
-        lesson.look_up(name)
-        assert lesson.index == index
+    assert [lesson.index_of(name) for name in ("tells", "drift")] == [1, -1]
 
 
 def test_the_lab_pauses_at_the_moment_and_again_after_the_user_went_back(lesson, live):
