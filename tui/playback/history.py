@@ -191,7 +191,8 @@ class History:
         else:
             states = [row.states for row in self._waiting if row.step < self.step]
             states = [*states, self._current.states][-length:]
-        return [*zip(*([theta for theta, _ in each[:-1]] for each in states), strict=True)]
+        methods = ([theta for theta, _ in each[:-1]] for each in states)
+        return [*zip(*methods, strict=True)]
 
     def ghost(self) -> "Ghost":
         """Return this run to lay under another one."""

@@ -113,7 +113,9 @@ class Lesson:
 
     def _end(self, live: Live) -> int:
         """The step to stop at: the moment, or where time that turned there is back."""
-        return (1 + (live.stepping.h < 0)) * self._turn
+        if live.stepping.h < 0:
+            return 2 * self._turn
+        return self._turn
 
     def _reach(self, live: Live) -> None:
         """Go to the step to stop at, and turn there or tell what there is to tell."""

@@ -109,7 +109,9 @@ class Rows:
     def recent_until(self, current: tuple[Any, ...], most: int | None = None) -> Records:
         """Return the last rows, perhaps `most`, and the current sample if it is none of them."""
         step = current[0]
-        rows = _up_to(step, self._recent[: self._count])[-(most or 0) :]
+        rows = _up_to(step, self._recent[: self._count])
+        if most is not None:
+            rows = rows[-most:]
         last = rows[-1:] if len(rows) else _up_to(step, self._wide)[-1:]
         if step in last["step"]:
             return rows

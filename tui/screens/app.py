@@ -38,9 +38,8 @@ class PenduApp(App[Exit | BaseException]):
     ENABLE_COMMAND_PALETTE = False  # ctrl+p opens our own
     ALLOW_SELECT = False  # with selection, a click on a notice raises in Textual
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(
-            "ctrl+c", "interrupt", show=False, priority=True
-        ),  # the terminal sends a key, not a signal
+        # the terminal sends these keys as keys, not as signals
+        Binding("ctrl+c", "interrupt", show=False, priority=True),
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
@@ -131,9 +130,9 @@ class PenduApp(App[Exit | BaseException]):
 
 def _theme(name: str, colours: Palette) -> Theme:
     def called(colour: str) -> str:
-        return (
-            colour if colour.startswith("#") else f"ansi_{colour}"
-        )  # as Textual calls the 16 colours
+        if colour.startswith("#"):
+            return colour
+        return f"ansi_{colour}"  # as Textual calls the 16 colours
 
     background = called(colours.background)
     variables = {"frame": called(colours.frame)}

@@ -73,8 +73,9 @@ def status_row(source: Source, shown: Shown, width: int, stands_still: bool = Fa
             kept.append(part)
             room -= needed
     row: list[tuple[str, Ink]] = [(badge, BADGE)]
-    for part in filter(kept.__contains__, parts):
-        row += [("  ", TEXT), (part.text, part.ink)]
+    for part in parts:
+        if part in kept:
+            row += [("  ", TEXT), (part.text, part.ink)]
     return row
 
 
@@ -92,8 +93,8 @@ def _time(source: Source, shown: Shown, stands_still: bool) -> Iterator[Segment]
         yield Segment(12, "running")
     speed = f"{factor(playhead.speed)}×"
     yield Segment(7, speed)
-    if 0.01 <= (share := source.pace) < 0.99:
-        yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", QUIET)
+    if 0.01 <= source.pace < 0.99:
+        yield Segment(10, f"only {two_digits(100 * source.pace)} % of {speed}", QUIET)
     yield Segment(11, f"t {seconds(source.sample.t)}")
 
 

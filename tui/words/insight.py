@@ -208,8 +208,10 @@ def drift(source: Source, index: int) -> Insight | None:
     conserved = source.scene.equations.conserves_energy
     if verdict == LOSES and conserved and error < -0.5:  # more telling than the rate
         return Insight("lost", f"{name} has lost {_share(-error)} of its energy.")
-    rate = (judgement.slope or 0.0) * {GROWS: 1, LOSES: -1}.get(verdict, 0)
-    if rate <= 0:
+    rate = judgement.slope or 0.0
+    if verdict == LOSES:
+        rate = -rate
+    if verdict not in (GROWS, LOSES) or rate <= 0:
         return None
     if judgement.growth:
         tenfold = about(math.log(10) / judgement.growth)
