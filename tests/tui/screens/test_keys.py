@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from pendu_tui.engine.methods import USUAL_CAST
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import LiveRecorder
 from pendu_tui.recordings.verification import verify
@@ -252,13 +252,3 @@ async def test_the_last_line_has_what_one_needs_now_each_a_button():
             await theatre.click("KeyLine", column, 0)
             assert theatre.source.stepping.h == h
         assert theatre.playhead.paused
-
-
-async def test_n_toggles_equal_cost_for_which_a_step_can_be_absurd():
-    async with lab(Scene(h=60.0)) as theatre:
-        for keys, largest, is_possible in (("nr", 240.0, False), ("n", 60.0, True)):
-            await theatre.press(*keys)
-            assert theatre.source.stepping.own == (60.0, 60.0, 60.0, largest)
-            runs = theatre.sample.run
-            assert await theatre.stage.start(Scene(h=100.0)) == is_possible
-            assert theatre.sample.run == runs + is_possible

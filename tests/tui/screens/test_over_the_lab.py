@@ -1,7 +1,6 @@
 """What lies over the lab: dialogs that close once, notices that cover no number, and "too small"."""
 
 from contextlib import ExitStack
-from itertools import product
 
 from textual.events import Resize
 from textual.geometry import Size
@@ -104,20 +103,6 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
         assert not theatre.pane(TooSmall).is_on_screen
-
-
-async def test_a_text_is_closed_by_the_key_that_opens_it_and_by_what_closes_other_texts():
-    texts = ("d", "E", "question_mark")
-    async with lab() as theatre:
-        for opening, closing in (
-            *zip(texts, texts, strict=True),
-            *product("d", ("q", "space", "enter")),
-        ):
-            await theatre.press(opening)
-            assert isinstance(theatre.app.screen, TextScreen)
-            await theatre.press(closing)
-            assert theatre.app.screen is theatre.stage
-        assert not theatre.playhead.paused
 
 
 async def test_ctrl_z_stops_the_program_while_the_terminal_is_the_shells_but_not_a_visitors(
