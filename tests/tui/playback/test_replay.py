@@ -197,6 +197,7 @@ def test_the_next_event_and_the_one_before_are_found(replay):
     assert replay.go_to(1, 40)
     assert (replay.playhead.position, replay.playhead.paused) == (places[1], True)
     assert not replay.go_to(1, 41)
+    assert not replay.go_to(2, 40)
     replay.seek(LENGTH)
     for place in reversed(places[:-1]):
         replay.seek_event(-1)

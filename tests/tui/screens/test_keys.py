@@ -195,6 +195,12 @@ async def test_thirty_changes_can_be_undone_and_a_step_takes_the_line_of_its_sce
         assert stage.shown.line is None
         await theatre.press("u")
         assert stage.shown.line == scene.shot.line is not None
+        assert await stage.start(DEFAULT_SCENE)
+        assert stage.shown.line is None
+        await theatre.press("n")
+        absurd = scene.altered(h=100.0).with_cast(USUAL_CAST)
+        assert not await stage.start(absurd)  # RK4 would take 400 s
+        assert stage.shown.line is None
         for _ in range(40):
             stage.action_switch("exact")
             stage.action_window()
