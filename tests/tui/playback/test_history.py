@@ -140,6 +140,13 @@ def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_sample
     assert history.since(SteppingChange(0, 0.0, Stepping(0.1), -0.1)) is None
 
 
+def test_what_came_since_a_change_begins_behind_the_sample_at_it():
+    until = run(DRIFT, (40, 0.05))
+    history = run(DRIFT, (40, 0.05), (2, 0.2))
+    _, thetas = history.since(history.changes[-1])
+    assert thetas == until.window().high["theta_error"][-1].tolist()
+
+
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
     window = run(DRIFT, (2, 0.1), (2, -0.1)).window()
     assert window.x == pytest.approx([0, 0.1, 0.2, 0.3, 0.4])
@@ -211,13 +218,6 @@ def test_the_last_angles_before_a_row_are_known_without_numpy():
     history.add(sample(2))
     assert history.thetas(9)[0] == (0, 1, 2)
     assert history._rows is None
-
-
-def test_what_came_since_a_change_begins_behind_the_sample_at_it():
-    until = run(DRIFT, (40, 0.05))
-    history = run(DRIFT, (40, 0.05), (2, 0.2))
-    _, thetas = history.since(history.changes[-1])
-    assert thetas == until.window().high["theta_error"][-1].tolist()
 
 
 def test_a_stretch_holds_both_its_ends():
