@@ -71,34 +71,26 @@ class CharacterSetFilter(LineFilter):
         return [Segment(text.translate(table), style, control) for text, style, control in segments]
 
 
-BEGIN = "\x1b[200~"
-END = "\x1b[201~"
-MAX_SECONDS = 2.0
+END_OF_PASTE = "\x1b[201~"
+MAX_SILENCE = 2.0  # s
 
 
 class PatientParser(XTermParser):
-    """A parser of what the terminal sends, in which a paste ends after two seconds at most.
+    """A parser of what the terminal sends, in which a paste ends after two seconds of silence.
 
     Textual would take all keys after a paste whose end is lost for pasted text, for ever.
     """
 
-    _began: float | None = None  # s, the paste
-    _before = ""
+    _heard_at = 0.0  # s
 
     def feed(self, data: str) -> Iterable[Message]:
-        text = self._before + data
-        began, ended = text.rfind(BEGIN), text.rfind(END)
-        if began > ended:
-            self._began = time.monotonic()
-        elif began < ended:
-            self._began = None
-        self._before = text[1 - len(END) :]
+        self._heard_at = time.monotonic()
         return super().feed(data)
 
     def tick(self) -> Iterable[Message]:
         yield from super().tick()
-        if self._began is not None and time.monotonic() > self._began + MAX_SECONDS:
-            yield from self.feed(END)
+        if time.monotonic() > self._heard_at + MAX_SILENCE:
+            yield from self.feed(END_OF_PASTE)  # which means nothing without a paste
 
 
 def limit_pastes() -> None:
