@@ -122,6 +122,8 @@ def order_of(steps: Sequence[float], fluctuations: Sequence[Fluctuation]) -> Ord
     """
     if len(set(steps)) < 2 or min(steps) <= 0:
         raise ValueError("give two step sizes or more, all above zero and not all the same.")
+    if len(fluctuations) != len(steps):
+        raise ValueError("each step needs the fluctuation of its record.")
     if not all(each.size > 0 for each in fluctuations):
         raise ValueError("an energy that never changes has no order.")
     sizes, uncertainties = np.array(fluctuations).T
