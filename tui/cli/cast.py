@@ -98,12 +98,12 @@ def _tried(source: str, key: str, file: str) -> Measured:
     Raises OwnMethodError, also if the process does not answer in time, or ends.
     """
     # multiprocessing takes 15 ms
-    from pendu_tui.tui.cli.workers import awaited, received, started
+    from pendu_tui.tui.cli.workers import received, started
 
     process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
-        found: Measured | OwnMethodError = awaited(results, process, MAX_SECONDS, f"trying {key}")
+        found: Measured | OwnMethodError = received(results, process, MAX_SECONDS)
     except TimeoutError:
         why = f"takes more than {MAX_SECONDS:g} s for a trial"
         raise OwnMethodError(f"{file}: {key} {why}.") from None

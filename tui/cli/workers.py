@@ -13,12 +13,11 @@ the last bit wherever they are computed, because tasks are independent.
 
 import argparse
 import logging
-import math
 import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import active_children, get_context
 from multiprocessing.connection import wait
@@ -62,16 +61,6 @@ def received(results: Any, process: BaseProcess, seconds: float | None = None) -
     if results not in ready:
         raise EOFError
     return results.recv()
-
-
-def awaited(results: Any, process: BaseProcess, seconds: float, what: str) -> Any:
-    """Return what a process sends within some seconds, and show that it is awaited."""
-    with progress(what) as show:
-        for second in range(math.ceil(seconds)):
-            show(second, seconds)
-            with suppress(TimeoutError):
-                return received(results, process, 1.0)
-        raise TimeoutError
 
 
 @dataclass

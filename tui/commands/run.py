@@ -73,8 +73,6 @@ def run_one(scene: Scene, options: Namespace, gate: Gate) -> Exit:
     sample = samples[-1]
     is_whole = sample.step == steps
     rows = rows_of(lockstep, sample, is_whole)
-    if options.record:
-        warn(f"wrote {options.record}")
     if not is_whole:
         keep_older(options.output)
     publish(_report(lockstep, samples, rows, wall_seconds), options)
@@ -116,8 +114,9 @@ def _simulate(lockstep: Lockstep, options: Namespace, steps: int) -> list[Sample
             if stopped():
                 if recording:
                     recording.keep_older()
-                    options.record = recording.path
                 break
+    if recording:
+        warn(f"wrote {recording.path}")
     return list(samples)
 
 

@@ -3,7 +3,6 @@
 import argparse
 import os
 import sys
-from contextlib import nullcontext
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,7 +12,7 @@ import pytest
 from pendu_tui.engine.methods.own import OwnMethodError
 from pendu_tui.tui.cli import workers
 from pendu_tui.tui.cli.errors import Exit, UserError
-from pendu_tui.tui.cli.workers import Work, awaited, received, work_of
+from pendu_tui.tui.cli.workers import Work, received, work_of
 from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -100,14 +99,14 @@ def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
     process = SimpleNamespace(sentinel="ended")
     ready = iter([[], ["ended"], [here]])
     waits = []
-    monkeypatch.setattr(workers, "wait", lambda *_: next(ready))
+
+    def wait(_, seconds):
+        waits.append(seconds)
+        return next(ready)
+
+    monkeypatch.setattr(workers, "wait", wait)
     for error in (TimeoutError, EOFError):
         with pytest.raises(error):
-            received(here, process)
+            received(here, process, 3.0)
     assert received(here, process) == "done"
-    monkeypatch.setattr(workers, "wait", lambda _, seconds: waits.append(seconds))
-    show = nullcontext(lambda *done: waits.append(done))
-    monkeypatch.setattr(workers, "progress", lambda _: show)
-    with pytest.raises(TimeoutError):
-        awaited(here, process, 4.0, "waiting")
-    assert waits == [(0, 4.0), 1.0, (1, 4.0), 1.0, (2, 4.0), 1.0, (3, 4.0), 1.0]
+    assert waits == [3.0, 3.0, None]
