@@ -110,8 +110,7 @@ def test_options(snapshot):
         parser = parser_of(name)
         texts += [f"\n{name}: {parser.description}", parser.epilog, f"{parser._defaults}"]
         for group in (*parser._action_groups, *parser._mutually_exclusive_groups):
-            names = (
-                each.dest + " FILE" * hasattr(each, "complete") for each in group._group_actions
-            )
+            members = group._group_actions
+            names = [f"{each.dest} {getattr(each, 'complete', '')}".strip() for each in members]
             texts.append(f"{group.title} ({group.description}) {', '.join(names)}".strip())
     snapshot("options.txt", "\n".join(texts) + "\n")
