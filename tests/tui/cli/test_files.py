@@ -129,11 +129,6 @@ def test_a_recording_is_a_file_or_a_bundled_one_or_the_latest_or_another_of_the_
     assert resolve("old") == resolve("old.mcap") == library / "old.mcap"
 
 
-def test_a_device_is_written_to_and_not_replaced():
-    with whole_file(Path(os.devnull)) as meanwhile:
-        assert str(meanwhile) == os.devnull
-
-
 @pytest.mark.parametrize("command", [EXPORT, ("run", "--time", 1, "-o")])
 def test_every_command_overwrites_only_with_force(tmp_path, command):
     file = tmp_path / "file.csv"
@@ -144,12 +139,6 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
     assert (done.code, done.err) == (0, f"pendu-tui: wrote {file}\n")
     assert file.read_bytes() != b"older"
     assert list(tmp_path.iterdir()) == [file]
-
-
-def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
-    monkeypatch.setattr("pendu_tui.tui.commands.export.write_csv", None)
-    refusal = pendu(*EXPORT, tmp_path / "no" / "file.csv")
-    assert refusal.refused(5, "does not exist", "choose another")
 
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from pendu_tui.engine.inputs import number
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.engine.scenes import Scene
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.options import above_zero, count, ladder, moment, scale, step_sizes, values
 from pendu_tui.tui.cli.scene import scene_of
@@ -14,13 +14,6 @@ from pendu_tui.tui.commands.options import parser_of
 
 def scene_from(*arguments: str) -> Scene:
     return scene_of(parser_of("snapshot").parse_args(list(arguments)))
-
-
-def test_options_override_the_scene_and_its_name_becomes_custom():
-    assert scene_from() == DEFAULT_SCENE
-    scene = scene_from("--scene", "spin", "--omega", "7", "--h", "0.01")
-    assert (scene.name, scene.theta, scene.omega, scene.h) == ("custom", 0.0, 7.0, 0.01)
-    assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]  # its own h
 
 
 @pytest.mark.parametrize(

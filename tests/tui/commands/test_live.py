@@ -150,13 +150,6 @@ def test_sentences_are_told_of_a_lesson_and_recorded_unless_that_is_not_wanted(h
     assert len(listing()) == 1
 
 
-def test_a_replay_is_told_from_its_start_to_its_end():
-    told = pendu("replay", "drift", "--plain", "--speed", 500, "--start-at", 7)
-    first, *_, loses = told.out.splitlines()
-    assert "500× speed and is at 7.00 s" in first
-    assert loses == "8.75 s: RK4: - loses."
-
-
 class App(SimpleNamespace):
     def run(self, mouse: bool):
         self.mouse = mouse

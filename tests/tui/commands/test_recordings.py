@@ -118,6 +118,7 @@ def test_export_to_stdout_is_the_file(tmp_path):
     assert pendu("export", "drift").out == (tmp_path / "a.CSV").read_text()
     assert pendu("export", "drift", "-o", os.devnull).code == 0
     assert pendu("export", "drift", "-o", tmp_path / "a.parquet").refused(2, "a.csv")
+    assert pendu("export", "drift", "-o", tmp_path / "no" / "a.csv").refused(5, "does not exist")
 
 
 def test_after_a_failure_export_writes_nan_and_not_the_last_finite_numbers(tmp_path):

@@ -133,13 +133,3 @@ def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_f
     for row, fields in zip(rows, methods, strict=True):
         del fields["progress"]
         assert row == {name: "" if fields[name] is None else str(fields[name]) for name in fields}
-
-
-LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
-
-
-def test_the_rows_of_a_list_are_those_of_single_runs():
-    rows = list(csv.DictReader(pendu(*LIST, "--csv").out.splitlines()))
-    alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
-    (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
-    assert single.items() <= rows[-1].items()
