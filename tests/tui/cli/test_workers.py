@@ -1,8 +1,9 @@
-"""Where tasks run: the answers are the same."""
+"""Where tasks run: the answers are the same, and those that are there are kept."""
 
 import argparse
 import os
 import sys
+from contextlib import nullcontext
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,6 +18,7 @@ from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 2)
+ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
 
 
 def test_the_answer_is_the_same_to_the_bit_in_other_processes():
@@ -49,6 +51,44 @@ def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code
     older.touch()
     with pytest.raises(UserError, match="stays as it was"):
         interrupted(error, done=1, output=older)
+
+
+@pytest.mark.parametrize(
+    ("command", "rows", "share", "field", "count"),
+    [
+        (RUNS, 4, "17 % of the runs", "runs", 4),
+        (STABILITY, 6, "6 % of the swings", "pendulum", 2),
+        (ACCURACY, 1, "4 % of", "points", 1),
+    ],
+)
+def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, field, count):
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
+
+    def run(function, tasks):
+        yield function(next(iter(tasks)))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(workers, "workers_of", lambda _: nullcontext(run))
+    outcome = pendu(*command, "--csv")
+    assert (outcome.code, outcome.out.count("\n")) == (130, 1 + rows)
+    assert share in outcome.err
+    answer = pendu(*command, "--json").json
+    assert (answer["interrupted"], len(answer[field])) == (True, count)
+
+
+def test_the_search_for_a_target_counts_in_the_progress_but_is_not_kept(monkeypatch):
+    def least_cost(*_, show, **more):
+        show(0.5)
+        raise KeyboardInterrupt
+
+    shown = []
+    bar = nullcontext(lambda *done: shown.append(done))
+    monkeypatch.setattr(workers, "progress", lambda _: bar)
+    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.least_cost", least_cost)
+    outcome = pendu(*ACCURACY, "--target", "1e-3", "--methods", "rk4,verlet", "--json")
+    assert (outcome.code, outcome.json["recommendation"]) == (130, None)
+    assert "50 % of the steps are done and kept" in outcome.err
+    assert [done / whole for done, whole in shown[-2:]] == [0.5, 0.75]
 
 
 class Lost:

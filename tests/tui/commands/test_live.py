@@ -1,8 +1,10 @@
-"""`pendu-tui live` before there is a screen."""
+"""`pendu-tui live` before there is a screen, and without one."""
 
 import gc
+import os
 import re
 import signal
+import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,7 +22,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.terminal.options import TerminalOptions
 from pendu_tui.tui.views.view import Pane
-from tests.tui.command_line import pendu
+from tests.tui.command_line import PENDU, pendu
 
 
 def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):
@@ -222,3 +224,17 @@ def test_the_goodbye_names_the_recording_and_after_a_disk_failure_the_unfinished
     assert lab.print_sentences(live) == 130
     assert f"saved {path}\n" in capsys.readouterr().out
     assert verify(path).complete
+
+
+@pytest.mark.slow
+def test_when_nobody_reads_any_more_the_recording_is_whole(tmp_path):
+    env = {**os.environ, "PENDU_RECORDINGS": str(tmp_path)}
+    line = [*PENDU, "live", "--plain", "--speed", "20"]
+    with subprocess.Popen(line, env=env, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline().startswith("The lab runs at 20×")
+        process.stdout.close()
+        process.wait(timeout=30)
+    assert process.returncode == 141
+    (path,) = tmp_path.iterdir()
+    report = verify(path)
+    assert (report.identical, report.complete) == (True, True)
