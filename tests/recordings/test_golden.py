@@ -22,7 +22,7 @@ def test_making_a_golden_recording_again_gives_the_same(name, tmp_path):
     make(name, other)
     assert again.read_bytes() == other.read_bytes()
     golden = GOLDEN / f"{name}.mcap"
-    assert golden.stat().st_size < 64_000  # bytes, in every installation
+    assert golden.stat().st_size < 80_000  # bytes, in every installation
     with Recording.open(golden) as was:
         if not was.runs[0].arithmetic.other_functions():  # bytes depend on zstd's version, too
             assert messages(golden) == messages(again)
