@@ -151,7 +151,9 @@ class Scene:
             return why
         counted = [method for method in self.cast if method.force_evaluations]
         names = ", ".join(method.label for method in counted if not method.general)
-        return names and f"Maps and studies are for methods that take any force, not for {names}."
+        if names:
+            return f"Maps and studies are for methods that take any force, not for {names}."
+        return ""
 
     @property
     def why_no_ring(self) -> str:
@@ -159,7 +161,9 @@ class Scene:
         if why := self.equations.without_ring:
             return why
         names = ", ".join(method.label for method in self.cast if not method.any_numbers)
-        return names and f"No ring with {names} in the cast."
+        if names:
+            return f"No ring with {names} in the cast."
+        return ""
 
     def fields(self) -> dict[str, Any]:
         """All fields that determine the run, with its name, as JSON shows them."""

@@ -88,7 +88,9 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     path = np.transpose(points).tolist()
     steps = len(path) - 1
     moves = bool(np.ptp(theta) or np.ptp(omega))
-    lap = model.turns * np.floor(theta / math.tau + 0.5)
+    lap = np.zeros_like(theta)
+    if model.turns:
+        lap = np.floor(theta / math.tau + 0.5)
     spins = bool(np.ptp(lap))
     neighbours = Stretching(method, model, h)
     for phase in path[:-_CHUNK:_CHUNK]:
