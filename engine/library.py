@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from functools import partial, wraps
+from numbers import Integral
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -383,10 +384,10 @@ def _positive(name: str, value: Any) -> float:
     return number
 
 
-def _whole(name: str, value: int) -> int:
-    if not isinstance(value, int) or value < 1:
+def _whole(name: str, value: Any) -> int:
+    if not isinstance(value, Integral) or int(value) < 1:  # numpy's are integral, too
         raise InputError(f"{name} = {value!r} is not a whole number above zero.")
-    return value
+    return int(value)
 
 
 def _array(name: str, values: Any) -> "Floats":

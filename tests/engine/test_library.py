@@ -56,7 +56,7 @@ def test_a_run_keeps_so_many_readings_of_all_its_methods_together(monkeypatch):
     monkeypatch.setattr("pendu_tui.engine.library.MAX_READINGS", 40)
     assert len(simulate(h=0.1, time=2, methods="rk4,verlet").t) == 21
     assert len(simulate(h=0.1, time=0.3, methods=METHODS["rk4"]).t) == 4
-    assert len(simulate(h=0.1, time=8, methods="rk4", every=2).t) == 41
+    assert len(simulate(h=0.1, time=8, methods="rk4", every=np.int64(2)).t) == 41
     with pytest.raises(ValueError, match="21 steps are too many"):
         simulate(h=0.1, time=2.1, methods="rk4,verlet")
 
