@@ -220,22 +220,6 @@ def _way_from_start(whole: Part, part: Part) -> float:
     return level - float(start)
 
 
-def growth_of(bins: Bins) -> float | None:
-    """Return the slope of ln of the energy, from errors beyond E0, if it is the straighter."""
-    if bins.lows[-1] <= 1:
-        return None
-    logarithms = np.log1p(np.maximum(bins.means, 0))
-    if _bend(logarithms) > _bend(bins.means):
-        return None
-    return float((logarithms[-1] - logarithms[0]) / (bins.times[-1] - bins.times[0]))
-
-
-def _bend(values: Any) -> float:
-    """Return how far the middle is from half way, over the way."""
-    first = values[len(values) // 2] - values[0]
-    return abs(float(first / (values[-1] - values[0])) - 0.5)
-
-
 def blocks_of(values: Any, size: int) -> Any:
     """Return the means of blocks of values, the last of which ends where they end."""
     return values[len(values) % size :].reshape(-1, size).mean(axis=1)

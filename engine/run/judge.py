@@ -173,7 +173,7 @@ class Judge:
     def _judgement(self) -> Judgement:
         """Return the judgement of the core, or what is known better of this run."""
         # a run begins without numpy
-        from pendu_tui.engine.run.core import bins_of_looks, growth_of, judge_bins, measure_bins
+        from pendu_tui.engine.run.core import bins_of_looks, judge_bins, measure_bins
 
         # how far roundings may have carried the error by now
         rounding = levels.WALK * self._method.epsilon * math.sqrt(self._last.step)
@@ -196,8 +196,6 @@ class Judge:
             found = found._replace(verdict=UNDECIDED, reason=reason, rests=False)
         if found.verdict in LEAVES:
             self._left = self._left or found.verdict
-        if found.verdict == GROWS and not found.rests:
-            found = found._replace(growth=growth_of(bins))
         return found
 
     def _kept(self, found: Judgement, low: float, high: float) -> Judgement:

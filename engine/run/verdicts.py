@@ -107,7 +107,6 @@ class Judgement(NamedTuple):
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s, where the verdict rests on it
     progress: Progress | None = None  # while it is known what is missing
-    growth: float | None = None  # 1/s, of the logarithm of the error, beyond E0
     bound: float | None = None  # |slope| is below it with a probability of 99 %
     share: float | None = None  # what the slope adds up to so far, over the width of the band
     reason: str = ""  # of `undecided`: what is missing, and whether a longer record helps

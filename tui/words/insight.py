@@ -213,9 +213,9 @@ def drift(source: Source, index: int) -> Insight | None:
         rate = -rate
     if verdict not in (GROWS, LOSES) or rate <= 0:
         return None
-    if judgement.growth:
-        tenfold = about(math.log(10) / judgement.growth)
-        return Insight("multiplies", f"{name}'s energy grows tenfold every {tenfold}.")
+    if conserved and rate >= 10:  # no percentage that means anything
+        ratio = two_digits(1 + error)
+        return Insight("multiplied", f"{name} has {ratio} times its initial energy.")
     unit = "E0" if conserved else "the true energy"
     verb = "gains" if verdict == GROWS else "loses"
     text = f"{name} {verb} {_share(rate)} of {unit} per s"

@@ -262,12 +262,6 @@ def test_a_symplectic_method_comes_back():
     assert judge.judgement.verdict == "bounded"
 
 
-def test_growth_is_that_of_the_logarithm_where_energy_is_multiplied_each_step():
-    euler, *others = moved(SCENES["linear"].altered(theta=7.0), [400]).judgements
-    assert euler.growth == pytest.approx(math.log(1 + 0.5**2) / 0.5, rel=1e-9)
-    assert {each.growth for each in (*others, *moved(DRIFT, [1200]).judgements)} == {None}
-
-
 def test_at_equal_cost_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_looked():
     lockstep = Lockstep(DRIFT, judged=True)
     lockstep.set_stepping(Stepping(0.04, True, DRIFT.cast))
@@ -337,7 +331,6 @@ def test_a_band_has_left_the_start_by_half_its_width(sign, word):
         found = judge_of([0.0, *errors[1:]]).judgement
         assert (found.verdict, found.reason) == expected
         assert found.rests == (word == found.verdict)
-        assert found.growth is None
     errors[5000:] += 0.6 * sign  # the end is unlike the rest
     found = judge_of([0.0, *errors[1:]]).judgement
     assert (str(found), found.rests) == (word, True)

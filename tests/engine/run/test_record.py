@@ -187,12 +187,6 @@ def test_each_level_has_a_case_on_both_sides(name):
         assert told(make(value)).startswith(word)
 
 
-@pytest.mark.parametrize(("last", "growth"), [(0.99, None), (1.01, math.log(2.01) / 63)])
-def test_growth_is_told_of_what_is_straight_in_its_logarithm_beyond_e0(last, growth):
-    values = np.expm1(np.linspace(0, math.log1p(last), 64))
-    assert core.growth_of(bins_around(values, 0.0)) == pytest.approx(growth)
-
-
 @pytest.mark.parametrize(
     ("freedom", "t", "chance"),  # of printed tables
     [(6, 2.447, 0.975), (10, 3.169, 0.995), (120, 2.617, 0.995)],

@@ -84,8 +84,8 @@ def test_sentences_as_they_are_stored(judged, snapshot):
         (judged, {"errors": {"energy_error": -0.51}}),
         (judged, {"errors": {"energy_error": -0.51}, "verdict": "undecided"}),
         (judged, {"verdict": "grows"}),  # but its slope falls
-        *((judged, grows | {"slope": slope}) for slope in (11, 9, 1.1e-6, 0.9e-6)),
-        (judged, grows | {"growth": 0.5}),
+        *((judged, grows | {"slope": slope}) for slope in (9.9, 1.1e-6, 0.9e-6)),
+        (judged, grows | {"slope": 10.1, "errors": {"energy_error": 29.0}}),
         (damped, grows),
         (damped, {"verdict": "loses", "slope": -0.02, "errors": {"energy_error": -0.6}}),
         (judged, {"verdict": "chaotic", "lyapunov": 0.2}),
