@@ -168,7 +168,7 @@ def encode_readings(sample: Sample) -> list[bytes]:
     for reading in sample.readings:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t, **values_of(reading)}
         for name in EXTREMES:
-            if fields[name] == fields[ENERGY_ERROR.name]:
+            if repr(fields[name]) == repr(fields[ENERGY_ERROR.name]):  # -0.0 is not 0.0
                 del fields[name]
         messages.append(_dumps(fields))
     return messages

@@ -102,6 +102,8 @@ def test_extremes_equal_to_the_energy_error_are_left_out_and_no_nonfinite_number
     wide = Sample(1, 0, 0.0, (PLAIN._replace(energy_error_low=-0.5),))
     assert b"low" in encode_readings(wide)[0]
     assert b"low" not in encode_readings(without_extremes(wide))[0]
+    zeros = Sample(1, 0, 0.0, (PLAIN._replace(energy_error=0.0, energy_error_low=-0.0),))
+    assert b'low":-0.0' in encode_readings(zeros)[0]
     unknown = json.dumps(GOOD | {"temperature": 300.0}).encode()  # without a field that may lack
     assert decode_readings([unknown]).readings == without_extremes(wide).readings == (PLAIN,)
     with pytest.raises(ValueError, match="omega"):
