@@ -97,7 +97,7 @@ class PhasePane(Chooser[State]):
         if self.shown.ring:
             below = portrait.ring_text(source, self.neighbours) or below
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
-        ground = portrait.Portrait.of(self.viewport, source.scene.equations)
+        ground = portrait.portrait_of(self.viewport, source.scene.equations)
         points = portrait.method_points(source, sample, self.shown, self.ring)
         plot = portrait.phase_picture(ground, points, self.cursor, self.aim, self.shown.line)
         words = portrait.caption(source, self.aim, self.room.width)
@@ -189,7 +189,6 @@ class SectionPane(PhasePane):
     def __init__(self) -> None:
         super().__init__()
         self._section = Memo(self._begun)
-        self._orbits = 0  # of the section, so far
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if not self.shown.section:
@@ -206,7 +205,6 @@ class SectionPane(PhasePane):
         from pendu_tui.engine.studies.section import pieces, spread
         from pendu_tui.tui.views import portrait
 
-        self._orbits = 0
         starts = spread(STARTS, viewport.across, viewport.up)
         self.compute(pieces, method, model, h, starts, portrait.ORBIT_STEPS)
         return portrait.Section(viewport, model, method, ink)
@@ -220,8 +218,8 @@ class SectionPane(PhasePane):
         model = source.scene.equations
         section = self._section(self.viewport, model, method, inks(self.cast)[self.index], h)
         title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
-        if self._orbits < STARTS:
-            title += f", computing {10 * self._orbits // STARTS / 10:.0%}"
+        if section.orbits < STARTS:
+            title += f", computing {10 * section.orbits // STARTS / 10:.0%}"
         self.write_titles(title, "wheel: zoom, tab: next method, x: back")
         start = self.cursor or State(source.scene.theta, source.scene.omega)
         orbit, kind = portrait.orbit_of(method, model, h, start)
@@ -238,7 +236,6 @@ class SectionPane(PhasePane):
 
     def add(self, result: "Points") -> None:
         self._section.result.add(result)
-        self._orbits += result[0].shape[1]
 
 
 class AreaTable(ErrorTable):

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -47,29 +46,21 @@ DISC = 2.2  # dots: discs on each other have a cell for each of four methods
 BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Portrait:
     """The static part of the picture, for one viewport."""
 
-    viewport: Viewport
-    model: Model
-    levels: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
-    separatrix: Dots
-    ground: Canvas  # the curves
-    words: Sequence[Word]
-
-    @classmethod
-    @lru_cache(maxsize=2)  # one for the lab's pane, one for F3
-    def of(cls, viewport: Viewport, model: Model) -> "Portrait":
+    def __init__(self, viewport: Viewport, model: Model) -> None:
+        self.viewport = viewport
+        self.model = model
         theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
-        levels = model.level(theta, omega, np.cos)
-        separatrix = _dots(_border((levels < 0) & model.has_separatrix))
-        words = _names(viewport, model.w0) if model.has_separatrix else []
-        ground = Canvas(viewport.columns, viewport.rows)
-        ground.scatter(*_dots(_border(_bands(levels))), FRAME)
-        ground.scatter(*separatrix, QUIET)
-        return cls(viewport, model, levels, separatrix, ground, words)
+        # (dots down, dots right), at the dots' centres
+        self.levels: Floats = model.level(theta, omega, np.cos)
+        self.separatrix = _dots(_border((self.levels < 0) & model.has_separatrix))
+        self.words = _names(viewport, model.w0) if model.has_separatrix else []
+        self.ground = Canvas(viewport.columns, viewport.rows)
+        self.ground.scatter(*_dots(_border(_bands(self.levels))), FRAME)
+        self.ground.scatter(*self.separatrix, QUIET)
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """Return the exact orbit through a state, where orbits are curves of equal energy."""
@@ -82,6 +73,10 @@ class Portrait:
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows * omega > 0)[:, None]
         return _dots(curve)
+
+
+portrait_of = lru_cache(maxsize=2)(Portrait)
+"""One is kept for the lab's pane, and one for F3."""
 
 
 class PhasePoint(NamedTuple):
@@ -296,7 +291,7 @@ def _names(viewport: Viewport, w0: float) -> list[Word]:
     return words
 
 
-def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
+def _bands(levels: Floats) -> NDArray[np.int64]:
     """Return each dot's energy band: even steps of amplitude, above the separatrix of omega."""
     inside = np.arcsin(np.sqrt(np.clip(levels, 0, 1)))
     spacing = np.where(levels > 0, inside, -np.sqrt(np.maximum(-levels, 0)))
@@ -329,12 +324,14 @@ class Section:
         self._method = method
         self._ink = ink
         self._ground = Canvas(viewport.columns, viewport.rows)
-        self._ground.scatter(*Portrait.of(viewport, model).separatrix, FRAME)
+        self._ground.scatter(*portrait_of(viewport, model).separatrix, FRAME)
         size = self._ground.height + 2 * GAP, self._ground.width + 2 * GAP
         self._near = np.zeros(size, np.bool_)
+        self.orbits = 0  # so far
 
     @np.errstate(all="ignore")  # a diverging method may be too far out to count in dots
     def add(self, points: Points) -> None:
+        self.orbits += points[0].shape[1]
         x = np.floor(self._viewport.x(points[0]))
         y = np.floor(self._viewport.y(points[1]))
         inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)

@@ -271,7 +271,7 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         words = pane.text.splitlines()[-1]
         assert words.startswith("{:g}, {:g}: ".format(*pane.pointer))
         assert "islands" not in words
-        pane._orbits = 15
+        pane._section.result.orbits = 15
         pane.draw()
         assert str(pane.border_title).endswith(", computing 50%")
         await theatre.press("n")

@@ -139,7 +139,7 @@ def test_chaos_stays_below_its_fence_and_without_one_passes_its_line(name):
     viewport = Viewport.portrait(*PORTRAIT, scene, math.pi, shown.line.value)
     points = method_points(seen.live, seen.live.sample, shown, None)
     assert [point.letter for point in points] == ["s", "v"]
-    portrait = Portrait.of(viewport, scene.equations)
+    portrait = Portrait(viewport, scene.equations)
     picture = phase_picture(portrait, points, line=shown.line)
     top, bottom = (at for at, text in enumerate(picture.text.splitlines()) if "pi/h" in text)
     own = {inks(scene.cast)[place] for place in shown.places(scene.cast)}

@@ -103,7 +103,7 @@ def test_phase_space(snapshot):
     texts = []
     states = State(0.5, -2.0), State(3.1, -0.5), State(0.0, -12.0)
     for (viewport, shown, around), state in zip(views, states, strict=True):
-        portrait = Portrait.of(viewport, model)
+        portrait = Portrait(viewport, model)
         points = method_points(live, live.sample, shown, around)
         line = Line("omega", 9.0, "pi/h")
         picture = phase_picture(portrait, points, states[0], state, line)
@@ -111,24 +111,24 @@ def test_phase_space(snapshot):
     angle = np.linspace(0, math.tau, 64, endpoint=False)
     ring = math.pi + 0.5 * np.cos(angle), 1.5 * np.sin(angle)
     nowhere = PhasePoint(math.nan, math.nan, 3, "r", ring=ring)
-    texts.append(look(phase_picture(Portrait.of(views[0][0], model), [nowhere])))
+    texts.append(look(phase_picture(Portrait(views[0][0], model), [nowhere])))
     ends = zip((-9.0, 9.0, 0.1, 0.2), (1.0, -1.0, 30.0, -30.0), strict=True)
     outside = [PhasePoint(*each, ink, "esvr"[ink]) for ink, each in enumerate(ends)]
-    part = Portrait.of(views[0][0]._replace(wrap=False), model)
+    part = Portrait(views[0][0]._replace(wrap=False), model)
     texts.append(look(phase_picture(part, outside, line=Line("theta", 9.0, "no omega"))))
     small = Viewport.portrait(35, 9, DRIFT)
     deep = small._replace(omega=-120.0).zoomed(1e-5, *small.middle)
     for part in (*(small.zoomed(0.6, x, 12) for x in (0, 40, 70)), deep):
-        texts.append(look(Picture(framed(part, phase_picture(Portrait.of(part, model), [])))))
+        texts.append(look(Picture(framed(part, phase_picture(Portrait(part, model), [])))))
     for name in ("damped", "linear"):  # orbits that are no curves of energy, and closed ones
-        portrait = Portrait.of(small, SCENES[name].equations)
+        portrait = Portrait(small, SCENES[name].equations)
         texts.append(look(phase_picture(portrait, [], orbit=State(2.5, -4.0))))
     short = after(DRIFT, 1)
     points = method_points(short, short.sample, Shown(), None)
-    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    texts.append(look(phase_picture(Portrait(views[0][0], model), points)))
     coarse = after(DRIFT.altered(h=0.2), 9)
     points = method_points(coarse, coarse.sample, Shown(), None)
-    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    texts.append(look(phase_picture(Portrait(views[0][0], model), points)))
     for method in (VELOCITY_VERLET, RK4):
         section = Section(views[0][0], model, method, method.hue)
         for theta in (0.7, 1.4, 1.6, 1.7, 1.8, 2.1, 2.11, 2.2):
@@ -140,7 +140,7 @@ def test_phase_space(snapshot):
     texts.append(place_text(SCENES["damped"].equations, State(-1 / 3000, 2.0), 80))
     alone = Shown(exact=True, hidden=frozenset(method.key for method in DRIFT.cast))
     points = method_points(live, live.sample, alone, None)
-    texts.append(look(phase_picture(Portrait.of(views[0][0], model), points)))
+    texts.append(look(phase_picture(Portrait(views[0][0], model), points)))
     for columns in (35, 36, 200):  # as many angles as there is room for, in pi
         texts.append(look(Picture(framed(Viewport.portrait(columns, 1, DRIFT), Picture()))))
     snapshot("phase.txt", "\n".join(texts) + "\n")
