@@ -58,7 +58,7 @@ def _verdict(line: TableLine, width: int) -> str:
     verdict = VERDICTS[line.verdict]
     if verdict.sign:
         return f"{verdict.sign} {verdict.word}"
-    texts = [str(line.judgement), verdict.word]
+    texts = [str(line.judgement)]
     if missing := line.judgement.progress:
         count = f"{missing.have}/{missing.need}"
         texts = [str(missing), f"{count} {missing.unit}", count]
@@ -66,6 +66,7 @@ def _verdict(line: TableLine, width: int) -> str:
 
 
 VERDICT = Column(9, Head("verdict", 10, "verdict", 13), _verdict)
+STEP_SIZE = Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width])
 COLUMNS = (
     VERDICT,
     Column(8, ENERGY_ERROR.head, lambda line, w: fitting(line.reading.energy_error, w, *SIGNED)),
@@ -74,7 +75,7 @@ COLUMNS = (
     Column(3, THETA_ERROR.head, lambda line, w: fitting(line.theta_error, w, *UNSIGNED)),
     Column(4, THETA.head, lambda line, w: decimal(line.reading.theta, w, w - 8)),
     Column(2, OMEGA.head, lambda line, w: decimal(line.reading.omega, w, max(w - 8, 3))),
-    Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width]),
+    STEP_SIZE,
     Column(1, EVALUATIONS.head, lambda line, w: f"{line.method.force_evaluations}"),
 )
 
@@ -94,21 +95,15 @@ def _columns(
     extra = map(extra_column, source.scene.equations.extra_columns)
     columns = [*COLUMNS[:5], *more, *extra, *COLUMNS[5:]]
     if len(set(source.stepping.own)) == 1:
-        columns = [column for column in columns if column.head.narrow != "h"]
-    first = 0
-    if width >= WIDE:
-        first = 2
-    room = width - names - 1
-
-    def needed() -> int:
-        return sum(int(column.head[first + 1]) + 1 for column in columns)
-
-    while columns and needed() > room:
-        columns.remove(min(columns, key=lambda column: column.keep))
-    spare = {VERDICT: min(room - needed(), 3)}  # "2 of 5 swings"
+        columns.remove(STEP_SIZE)
+    heads = {each: each.head[2:] if width >= WIDE else each.head[:2] for each in columns}
+    spare = width - names - 1 - sum(size + 1 for _, size in heads.values())
+    while heads and spare < 0:
+        _, size = heads.pop(min(heads, key=lambda column: column.keep))
+        spare += size + 1
+    more_room = {VERDICT: min(spare, 3)}  # "2 of 5 swings"
     return [
-        (str(column.head[first]), int(column.head[first + 1]) + spare.get(column, 0), column)
-        for column in columns
+        (title, size + more_room.get(column, 0), column) for column, (title, size) in heads.items()
     ]
 
 
