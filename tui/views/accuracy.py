@@ -56,23 +56,19 @@ def accuracy_series(
 ) -> list[Series]:
     """Return points as letters, x if useless, ~ if limited by rounding; orders as dots."""
 
-    def series(ink: int, mark: str, *some: Point) -> Series:
+    def series(mark: str, *some: Point) -> Series:
+        ink = ink_of(some[0].method, cast)
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.errors[kind] for p in some])
 
-    def flawed(ink: int, some: Sequence[Point]) -> list[Series]:
-        return [series(ink, MARKS[flaw], p) for p in some if (flaw := p.flaws[kind])]
-
     lines: list[Series] = []
-    flaws: list[Series] = []
     slopes: dict[int, Series] = {}  # by order
     for method in dict.fromkeys(point.method for point in points):
         ours = [point for point in points if point.method == method]
-        ink = ink_of(method, cast)
         slopes = _slope(ours, kind, cost) | slopes
-        lines.append(series(ink, method.letter, *ours))
-        flaws += flawed(ink, ours)
-    marked = [series(ink_of(point.method, cast), mark, point) for mark, point in marks]
-    return [*slopes.values(), *lines, *flaws, *marked]
+        lines.append(series(method.letter, *ours))
+    flaws = [(MARKS[flaw], point) for point in points if (flaw := point.flaws[kind])]
+    marked = [series(mark, point) for mark, point in (*flaws, *marks)]
+    return [*slopes.values(), *lines, *marked]
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Series]:
