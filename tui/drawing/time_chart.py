@@ -51,7 +51,9 @@ class TimePlot(LineChart):
         super().__init__(x_axis, y_axis, columns, rows)
         self.shown = shown
         self.times = times  # s, at the middle of each column
-        self._limit = min(math.log10(LARGEST), y_axis.high) if shown.log else LARGEST
+        self._limit = LARGEST
+        if shown.log:
+            self._limit = min(math.log10(LARGEST), y_axis.high)
 
     def at(self, column: int) -> Reading | None:
         """Return the values in a column, or in the last column before it that has any."""
@@ -210,7 +212,9 @@ def time_chart(
     plot, sides = _plot(runs, shown, max(width, MIN_COLUMNS), max(height, MIN_ROWS) - 1)
     low, high = sides[0]
     plot.places = places
-    plot.values = 10.0**high if shown.log else np.where(abs(low) > abs(high), low, high)
+    plot.values = np.where(abs(low) > abs(high), low, high)
+    if shown.log:
+        plot.values = 10.0**high
     plot.draw_marks(changes)
     colours = [inks(cast)[place] for place in places]
     (low, high), *behind = [plot.on_chart(*side) for side in sides]

@@ -57,24 +57,24 @@ class Seen:
     def apart(self, upper, lower):
         return min(self.heights(upper)[-1]) - max(self.heights(lower)[-1])
 
-    def line_row(self):
+    @property
+    def line(self):
         """The row of the reference line, from the lower edge of the chart."""
-        text = self.chart.text.splitlines()
-        dots = next(at for at, line in enumerate(text) if self.shown.line.name in line)
-        return self.bottom - dots - 1
+        level = self.shown.line.value
+        return self.bottom - self.plot.row(math.log10(level) if self.shown.log else level)
 
     def near_line(self, letter):
         """Rows from the end of a curve to the reference line, less than 0 beyond one."""
-        return 1 - abs(max(self.heights(letter)[-1]) - self.line_row())
+        return 1 - abs(max(self.heights(letter)[-1]) - self.line)
 
     def reaches_line(self, letter):
         """Rows from the highest point of a curve up to the reference line, less than 0 below."""
-        return 1 + max(map(max, self.heights(letter))) - self.line_row()
+        return 1 + max(map(max, self.heights(letter))) - self.line
 
     def crosses_line(self, letter):
         """How many rows a curve ends beyond the reference line, after it began before it."""
         heights = self.heights(letter)
-        return min(min(heights[0]) - self.line_row(), self.line_row() - max(heights[-1]))
+        return min(min(heights[0]) - self.line, self.line - max(heights[-1]))
 
     def least_share(self, size):
         """The least share of its columns that a method is in, in a chart of this size."""
