@@ -156,6 +156,7 @@ class LabScreen(SizedScreen[None]):
         self.call_after_refresh(self.begin)
 
     async def begin(self) -> None:
+        self._follow(self.source.sample)  # also what needs NumPy
         if isinstance(self.source, Live):
             self.record(self.source)  # an error ends the lab
         gc.freeze()  # never collect what exists now, which would cost frames

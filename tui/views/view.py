@@ -88,9 +88,7 @@ class View(Box):
         super().__init__(id=id)
         self.source = source
         self.shown = shown
-        self.sample = source.sample
         self._panes: list[Pane] = []
-        self._is_painted = False
 
     def enter(self, source: Source) -> None:
         """Show another source."""
@@ -104,20 +102,15 @@ class View(Box):
         return pane
 
     def on_mount(self) -> None:
-        self.follow(self.sample, self.shown)
-        self.call_after_refresh(self._after_first_paint)
-
-    def _after_first_paint(self) -> None:
-        self._is_painted = True
-        self.follow(self.sample, self.shown)
+        """Show what the first paint can: to import NumPy before it would double its time."""
+        for pane in self._panes:
+            if not pane.NEEDS_NUMPY:
+                pane.follow(self.source.sample, self.shown)
 
     def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
         """Show a sample in the panes whose turn it is."""
-        self.sample = sample
-        self.shown = shown
         for pane in self._panes:
-            if self._is_painted or not pane.NEEDS_NUMPY:
-                pane.follow(sample, shown, beat)
+            pane.follow(sample, shown, beat)
 
     def zoom(self, factor: float) -> None:
         """Zoom the chart over time, if the view has one."""
@@ -131,7 +124,6 @@ class Pane(CellWidget):
     EVERY: ClassVar[int] = 12
     """It is drawn every so many sixtieths of a second; people read text five times a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
-    """Whether to draw after the first paint only: importing NumPy would double its time."""
 
     source: Source
     """Set by its view or screen."""

@@ -51,8 +51,8 @@ def test_what_needs_numpy_is_drawn_after_the_first_paint():
     drawn = []
     for pane in (Pane(), PhasePane(), TimeChart()):
         view.with_source(pane).draw = partial(drawn.append, type(pane))
-    view.follow(view.sample, Shown())
-    view._after_first_paint()
+    view.on_mount()
+    view.follow(view.source.sample, Shown())
     assert drawn == [Pane, Pane, PhasePane, TimeChart]
 
 
