@@ -88,15 +88,16 @@ class TimePlot(LineChart):
         return (10.0**begin, 10.0**end) if log_time else (begin, end)
 
     def draw_marks(self, changes: Sequence[tuple[float, str]]) -> None:
-        """Draw the changes of the step and the reference line."""
+        """Draw the changes of the step, labels of the latest first, and the reference line."""
         canvas = self.canvas
-        for x, text in changes:
+        for x, text in reversed(changes):
             value = math.log10(max(x, FLOOR)) if self.shown.has_log_time else x
             if self.x_axis.low < value < self.x_axis.high:
                 at = 2 * self.columns * self.x_axis.share(value)
                 canvas.line(at, 0, at, canvas.height, FRAME, dotted=True)
                 begin = min(int(at) // 2 + 1, canvas.columns - len(text))
-                canvas.label(begin, self.rows - 1, text, QUIET)
+                if canvas.is_free(begin, self.rows - 1, len(text)):
+                    canvas.label(begin, self.rows - 1, text, QUIET)
         for text, level in _levels(self.shown).items():
             down = canvas.height * min(1 - self.y_axis.share(level), 1.0)
             canvas.line(0, down, 2 * self.columns, down, EXACT, dotted=True)

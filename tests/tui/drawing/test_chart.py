@@ -47,7 +47,7 @@ def test_charts_as_they_are_stored(snapshot):
     grows = np.exp(t[:, None] * rates) - 0.99
     waves = np.sin(3 * t)[:, None] * rates
     ghost = window(t, 1.7 * grows)
-    changes = [(0.0, "start"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
+    changes = [(0.0, "start"), (7.6, "h 0.025"), (7.7, "h 0.1"), (19.7, "h 0.05"), (20.0, "end")]
     limit = {"line": Line("energy_error", -2.0, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
