@@ -350,9 +350,11 @@ class Stage(Pane):
 
     def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
         """Start a run from the last angle, at the pointer's speed over the last 0.1 s."""
-        recent = [(time, theta) for time, theta in drag if now - time < 0.1] or drag[-1:]
-        first_time, first_theta = recent[0]
-        last_time, last_theta = recent[-1]
+        recent = sum(now - time < 0.1 for time, _ in drag)
+        if recent == 1:
+            recent = 2  # a slow pointer passes a cell at a time
+        first_time, first_theta = drag[-max(recent, 1) :][0]
+        last_time, last_theta = drag[-1]
         seconds = (last_time - first_time) * abs(self.source.playhead.speed)
         omega = 0.0
         if seconds > 0:

@@ -129,6 +129,12 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
         await theatre.pilot.pause()
         scene = theatre.scene
         assert (scene.theta, scene.omega) == (0.6, 1.0)  # 2 rad in a second of the clock, at 2×
+        theatre.pane(Stage)._throw([(0.0, 0.0), (0.9, 0.4), (1.1, 0.5)], 1.15)
+        await theatre.pilot.pause()
+        assert theatre.scene.omega == 0.25  # a cell in 0.2 s of the clock, at 2×: slow, but a throw
+        theatre.pane(Stage)._throw([(0.0, 0.0), (0.9, 0.5)], 1.01)
+        await theatre.pilot.pause()
+        assert theatre.scene.omega == 0.0  # the pointer rested
         theatre.pane(Stage)._throw([(0.0, 0.0), (1e-4, -1.0)], 0.01)
         await theatre.pilot.pause()
         scene = theatre.scene
