@@ -28,7 +28,7 @@ class Attempt:
     """A method's cheapest run that reaches the target, or its last one and why it does not."""
 
     method: Method
-    point: Point | None  # None: there was no usable h
+    point: Point | None  # None: there was no usable h, or too many steps to try
     why_not: str | None = None
     times: float | None = None  # its cost over the cheapest method's
 
@@ -106,7 +106,7 @@ def _work(method: Method) -> int:
 
 def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most: int) -> Attempt:
     """Multiply the steps until the target is reached, then bisect, then confirm."""
-    too_dear = f"not within {most} evaluations"
+    too_dear = f"not within {most:,} evaluations"
     most_steps = _affordable(study, method, most)
     fastest = max(study.scene.w0, abs(study.scene.omega))  # rad/s
     too_few = math.ceil(study.time * fastest / math.pi) - 1  # a step of more than half a swing
@@ -126,8 +126,10 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             return Attempt(method, best, f"rounding stops it at {best.errors[kind]:.1e}")
         factor = GROWTH.get(flaw) or (error / target) ** (1 / max(1, method.order))
         is_hopeless = not flaw and factor * steps > 2 * most_steps and error < PREDICTABLE_BELOW
-        if is_hopeless or steps == most_steps:
+        if steps == most_steps:
             return Attempt(method, point, too_dear)
+        if is_hopeless:
+            return Attempt(method, None, too_dear)
         too_few = steps
         steps = min(most_steps, math.ceil(steps * min(max(factor, 1.1), 4.0)))
         point = study.run(method, steps)

@@ -41,7 +41,7 @@ def test_a_target_that_no_method_reaches_is_reported():
     answer = outcome.json["recommendation"]
     found = (answer["method"], answer["h"], answer["why_not"])
     assert found == (None, None, "no method gets there")
-    assert "not within 20000000 evaluations" in pendu(*asked).out
+    assert "not within 20,000,000 evaluations" in pendu(*asked).out
 
 
 @pytest.mark.parametrize(("ends", "word"), [("1e9:0.1", "1e+09"), ("0.1:1e-12", "1e-12")])
