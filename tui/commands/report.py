@@ -26,7 +26,7 @@ from pendu_tui.tui.cli.files import FIGURES, text_file, whole_file
 Form = Literal["table", "json", "csv", "figure"]
 
 CM = 1 / 2.54  # inches
-LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
+DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
 STYLE = {
     "font.size": 7,
     "axes.linewidth": 0.5,
@@ -128,7 +128,7 @@ class Figure:
         colours = map(PALETTES["light"].colour, inks(self.cast))
         looks = {
             method.letter: {"color": ink, "linestyle": dashes, "label": method.label, "marker": "."}
-            for method, ink, dashes in zip(self.cast, colours, cycle(LINES))
+            for method, ink, dashes in zip(self.cast, colours, cycle(DASHES))
         }
         reference = {"color": "grey", "linestyle": ":", "linewidth": 0.5}
         with style.context(STYLE, after_reset=True):
