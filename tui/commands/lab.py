@@ -91,7 +91,8 @@ def replay(options: argparse.Namespace) -> int:
 def snapshot(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     display = terminal_options_of(options, os.environ, "utf-8")
-    path = options.output or Path(f"{scene.name}.svg")
+    # a scene's name may hold a path, which somebody else may have written
+    path = options.output or Path(Path(f"{scene.name}.svg").name)
     with whole_file(path, options.force) as file:
         svg = asyncio.run(still(scene, options.time, options.size, display))
         file.write_text(svg, encoding="utf-8")

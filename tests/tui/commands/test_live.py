@@ -72,6 +72,8 @@ def test_a_picture_is_as_it_is_asked_for_and_has_the_name_of_its_scene(here, mon
     assert Path("spin.svg").read_text(encoding="utf-8") == str(asked)
     assert pendu(*picture).refused(5, "--force")
     assert pendu(*picture, "-o", "b.svg").err == "pendu-tui: wrote b.svg\n"
+    Path("mine.toml").write_text('name = "../mine"\n', encoding="utf-8")
+    assert pendu("snapshot", "mine.toml").err == "pendu-tui: wrote mine.svg\n"
 
 
 async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
