@@ -13,7 +13,6 @@ from _thread import interrupt_main
 from argparse import Namespace
 from collections.abc import Sequence
 from importlib import import_module
-from itertools import takewhile
 from pathlib import Path
 
 from pendu_tui.engine.inputs import did_you_mean
@@ -151,8 +150,7 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
 
 def refuse_dropped(command: str, arguments: Sequence[str]) -> None:
     """Raise UserError if a command, or one of the words after it, has been dropped."""
-    words = takewhile("--".__ne__, arguments)
-    for name in (command, *(f"{command} {word.partition('=')[0]}" for word in words)):
+    for name in (command, *(f"{command} {word.partition('=')[0]}" for word in arguments)):
         if name in DROPPED:
             raise UserError(f"{name} has been dropped; use instead: {DROPPED[name]}.")
 

@@ -1,7 +1,7 @@
 """Write a recording as CSV, one row per sample and method."""
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from pendu_tui.engine.quantities import DIVERGED_AT
 from pendu_tui.recordings.format import EXTRA, MOMENT, READING, Field, values_of
@@ -15,21 +15,18 @@ from pendu_tui.tui.commands.report import write_csv
 def run(options: argparse.Namespace) -> int:
     path = resolve(options.file)
     with Recording.open(path) as recording, progress(path.name) as show:
-        columns = columns_of({run.scene.model: None for run in recording.runs})
+        models = [run.scene.model for run in recording.runs]
+        fields = dict.fromkeys((*READING, *(each for model in models for each in EXTRA[model])))
+        columns = ("clock_s", *map(_column, MOMENT), "method", *map(_column, fields))
         with text_file(options.output, options.force) as out:
-            write_csv(out, columns, _rows(recording, show))
+            write_csv(out, columns, _rows(recording, [each.name for each in fields], show))
         if recording.reason:
             warn(f"{path}: {recording.reason}; the rest is exported.")
     return Exit.FINE
 
 
-def columns_of(models: Iterable[str]) -> tuple[str, ...]:
-    """Return the columns, names with units; energies are per unit m·L²."""
-    extra = dict.fromkeys(_column(field) for model in models for field in EXTRA[model])
-    return "clock_s", *map(_column, MOMENT), "method", *map(_column, READING), *extra
-
-
 def _column(field: Field) -> str:
+    """Return a name with its unit."""
     if not field.unit:
         return field.name
     unit = field.unit.replace("/", "_per_").replace("s^-", "per_s").removesuffix("1")
@@ -37,10 +34,9 @@ def _column(field: Field) -> str:
 
 
 def _rows(
-    recording: Recording, show: Callable[[float, float], None]
+    recording: Recording, names: Sequence[str], show: Callable[[float, float], None]
 ) -> Iterator[tuple[object, ...]]:
-    models = [run.scene.model for run in recording.runs]
-    names = dict.fromkeys(field.name for model in models for field in (*READING, *EXTRA[model]))
+    """Yield the values of each method in each sample; energies are per unit m·L²."""
     for clock, sample in recording.samples_between():
         show(clock, recording.length)
         cast = recording.run_of(sample.run).scene.cast

@@ -101,8 +101,8 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
 def _lines(scene: Scene, rows: Sequence[Row]) -> Iterator[Line]:
     """Yield each method's letter, amplitudes [°] and limits."""
     for method in scene.cast:
-        lost = [(math.degrees(row.theta), row.z) for row in rows if row.method == method and row.z]
-        yield method.letter, [theta for theta, _ in lost], [z for _, z in lost]
+        lost = [row for row in rows if row.method == method and row.z]
+        yield method.letter, [math.degrees(row.theta) for row in lost], [row.z for row in lost]
 
 
 def _linear(scene: Scene, method: Method) -> dict[str, Any]:
