@@ -101,7 +101,7 @@ class LabScreen(SizedScreen[None]):
         self.set_reactive(LabScreen.shown, shown)
         self.clock = clock
         self.view = source.scene.shot.view
-        self._view_in_front = create(self.view, source, shown)
+        self._view_in_front = create(self.view)
         self._lines: tuple[Pane, ...] = (StatusLine(), SeekBar(), LessonPanel(), InsightLine())
         self.scenes = Lesson("Scene", SCENES.values())
         self.scenes.index = self.scenes.index_of(source.scene.name)
@@ -125,11 +125,6 @@ class LabScreen(SizedScreen[None]):
         """Show another source."""
         self.source = source
         self.is_replay = isinstance(source, Replay)
-        for view in self.query(View):
-            view.enter(source)
-        for line in self._lines:
-            line.source = source
-            line.sample = source.sample
 
     def watch_shown(self) -> None:
         if self.is_mounted:  # commands set it earlier
@@ -152,6 +147,9 @@ class LabScreen(SizedScreen[None]):
 
     def on_mount(self) -> None:
         self._enter(self.source)
+        for pane in (*self._view_in_front.panes, *self._lines):
+            if not pane.NEEDS_NUMPY:
+                pane.follow(self.source, self.source.sample, self.shown)
         self.frame_timer = self.set_interval(1 / self.fps, self.frame, pause=True)
         self.call_after_refresh(self.begin)
 
@@ -204,9 +202,8 @@ class LabScreen(SizedScreen[None]):
         if (theta := self.shown.held) is not None:
             held = [each._replace(theta=theta, omega=0.0) for each in sample.readings]
             sample = sample._replace(readings=tuple(held))
-        self._view_in_front.follow(sample, self.shown, beat)
-        for line in self._lines:
-            line.follow(sample, self.shown, beat)
+        for pane in (*self._view_in_front.panes, *self._lines):
+            pane.follow(self.source, sample, self.shown, beat)
 
     def warn(self, text: str) -> None:
         self.notify(text, severity="warning", timeout=15)
@@ -507,13 +504,13 @@ class LabScreen(SizedScreen[None]):
         name = name or following(self.view)
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
-            await views.mount(create(name, self.source, self.shown))
+            await views.mount(create(name))
         for each in views.children:
             each.display = each.id == name
         self.view = name
         self._view_in_front = self.query_one(f"#{name}", View)
         self._view_in_front.retry()
-        self.show_now()
+        self._follow(self.source.sample)
 
     def _show_text(self, title: str, lines: Iterable[str]) -> None:
         self.app.push_screen(TextScreen(title, "\n".join(lines)))

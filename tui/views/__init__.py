@@ -4,8 +4,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the process that computes for a view starts faster without Textual
-    from pendu_tui.tui.playback.shown import Shown
-    from pendu_tui.tui.playback.source import Source
     from pendu_tui.tui.views.view import View
 
 
@@ -18,11 +16,11 @@ VIEWS = {
 """The titles of the views by their modules, in the order of the key v."""
 
 
-def create(name: str, source: "Source", shown: "Shown") -> "View":
+def create(name: str) -> "View":
     """Return a view, whose module is imported when it is first shown."""
     module = import_module(f"{__name__}.{name}")
     widget: type[View] = getattr(module, f"{name.title()}View")
-    return widget(source, shown, name)
+    return widget(name)
 
 
 def following(name: str) -> str:

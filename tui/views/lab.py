@@ -227,8 +227,8 @@ class PaneLayout(Layout):
 
 
 class LabView(View):
-    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
-        super().__init__(source, shown, id)
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
         self._named: dict[str, Pane] = {
             "stage": Stage(),
             "phase": PhasePane(),
@@ -236,14 +236,13 @@ class LabView(View):
             "chart": TimeChart(),
             "second_chart": TimeChart(ahead=1),
         }
+        self.panes = [*self._named.values(), ErrorTable()]
 
     def compose(self) -> ComposeResult:
-        for pane in self._named.values():
-            self.with_source(pane)
         arranged = Box(*self._named.values(), id="panes")
         arranged.styles.set_rule("layout", PaneLayout(self._named))
         yield arranged
-        yield self.with_source(ErrorTable())
+        yield self.panes[-1]
 
     def zoom(self, factor: float) -> None:
         charts = list(self.query(TimeChart))

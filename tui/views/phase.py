@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from pendu_tui.engine.methods import Method
@@ -257,9 +256,9 @@ class AreaTable(ErrorTable):
 class PhaseView(StudyView):
     PANE = SectionPane
 
-    def compose(self) -> ComposeResult:
-        yield from super().compose()
-        yield self.with_source(AreaTable(self.pane))
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
+        self.panes.append(AreaTable(self.pane))
 
 
 def area_text(ratio: float) -> str:

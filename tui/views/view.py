@@ -82,41 +82,17 @@ class Box(Container):
 
 
 class View(Box):
-    """Has panes, which it shows each sample."""
+    """Has panes, which its screen shows each sample."""
 
-    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
+    def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.source = source
-        self.shown = shown
-        self._panes: list[Pane] = []
-
-    def enter(self, source: Source) -> None:
-        """Show another source."""
-        self.source = source
-        for pane in self._panes:
-            pane.source = source
-
-    def with_source(self, pane: "Pane") -> "Pane":
-        self._panes.append(pane)
-        pane.source = self.source
-        return pane
-
-    def on_mount(self) -> None:
-        """Show what the first paint can: to import NumPy before it would double its time."""
-        for pane in self._panes:
-            if not pane.NEEDS_NUMPY:
-                pane.follow(self.source.sample, self.shown)
-
-    def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
-        """Show a sample in the panes whose turn it is."""
-        for pane in self._panes:
-            pane.follow(sample, shown, beat)
+        self.panes: list[Pane] = []
 
     def zoom(self, factor: float) -> None:
         """Zoom the chart over time, if the view has one."""
 
     def retry(self) -> None:
-        for pane in self._panes:
+        for pane in self.panes:
             pane.retry()
 
 
@@ -124,9 +100,9 @@ class Pane(CellWidget):
     EVERY: ClassVar[int] = 12
     """It is drawn every so many sixtieths of a second; people read text five times a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
+    """Whether to draw after the first paint only: importing NumPy would double its time."""
 
     source: Source
-    """Set by its view or screen."""
     shown = Shown()
     sample: Sample | None = None
     failure = ""
@@ -134,11 +110,12 @@ class Pane(CellWidget):
     _titles = ("", "")
     _turn = 0
 
-    def follow(self, sample: Sample, shown: Shown, beat: int = 0) -> None:
+    def follow(self, source: Source, sample: Sample, shown: Shown, beat: int = 0) -> None:
         """Show a sample if it is this pane's turn, as it always is at beat 0."""
         turn = beat // self.EVERY
         if not beat or turn != self._turn:
             self._turn = turn
+            self.source = source
             self.sample = sample
             self.shown = shown
             self.draw()
@@ -317,12 +294,13 @@ class StudyView(View):
 
     PANE: ClassVar[type[Chooser[Any]]]
 
-    def __init__(self, source: Source, shown: Shown, id: str | None = None) -> None:
-        super().__init__(source, shown, id)
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
         self.pane: Any = self.PANE()
+        self.panes.append(self.pane)
 
     def compose(self) -> ComposeResult:
-        yield self.with_source(self.pane)
+        yield from self.panes
 
     def retry(self) -> None:
         super().retry()

@@ -1,19 +1,19 @@
 """Panes of the lab: when they are drawn, words that fit, clicks on events, and the table."""
 
-from functools import partial
+from unittest.mock import Mock
 
 import pytest
 from textual.geometry import Size
 
-from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.tui.drawing.picture import TEXT
-from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
+from pendu_tui.tui.screens.lab import LabScreen
 from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_column
 from pendu_tui.tui.views.lab import EventList, TimeChart
 from pendu_tui.tui.views.phase import PhasePane, SectionPane
 from pendu_tui.tui.views.stage import Stage
-from pendu_tui.tui.views.view import Pane, View
+from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.cards import head_text
 from tests.tui.harness import lab
 
@@ -42,18 +42,21 @@ def test_a_pane_is_drawn_as_often_as_it_asks_at_any_number_of_frames(fps, kind, 
     pane.draw = lambda: drawn.append(pane.sample)
     passed = 60 // fps
     for frame in range(1, 10 * fps + 1):
-        pane.follow(frame, Shown(), frame * passed)
+        pane.follow(None, frame, Shown(), frame * passed)
     assert len(drawn) == min(10 * fps, fps * passed * a_second // 6)
 
 
-def test_what_needs_numpy_is_drawn_after_the_first_paint():
-    view = View(Live(Scene()), Shown())
-    drawn = []
-    for pane in (Pane(), PhasePane(), TimeChart()):
-        view.with_source(pane).draw = partial(drawn.append, type(pane))
-    view.on_mount()
-    view.follow(view.source.sample, Shown())
-    assert drawn == [Pane, Pane, PhasePane, TimeChart]
+async def test_what_needs_numpy_is_drawn_after_the_first_paint(monkeypatch):
+    begin = LabScreen.begin
+    monkeypatch.setattr(LabScreen, "begin", Mock())
+    async with lab() as theatre:
+        stage = theatre.stage
+        assert {type(each) for each in stage.query(Pane) if not each.sample} == {
+            PhasePane,
+            TimeChart,
+        }
+        await begin(stage)
+        assert all(each.sample for each in stage.query(Pane))
 
 
 def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():

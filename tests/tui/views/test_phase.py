@@ -161,7 +161,7 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         assert str(pane.border_subtitle) == "ring, radius 0.1 rad"
         monkeypatch.setattr("pendu_tui.tui.views.phase.has_own", lambda scene: True)
         source.start(DRIFT.with_cast(DRIFT.cast[:3]))
-        table.follow(source.sample, theatre.stage.shown, 0)  # before the pane has a new ring
+        table.follow(source, source.sample, theatre.stage.shown)  # before the pane has a new ring
         assert "area" not in table.text
         source.start(SCENES["gentle"])
         source.step(9)
