@@ -8,8 +8,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pendu_tui.tui.drawing.frame import (
-    Axis,
-    Frame,
     linear_axis,
     log_axis,
     log_time_axis,
@@ -18,7 +16,6 @@ from pendu_tui.tui.drawing.frame import (
     theta_ticks,
     time_axis,
 )
-from pendu_tui.tui.drawing.picture import TEXT, Picture
 from pendu_tui.tui.drawing.time_chart import per_column, time_span
 
 ROWS = st.integers(3, 60)
@@ -87,16 +84,6 @@ HOUR = 3600
 def test_the_most_common_labels_of_the_lab(axis, ends, text):
     found = axis(*ends)
     assert " ".join(getattr(found, "labels", found).values()) == text
-
-
-def test_labels_stand_at_their_values():
-    quarters = [quarter * math.pi / 2 for quarter in range(-2, 3)]
-    assert [*theta_ticks(-math.pi, math.pi, 4)] == pytest.approx(quarters)
-
-
-def test_a_label_at_the_end_of_an_axis_stays_inside():
-    frame = Frame(Axis(0.0, 1.0, {1.0: "pi/2"}), Axis(0.0, 1.0, {0.5: "1"}), 12, 1)
-    assert Picture(frame.around([[("field", TEXT)]])).text == "    1┤field\n     └────── pi/2"
 
 
 @st.composite

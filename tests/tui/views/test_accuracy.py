@@ -1,11 +1,13 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
 from textual.geometry import Size
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.accuracy import Point, Study, front, ladder, measured
 from pendu_tui.tui.views.accuracy import (
@@ -98,6 +100,11 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         await pilot.press("enter")
         await until(pilot, lambda: live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0]))
         assert (live.sample.run, pane.cursor) == (1, None)  # the run goes on
+        await until(pilot, lambda: pane.settled)
+        live.change(Stepping(5.0 / 2_000_001, cast=USUAL_CAST))  # too many steps to compute
+        pane.draw()
+        assert pane.settled
+        assert words(pane).startswith("the current h is not on this chart")
         live.start(SCENES["large-swing"])
         await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)
@@ -114,6 +121,11 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         at = (column + 1, row + 1)  # the frame
         await pilot.hover(pane, (at[0] + 3, at[1]))
         assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a small")
+        exact = replace(pane.points["rk4", RUNGS[1]], errors=dict.fromkeys(ERROR_LABELS, 0.0))
+        pane.add(exact)
+        pane._chart.forget()
+        pane.draw()
+        assert exact not in pane._drawn  # which no logarithm has
         pane._drawn = [point]
         for right, up, found in ((6, 0, point), (7, 0, None), (0, 3, point), (0, 4, None)):
             await pilot.hover(pane, (at[0] + right, at[1] - up))
