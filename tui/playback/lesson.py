@@ -86,7 +86,7 @@ class Lesson:
         """Start the run of a page.  Raises InputError or OwnMethodError."""
         page = self.pages[index]
         if (live.scene, live.sample.step) != (page, 0):
-            live.start(page)
+            live.start(page, page.shot.equal_cost)
         self.index = index
         self.stage = "watching"
         if live.stepping != self._stepping:

@@ -161,9 +161,10 @@ class Live(Source):
 
     # Changes of the run
 
-    def start(self, scene: Scene) -> None:
-        """Begin a new run; if its start and h alone are new, the scene keeps its name.
+    def start(self, scene: Scene, equal_cost: bool | None = None) -> None:
+        """Begin a new run, at equal cost if asked or if the last one is.
 
+        If its start and h alone are new, the scene keeps its name.
         Raises InputError for a step too large at equal cost, or OwnMethodError; then nothing has
         changed.
         """
@@ -172,7 +173,9 @@ class Live(Source):
         if scene == altered and scene != before:
             name = before.name.removesuffix(ALTERED) + ALTERED
             scene = replace(scene, name=name)
-        stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
+        if equal_cost is None:
+            equal_cost = self.stepping.equal_cost
+        stepping = Stepping(scene.h, equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
         self._runs += 1
         with _limited(scene):

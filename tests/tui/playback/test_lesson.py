@@ -44,6 +44,7 @@ def test_a_page_begins_with_its_scene_speed_and_cost_whatever_the_lab_did_before
     live.change(live.stepping.toggled())
     lesson.begin(live, 1)
     assert (live.scene, live.playhead.speed, live.stepping) == (TELLS, 4.0, Stepping(0.2))
+    assert len(live.changes) == 1  # that at the start
     lesson.begin(live, 2)
     assert live.stepping.equal_cost
     assert (live.stepping.smallest, live.ghost) == (SHOWS.h, None)
