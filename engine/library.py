@@ -291,7 +291,7 @@ def limits(
 
     chosen = _general(scene, methods, numbers)
     theta = amplitude(chosen)
-    if theta is None or not chosen.equations.turns:
+    if theta is None or chosen.equations.is_linear:
         raise InputError("limits are those of a pendulum that swings; use another start or scene.")
     grid = ladder_of(chosen, [theta], None, _whole("steps", steps))
     found = []

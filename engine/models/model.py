@@ -250,6 +250,7 @@ class Model(ABC):
     equation: ClassVar[str]  # for people
     parameters: ClassVar[tuple[Number, ...]] = ()  # the fields after w0_squared, in order
     turns: ClassVar[bool]  # theta + 2 pi is the same place, and it can go over the top
+    is_linear: ClassVar[bool] = False  # a stable step stays stable, and none is chaotic
     offers: ClassVar[tuple[Offer, ...]] = ("force", "parts")
     counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, as force evaluations
     rigid: ClassVar[bool] = True  # the bob stays at one distance from the pivot

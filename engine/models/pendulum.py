@@ -230,6 +230,7 @@ class LinearOscillator(Model):
     key = "linear"
     equation = "theta'' = -w0² theta"
     turns = False
+    is_linear = True
 
     def force(self, sin: Sine = math.sin) -> Force:
         w0_squared = self.w0_squared

@@ -248,7 +248,7 @@ class _Orbit(Stretching):
         self._z = abs(h) * model.w0 * method.longest_substep
         self._swing = model.w0 * period  # rad; the longer, the nearer to upright
         self._periodic_in_omega = method.order <= 2  # with the period 2 pi/h
-        self._linear = not model.turns
+        self._linear = model.is_linear
         bottom = at_bottom(method, h * model.w0)
         # |trace| < 2: small swings move on ellipses
         self._stable = abs(bottom.theta_theta + bottom.omega_omega) < 2

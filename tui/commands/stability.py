@@ -43,7 +43,7 @@ from pendu_tui.tui.commands.report import (
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
-    if not scene.equations.turns:
+    if scene.equations.is_linear:
         raise UserError("the limits of the linear oscillator are those in pendu-tui methods.")
     form = check_output(options)
     axes = map_of if form == "csv" else ladder_of

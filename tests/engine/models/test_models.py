@@ -111,6 +111,8 @@ def test_a_model_says_what_is_special_about_its_motion(model):
     assert differing == 4 * (not model.conserves_energy)
     kept = energy(model.exact_phase(1.0, 0.0, 2.0)) == pytest.approx(energy(model.start(1.0, 0.0)))
     assert model.conserves_energy == kept
+    single, double = (model.exact(theta, 0.0).at(0.7).theta for theta in (1.0, 2.0))
+    assert model.is_linear == (double == pytest.approx(2 * single))
     assert model.has_separatrix == (model.key == "pendulum")
     assert {*map(type, Pendulum(9.81).observe(np.float32((1, 2)))[:2])} == {float}
 

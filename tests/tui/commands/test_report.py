@@ -21,7 +21,7 @@ def test_a_table_is_folded_to_the_terminal_and_keeps_every_word(is_terminal, wid
     out = io.StringIO()
     out.isatty = lambda: is_terminal
     monkeypatch.setattr("sys.stdout", out)
-    usual = partial(Console, height=9, color_system=None)
+    usual = partial(Console, height=9, color_system=None, legacy_windows=False)
     monkeypatch.setattr(report, "Console", lambda width, **more: usual(width=width or 30, **more))
     Report(name="test", columns=COLUMNS, rows=ROWS, fields={}).show("table")
     table = out.getvalue()
