@@ -158,12 +158,13 @@ async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_i
             assert pane.cursor == end
         assert pane.text.splitlines()[1].count("@") == 2
         await pilot.press("escape", *["right"] * 7, "up", "enter")
+        await until(pilot, lambda: live.scene != SCENES["drift"])
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
         assert (live.scene.theta, live.scene.omega) == (pane.grid.theta[theta + 1], 0)
         assert pane.cursor is None
         assert pane.aim(VERLET) == (z + 7, theta + 1)
         await pilot.press("u")
-        assert live.scene == SCENES["drift"]
+        await until(pilot, lambda: live.scene == SCENES["drift"])
         live.start(SCENES["spin"])  # which has no amplitude
         await until(pilot, lambda: pane.aim(VERLET) is None)
         await pilot.press("right")
