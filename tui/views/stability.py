@@ -191,7 +191,7 @@ def outcome(cell: Any) -> str:
         return fate
     if is_lost(cell):
         return f"{fate}, step {cell['steps'] + 1}"
-    return f"{fate}, error {cell['error']:.0e}".replace("e-0", "e-")
+    return f"{fate}, error {cell['error']:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
 def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: float) -> str:

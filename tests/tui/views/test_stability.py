@@ -15,6 +15,7 @@ from pendu_tui.engine.scenes import SCENES
 from pendu_tui.engine.studies.stability import (
     CELL,
     CHAOTIC,
+    ELSEWHERE,
     GROWS,
     HOLDS,
     LOSES,
@@ -98,6 +99,7 @@ def test_colours_of_held_lost_and_unknown_swings_differ_for_every_method(theme: 
 LADDER = Grid(np.array([math.pi / 2]), np.array([0.5, 1.0, 1.5, 2.0, 2.5]), 300, (RK4,))
 OUTCOMES = {
     "h": (300, 1e-3, HOLDS),
+    "b": (300, 70.0, ELSEWHERE),
     "e": (300, 2e-2, HOLDS),
     "c": (300, 0.2, CHAOTIC),
     "o": (40, 0.9, OVER_THE_TOP),
@@ -114,6 +116,7 @@ OUTCOMES = {
         ("hecog", 3, "1 s, 90°: over the top, step 41; held at h 0.5 s"),
         ("hecog", 4, "1.25 s, 90°: grows, step 4; held at h 0.5 s"),
         ("hhhhh", 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
+        ("bbbbb", 0, "0.25 s, 90°: held elsewhere, error 7e1; held at every h on this map"),
         ("ggggg", 0, "0.25 s, 90°: grows, step 4; lost at every h on this map"),
         ("h????", 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),
         ("?????", 0, "0.25 s, 90°: not computed yet"),
