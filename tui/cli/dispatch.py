@@ -45,14 +45,18 @@ examples:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code.  Only a bug shows a traceback."""
-    code = _main(arguments)
+    if arguments is not None:
+        return _main(arguments)
+    repeat_swallowed_interrupts()
+    gc.disable()  # until all is imported, which leaves nothing to collect
+    code = _main(sys.argv[1:])
     others = set(threading.enumerate()) - {threading.main_thread()}
-    if arguments is None and not all(thread.daemon for thread in others):
+    if not all(thread.daemon for thread in others):
         os._exit(code)  # the interpreter would wait for threads of a user's method
     return code
 
 
-def _main(arguments: Sequence[str] | None) -> int:
+def _main(arguments: Sequence[str]) -> int:
     if sys.stderr is None:  # the shell has closed it
         sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115  # until the exit
     if sys.stdout is None:
@@ -64,11 +68,8 @@ def _main(arguments: Sequence[str] | None) -> int:
                 encoding = os.environ.get("PYTHONIOENCODING", "utf-8").partition(":")[0]
                 stream.reconfigure(encoding=encoding, newline="\n")
             stream.reconfigure(errors="replace")  # terminals without θ show a ?
-    if arguments is None:
-        repeat_swallowed_interrupts()
-        gc.disable()  # until all is imported, which leaves nothing to collect
     try:
-        code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
+        code = _dispatch(list(arguments))
         sys.stdout.flush()
         return code
     except BrokenPipeError:

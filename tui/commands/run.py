@@ -51,9 +51,9 @@ def run(options: Namespace) -> int:
     if options.time is None:
         raise UserError("--time is missing; use for example --time 60.")
     gate = parse(options.fail_if, cast=scenes[0].cast)
-    h = max(scene.h for scene in scenes)
-    if steps_for(scenes[0].altered(h=h), options.time) == 0:
-        raise UserError(f"--time {options.time:g} s is shorter than one step of {h:g} s.")
+    coarsest = max(scenes, key=lambda scene: scene.h)
+    if steps_for(coarsest, options.time) == 0:
+        raise UserError(f"--time {options.time:g} s is shorter than one step of {coarsest.h:g} s.")
     form = check_output(options)
     if len(scenes) == 1:
         return run_one(scenes[0], options, gate)
