@@ -37,7 +37,11 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
     assert happened == happens
 
 
-def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_error_of_the_method():
+def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_error_of_the_method(
+    monkeypatch,
+):
+    begun = []
+    monkeypatch.setattr(watchdog, "watchdog", lambda: begun.append("watchdog"))
     line = compile("\nfound = find()", "mine.py", "exec")
     found = {"__name__": "own_method", "find": watchdog._place_in_main}
     exec(line, found)
@@ -45,7 +49,7 @@ def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_erro
     watchdog.USER_CODE.depth = 1  # an interrupt came while a step began
     with pytest.raises(OwnMethodError, match="takes more than 3 s"), watchdog.limited():
         raise TooLongError
-    assert watchdog.USER_CODE.depth == 0
+    assert (begun, watchdog.USER_CODE.depth) == (["watchdog"], 0)
     watchdog._interrupt()  # comes too late
     with pytest.raises(TooLongError), watchdog.USER_CODE:
         watchdog._interrupt()
