@@ -155,7 +155,7 @@ class Judge:
 
     def _add_evidence(self, point: LookPoint) -> None:
         """Complete the judgement by what is known at each look point."""
-        found = self.judgement._replace(periods=self._swings)
+        found = self.judgement
         if self._orbit:
             verdict = self._orbit.verdict(found.verdict, self.peak, self._swings)
             found = found._replace(verdict=verdict)

@@ -104,7 +104,6 @@ class Judgement(NamedTuple):
     verdict: str = UNDECIDED
     slope: float | None = None
     uncertainty: float | None = None  # of the slope: 68 % lie within
-    periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s, where the verdict rests on it
     progress: Progress | None = None  # while it is known what is missing
     bound: float | None = None  # |slope| is below it with a probability of 99 %

@@ -80,7 +80,7 @@ class Replay(Source):
         """Return what is known of a method, so many steps after a change, by its last verdict."""
         if self.sample.readings[index].diverged_at is not None:
             return Judgement(FAILED)
-        found = Judgement(periods=steps * abs(self.stepping.h) / self._judging.period)
+        found = Judgement()
         if last is not None:
             found = found._replace(verdict=last.verdict, lyapunov=last.lyapunov)
             return found._replace(slope=last.trend, is_evident=last.trend is not None)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from pendu_tui.engine.methods import USUAL_CAST, Cast, Method
 from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.stepping import change_before
 from pendu_tui.engine.run.verdicts import (
     BOUNDED,
     CHAOTIC,
@@ -170,16 +171,15 @@ def milestone_insight(milestone: Milestone, conserved: bool) -> Insight:
 def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     """Return the insight on the bounded methods, if there are any."""
     judged = zip(source.scene.cast, source.judgements, strict=True)
-    found = {m: j.periods for m, j in judged if j.verdict == BOUNDED and m.key not in hidden}
+    found = [m for m, j in judged if j.verdict == BOUNDED and m.key not in hidden]
     if not found:
         return None
     *others, last = map(short_name, found)
     names = f"{last} stays"
     if others:
         names = f"{', '.join(others)} and {last} stay"
-    period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
-    since = about(min(found.values()) * period)
-    return Insight(BOUNDED, f"{names} bounded over {since}.")
+    change = change_before(source.changes, source.sample.step)  # judging began there
+    return Insight(BOUNDED, f"{names} bounded over {about(abs(source.sample.t - change.t))}.")
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
