@@ -43,7 +43,6 @@ class DampedPendulum(Pendulum):
     )
     offers = ("parts", "rates")
     has_separatrix = False
-    conserves_energy = False
     error = ENERGY_RATIO
     caption = "curves of equal energy; damped motion crosses them inwards"
     without_force = "Maps and studies are for a pendulum with no friction, which keeps its energy."

@@ -256,8 +256,7 @@ class Model(ABC):
     rigid: ClassVar[bool] = True  # the bob stays at one distance from the pivot
     variables: ClassVar[tuple[Quantity, ...]] = ()  # besides those of QUANTITIES
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
-    conserves_energy: ClassVar[bool] = True  # else energy errors are ln(E/E_true)
-    error: ClassVar[Quantity] = ENERGY_ERROR  # its energy error, or ENERGY_RATIO
+    error: ClassVar[Quantity] = ENERGY_ERROR  # ENERGY_RATIO, if it does not conserve its energy
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
     caption: ClassVar[str] = ""  # of a phase portrait that does not follow curves of equal energy
@@ -271,6 +270,11 @@ class Model(ABC):
         """Return the quantities that charts can show, the energy error first."""
         own = (each for each in cls.variables if each.chart.title)
         return cls.error, *own, *CHARTED[1:]
+
+    @property
+    def conserves_energy(self) -> bool:
+        """Whether it conserves its energy; else energy errors are ln(E/E_true)."""
+        return self.error is ENERGY_ERROR
 
     @property
     def w0(self) -> float:
