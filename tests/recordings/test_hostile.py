@@ -2,40 +2,28 @@
 
 import time
 
-import pytest
-
-from pendu_tui.recordings.events import Event
 from pendu_tui.recordings.files import MAGIC
 from pendu_tui.recordings.format import EVENTS
-from tests.recordings.hostile import begun, encoded, false_head, first_sample, write
+from tests.recordings.hostile import begun, false_head, write
 from tests.tui.command_line import pendu
 
 MAX_SECONDS = 10.0  # on a busy machine
-LATER = [encoded(first_sample()._replace(step=step), 0.5 + step / 30) for step in range(1, 40)]
-FILES = {
-    "a huge message": lambda: begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]),
-    "h of 0": lambda: begun(encoded(Event("set_h", 1, 0, 0.0, h=0.0), 0.5), *LATER),
-}
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_a_hostile_file_is_answered_in_time_with_a_sentence(tmp_path, name):
+def test_a_huge_message_is_answered_in_time_with_a_sentence(tmp_path):
     path = tmp_path / "hostile.mcap"
-    write(path, FILES[name]())
+    write(path, begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]))
     for command in (
         ("verify", path),
         ("recordings", "show", path),
-        ("recordings", "recover", path, "-o", tmp_path / "out.mcap", "--force"),
-        ("export", path, "-o", tmp_path / "out.csv", "--force"),
+        ("recordings", "recover", path, "-o", tmp_path / "out.mcap"),
+        ("export", path, "-o", tmp_path / "out.csv"),
     ):
         began = time.process_time()
         answer = pendu(*command)
         assert time.process_time() - began < MAX_SECONDS
         assert answer.code in (0, 1, 3)
         assert (answer.out + answer.err).replace("\n", "").isprintable()
-    if name == "h of 0":
-        assert pendu("verify", path).refused(3, "cannot have been recorded")
-        assert pendu("replay", path, "--plain").code == 3
 
 
 def test_work_is_proportional_to_the_size_of_a_file_of_false_chunks(tmp_path):

@@ -117,11 +117,17 @@ def test_a_file_that_is_emptied_while_it_is_read_is_one_sentence(tmp_path):
                 recording.sample(place)
 
 
-def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
-    incomplete = hostile.encoded(hostile.first_sample(2))[:-1]
-    entries = hostile.begun(hostile.encoded(start(2)), incomplete)
-    hostile.write(tmp_path / "a.mcap", entries)
-    with pytest.raises(RecordingError, match="a sample is incomplete"):
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ([start(2), hostile.first_sample(2)], "a sample is incomplete"),
+        ([Event("set_h", 1, 0, 0.0, h=0.0)], "run 1 cannot have been recorded: h = 0 s"),
+    ],
+)
+def test_a_sample_that_lacks_a_method_and_a_step_of_no_length_are_refused(tmp_path, more, why):
+    *entries, last = map(hostile.encoded, more)
+    hostile.write(tmp_path / "a.mcap", hostile.begun(*entries, last[:3]))
+    with pytest.raises(RecordingError, match=why):
         Recording.open(tmp_path / "a.mcap")
 
 
