@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import partial, wraps
 from numbers import Integral
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pendu_tui.engine import methods as listed
 from pendu_tui.engine import scenes
@@ -35,7 +35,7 @@ MAX_READINGS = 10_000_000  # of all methods of a run: 320 MB
 T = TypeVar("T")
 
 
-class ByMethod(dict[str, T], Generic[T]):
+class ByMethod(dict[str, T]):
     """One value for each method, by any name or the start of its key."""
 
     def __init__(self, methods: Cast, values: Iterable[T]) -> None:
