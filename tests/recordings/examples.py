@@ -1,6 +1,9 @@
 """Small recordings for tests, the same each time."""
 
+import struct
 from pathlib import Path
+
+import zstandard
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
@@ -90,3 +93,10 @@ def run_of(scene: Scene, *acts: int | Stepping):
             entries += [Entry(clock, value) for value in (lockstep.sample(), *found)]
             noted = len(lockstep.milestones)
     return entries
+
+
+def false_head(packed: int = 4_000_000):
+    """The head of a chunk that claims to have so many bytes, and 4 MB of contents."""
+    frame = zstandard.ZstdCompressor().compress(bytes(4_000_000))[:18]
+    numbers = (6, packed + 44, 1, 2, 4_000_000, 1, b"\x04\x00\x00\x00zstd", packed)
+    return struct.pack("<BQQQQI8sQ", *numbers) + frame

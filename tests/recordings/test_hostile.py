@@ -4,7 +4,8 @@ import time
 
 from pendu_tui.recordings.files import MAGIC
 from pendu_tui.recordings.format import EVENTS
-from tests.recordings.hostile import begun, false_head, write
+from pendu_tui.recordings.recorder import Recorder
+from tests.recordings.examples import false_head, two_runs
 from tests.tui.command_line import pendu
 
 MAX_SECONDS = 10.0  # on a busy machine
@@ -12,7 +13,10 @@ MAX_SECONDS = 10.0  # on a busy machine
 
 def test_a_huge_message_is_answered_in_time_with_a_sentence(tmp_path):
     path = tmp_path / "hostile.mcap"
-    write(path, begun([(EVENTS, 1.0, b'{"text": "' + b"x" * (1 << 27) + b'"}')]))
+    with Recorder(path) as recorder:
+        for clock, value in two_runs()[:2]:
+            recorder.add(value, clock)
+        recorder._write([(EVENTS, b'{"text": "' + b"x" * (1 << 27) + b'"}')], 1.0)
     for command in (
         ("verify", path),
         ("recordings", "show", path),

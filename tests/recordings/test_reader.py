@@ -19,8 +19,7 @@ from pendu_tui.recordings.format import without_extremes
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
-from tests.recordings import hostile
-from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
+from tests.recordings.examples import SCENE, false_head, record, samples_of, start, two_runs
 
 FOOTER = reader._FOOTER
 INDEX = struct.Struct("<BQQQQ")  # opcode, length, start [ns], end [ns], offset
@@ -76,11 +75,11 @@ def test_each_limit_is_met_on_both_sides(path, monkeypatch):
     [((1 << 22) - 44, (1 << 22) - 43), (31_078, 31_077)],  # 4 MB at once, 4 MB of a 128th
 )
 def test_a_chunk_that_claims_more_bytes_than_recorders_write_is_none(right, wrong):
-    assert reader._sizes_in(hostile.false_head(right))
+    assert reader._sizes_in(false_head(right))
     with pytest.raises(ValueError, match=r"^$"):
-        reader._sizes_in(hostile.false_head(wrong))
+        reader._sizes_in(false_head(wrong))
     for at in (0, 1, 25, 37):  # opcode, length, size of its contents, compression
-        head = bytearray(hostile.false_head(right))
+        head = bytearray(false_head(right))
         head[at] ^= 1
         with pytest.raises(ValueError, match=r"^$"):
             reader._sizes_in(bytes(head))
@@ -138,8 +137,10 @@ def test_even_a_recording_of_rest_which_zstd_shrinks_most_stays_far_below_the_li
 
 def test_a_chunk_in_which_time_runs_back_or_lasts_for_centuries_is_lost(out):
     for last, passes in ((2.0, True), (1.0, False), (9e9, True), (1e10, False)):
-        marks = (hostile.encoded(Event("mark", 1, 0, 0.0), clock) for clock in (2.0, last))
-        hostile.write(out, hostile.begun(*marks))
+        marks = [(clock, Event("mark", 1, 0, 0.0)) for clock in (2.0, last)]
+        with Recorder(out, overwrite=True) as recorder:
+            for clock, value in (*two_runs()[:2], *marks):
+                recorder.add(value, clock)
         assert is_whole(out) == passes
 
 

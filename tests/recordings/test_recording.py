@@ -11,8 +11,8 @@ from mcap.writer import Writer
 from pendu_tui.recordings.events import Entry, Event, arithmetic_here
 from pendu_tui.recordings.files import GOLDEN, RecordingError
 from pendu_tui.recordings.format import without_extremes
+from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.recording import Recording, Run, SamplePlace
-from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, samples_of, start, two_runs
 
 
@@ -117,18 +117,21 @@ def test_a_file_that_is_emptied_while_it_is_read_is_one_sentence(tmp_path):
                 recording.sample(place)
 
 
-@pytest.mark.parametrize(
-    ("more", "why"),
-    [
-        ([start(2), hostile.first_sample(2)], "a sample is incomplete"),
-        ([Event("set_h", 1, 0, 0.0, h=0.0)], "run 1 cannot have been recorded: h = 0 s"),
-    ],
-)
-def test_a_sample_that_lacks_a_method_and_a_step_of_no_length_are_refused(tmp_path, more, why):
-    *entries, last = map(hostile.encoded, more)
-    hostile.write(tmp_path / "a.mcap", hostile.begun(*entries, last[:3]))
-    with pytest.raises(RecordingError, match=why):
-        Recording.open(tmp_path / "a.mcap")
+def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
+    path, sample = tmp_path / "a.mcap", two_runs()[1].value
+    with Recorder(path) as recorder:
+        for value in (start(), sample):
+            recorder.add(value, 0.0)
+        recorder._begin(SCENE.with_cast(SCENE.cast[:3]))
+        recorder.add(sample._replace(step=1, readings=sample.readings[:3]), 0.5)
+    with Recording.open(path) as recording:
+        assert (recording.damaged, recording.reason) == (True, "a sample is incomplete")
+
+
+def test_a_step_of_no_length_is_refused(tmp_path):
+    entries = [*two_runs()[:2], Entry(0.5, Event("set_h", 1, 0, 0.0, h=0.0))]
+    with pytest.raises(RecordingError, match="run 1 cannot have been recorded: h = 0 s"):
+        Recording.open(record(tmp_path / "a.mcap", entries))
 
 
 def test_the_way_of_a_run_grows_also_while_time_runs_back():

@@ -8,7 +8,6 @@ import pytest
 
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
-from tests.recordings import hostile
 from tests.recordings.examples import SCENE, record, start, two_runs
 from tests.tui.command_line import pendu
 
@@ -97,7 +96,7 @@ def test_of_many_scenes_the_first_is_named(names, listed, library):
     with Recorder(library / "tour.mcap") as recorder:
         for run, name in enumerate(names, 1):
             recorder.add(start(run, replace(SCENE, name=name)), float(run))
-            recorder.add(hostile.first_sample(run), float(run))
+            recorder.add(two_runs()[1].value._replace(run=run), float(run))
     assert f"B  {listed}" in pendu("recordings").out
 
 
