@@ -83,20 +83,19 @@ def panel(
     *,
     title: str,
     here: tuple[float, float] | None = None,
-    w0: float = 1.0,
 ) -> list[Row]:
     """Draw one method's panel: a title, the map of its scores (z, theta), and the axes.
 
-    The frame's axes are h = z/w0 [s] and theta [rad]; `here` is a (z, theta) to mark.
+    The frame's axes are z and theta [rad]; `here` is a (z, theta) to mark.
     """
     lines = _blocks(worst(values, frame.columns, 2 * frame.rows), ink, palette)
     signs = list(theory(method, frame.rows))
     if here:
         signs.append((*here, HERE))
     for z, theta, sign in signs:
-        if z / w0 <= frame.x_axis.high:
+        if z <= frame.x_axis.high:
             line = lines[frame.row(theta)]
-            column = frame.column(z / w0)
+            column = frame.column(z)
             _, ink_below = line[column]
             line[column] = sign, ink_below + Style(color=palette.text, reverse=sign == HERE)
     width = frame.left + frame.columns
@@ -304,7 +303,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
             palette(self.app.theme),
             title=(title + words).rstrip(": "),
             here=here,
-            w0=self.source.scene.w0,
         )
 
     @property
@@ -313,8 +311,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
         lines = -(-len(self.places) // 2) or 1
         rows = max((self.room.height - 2 - len(self._legend)) // lines - 2, 1)
         columns = max((self.room.width - 2) // 2 - LEFT, 1)
-        max_h = MAX_Z / self.source.scene.w0
-        x_axis = Axis(0.0, max_h, number_ticks(0.0, max_h, max(columns // 9, 2)))
+        w0 = self.source.scene.w0
+        ticks = number_ticks(0.0, MAX_Z / w0, max(columns // 9, 2))  # h [s]
+        x_axis = Axis(0.0, MAX_Z, {h * w0: text for h, text in ticks.items()})
         step = 45 if rows >= 5 else 90
         degrees = {math.radians(each): str(each) for each in range(0, 180, step)}
         return Frame(x_axis, Axis(0.0, math.pi, degrees), columns, rows)
