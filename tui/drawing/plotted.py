@@ -173,16 +173,18 @@ def record_chart(
     labels = number_ticks(first, last, max(columns // 12, 1))
     labels[max(labels)] += f" {unit}".rstrip()
     chart = LineChart(Axis(first, last, labels), y_axis, columns, rows)
-    across = np.linspace(first, last, columns)
-    dotted = [(QUIET, np.linspace(edge[0], edge[1], columns)) for edge in edges]
-    if slope is not None:
-        dotted.append((TREND, np.linspace(trend[0], trend[1], columns)))
-    for ink, x, y, is_dotted in (
-        (ENERGY, *_spans(times, errors, DOTS * columns), False),
-        *((ink, across, values, True) for ink, values in dotted),
-    ):
-        curve = (chart.right(x).tolist(), chart.up(y).tolist(), is_dotted)
+
+    def draw(ink: int, x: Floats, y: Floats, *, dotted: bool) -> None:
+        curve = (chart.right(x).tolist(), chart.up(y).tolist(), dotted)
         chart.canvas.braille(plotted([curve], chart.width, rows), ink)
+
+    draw(ENERGY, *_spans(times, errors, DOTS * columns), dotted=False)
+    lines = [(QUIET, edge) for edge in edges]
+    if slope is not None:
+        lines.append((TREND, trend))
+    for ink, (begin, end) in lines:
+        x = np.linspace(first, last, columns)
+        draw(ink, x, np.linspace(begin, end, columns), dotted=True)
     return Picture([[(title[:width].ljust(width), TEXT)], *chart.framed()])
 
 
