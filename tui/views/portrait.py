@@ -40,7 +40,7 @@ Word = tuple[int, int, str]  # column, row, text
 Floats = NDArray[np.float64]
 SPARSE = 60  # shorter trails are drawn thick, or they would be lost among the curves
 BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
-CHORDS = 24  # steps
+CHORDS = 24  # points of a trail that are joined
 DISC = 2.2  # dots: discs on each other have a cell for each of four methods
 # where to write a letter, in columns and rows from its point
 BESIDE: Sequence[tuple[int, int]] = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
@@ -85,7 +85,7 @@ class PhasePoint(NamedTuple):
     ink: int
     letter: str
     trail: Points = (np.zeros(0), np.zeros(0))
-    chords: int = 0  # how many of the trail's last points are joined
+    joined: bool = False  # the last points of the trail
     ring: Points | None = None
 
 
@@ -113,9 +113,9 @@ def phase_picture(
     for point in points:
         thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
         draw_dots(canvas, viewport, point.trail, thick, faint(point.ink))
-        if point.chords:
-            joined = [each[-point.chords :] for each in point.trail]
-            canvas.path(*on_screen(viewport, *joined), faint(point.ink))
+        if point.joined:
+            last = [each[-CHORDS:] for each in point.trail]
+            canvas.path(*on_screen(viewport, *last), faint(point.ink))
         if point.ring is not None:
             closed = [np.append(each, each[0]) for each in point.ring]
             canvas.path(*on_screen(viewport, *closed), point.ink)
@@ -188,7 +188,6 @@ def method_points(
         reading = sample.readings[place]
         h = abs(own[place])
         is_each_step_seen = h * FPS >= abs(source.playhead.speed)
-        chords = CHORDS if is_each_step_seen and 0.3 <= h * source.scene.w0 <= 1 else 0
         points.append(
             PhasePoint(
                 reading.theta,
@@ -196,7 +195,7 @@ def method_points(
                 colours[place],
                 cast[place].letter,
                 trail=(trails[:, place, 0], trails[:, place, 1]),
-                chords=chords,
+                joined=is_each_step_seen and 0.3 <= h * source.scene.w0 <= 1,
                 ring=ring.rings[place] if ring else None,
             )
         )

@@ -246,15 +246,12 @@ class Stage(Pane):
             widest = pi
         look = Look(
             widest=lens(widest),
+            exact=nan if held else lens(source.exact.at(sample.t).theta),
+            exact_length=model.exact_length(scene.theta, scene.omega, sample.t),
             amplitude=lens(amplitude(model, scene.theta, scene.omega)),
             rigid=model.rigid,
             joins=abs(source.stepping.h) * model.fastest <= 1,
         )
-        if not held:
-            look = look._replace(
-                exact=lens(source.exact.at(sample.t).theta),
-                exact_length=model.exact_length(scene.theta, scene.omega, sample.t),
-            )
         self._drawn = self._bobs(source, sample, lens), look
         self._write_titles(lens, held)
         return stage_picture(*self.room, *self._drawn)

@@ -161,4 +161,4 @@ def test_steps_are_joined_that_are_neither_close_nor_far_apart(z, speed, joined)
     live = after(DRIFT.altered(h=z / DRIFT.w0), 0)
     live.playhead.speed = speed
     points = method_points(live, live.sample, Shown(), None)
-    assert {point.chords > 0 for point in points} == {joined}
+    assert {point.joined for point in points} == {joined}
