@@ -203,7 +203,7 @@ class Pane(CellWidget):
     @property
     def settled(self) -> bool:
         """Whether all that it shows has been computed."""
-        return self.sample is not None and all(worker.is_finished for worker in self.workers)
+        return all(worker.is_finished for worker in self.workers)
 
     def retry(self) -> None:
         """Compute again what failed."""
