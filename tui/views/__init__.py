@@ -18,9 +18,8 @@ VIEWS = {
 
 def create(name: str) -> "View":
     """Return a view, whose module is imported when it is first shown."""
-    module = import_module(f"{__name__}.{name}")
-    widget: type[View] = getattr(module, f"{name.title()}View")
-    return widget(name)
+    view: View = import_module(f"{__name__}.{name}").view(name)
+    return view
 
 
 def following(name: str) -> str:

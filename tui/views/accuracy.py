@@ -253,5 +253,5 @@ class AccuracyPane(Chooser[Point]):
         self.post_message(StepSizeChosen(self.source.stepping.with_own(place.method, place.h)))
 
 
-class AccuracyView(StudyView):
-    PANE = AccuracyPane
+def view(name: str) -> StudyView:
+    return StudyView(name, AccuracyPane())

@@ -227,8 +227,7 @@ class PaneLayout(Layout):
 
 
 class LabView(View):
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
+    def __init__(self, name: str) -> None:
         self._named: dict[str, Pane] = {
             "stage": Stage(),
             "phase": PhasePane(),
@@ -236,14 +235,18 @@ class LabView(View):
             "chart": TimeChart(),
             "second_chart": TimeChart(ahead=1),
         }
-        self.panes = [*self._named.values(), ErrorTable()]
+        super().__init__(name, *self._named.values(), ErrorTable())
 
     def compose(self) -> ComposeResult:
-        arranged = Box(*self._named.values(), id="panes")
-        arranged.styles.set_rule("layout", PaneLayout(self._named))
-        yield arranged
-        yield self.panes[-1]
+        *arranged, table = self.panes
+        box = Box(*arranged, id="panes")
+        box.styles.set_rule("layout", PaneLayout(self._named))
+        yield box
+        yield table
 
     def zoom(self, factor: float) -> None:
         charts = list(self.query(TimeChart))
         next((each for each in charts if each.pointer is not None), charts[0]).zoom(factor)
+
+
+view = LabView

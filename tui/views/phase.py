@@ -253,12 +253,9 @@ class AreaTable(ErrorTable):
         return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
 
 
-class PhaseView(StudyView):
-    PANE = SectionPane
-
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
-        self.panes.append(AreaTable(self.pane))
+def view(name: str) -> StudyView:
+    pane = SectionPane()
+    return StudyView(name, pane, AreaTable(pane))
 
 
 def area_text(ratio: float) -> str:

@@ -353,5 +353,5 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return z, int((frame.rows - row - 0.5) / frame.rows * len(self.grid.theta))
 
 
-class StabilityView(StudyView):
-    PANE = StabilityPane
+def view(name: str) -> StudyView:
+    return StudyView(name, StabilityPane())

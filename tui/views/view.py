@@ -84,9 +84,12 @@ class Box(Container):
 class View(Box):
     """Has panes, which its screen shows each sample."""
 
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self.panes: list[Pane] = []
+    def __init__(self, name: str, *panes: "Pane") -> None:
+        super().__init__(id=name)
+        self.panes = panes
+
+    def compose(self) -> ComposeResult:
+        yield from self.panes
 
     def zoom(self, factor: float) -> None:
         """Zoom the chart over time, if the view has one."""
@@ -290,21 +293,11 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
 
 class StudyView(View):
-    """A view whose pane gets the focus."""
-
-    PANE: ClassVar[type[Chooser[Any]]]
-
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
-        self.pane: Any = self.PANE()
-        self.panes.append(self.pane)
-
-    def compose(self) -> ComposeResult:
-        yield from self.panes
+    """A view whose first pane gets the focus."""
 
     def retry(self) -> None:
         super().retry()
-        self.screen.set_focus(self.pane)  # before the next key
+        self.screen.set_focus(self.panes[0])  # before the next key
 
     def on_show(self) -> None:
-        self.pane.focus()
+        self.panes[0].focus()

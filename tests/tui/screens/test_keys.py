@@ -150,7 +150,7 @@ async def test_a_click_on_a_row_an_event_a_chart_or_a_title_does_what_the_keys_d
         assert "run 1;" in theatre.notices[-1]
         await theatre.click("PhasePane", 5, 0)
         assert (theatre.stage.view, theatre.sample.run) == ("phase", 2)
-        pane = theatre.pane("PhaseView PhasePane")
+        pane = theatre.pane("#phase PhasePane")
         pane.failure = "It failed."
         await theatre.press("f2", "f3")
         assert not pane.failure

@@ -52,7 +52,7 @@ async def test_a_view_whose_process_fails_says_so_and_computes_when_asked_again(
     monkeypatch.setattr("pendu_tui.tui.views.background.computed", once)
     async with lab() as theatre:
         await theatre.press(key_of(VIEW))
-        pane = theatre.pane(f"#{VIEW}").pane
+        pane = theatre.pane(f"#{VIEW}").panes[0]
         await until(theatre.pilot, lambda: pane.failure and len(asked) == 2)  # also for its own h
         await theatre.run(1)
         assert f"{words} Open this view again to retry." in pane.text
@@ -72,7 +72,7 @@ async def test_in_a_replay_of_somebodys_own_method_a_view_names_the_file_that_it
     assert pendu("run", "--time", 8, *option, "--record", path).code == 0
     async with player(path) as theatre:
         await theatre.press(*keys)
-        pane = theatre.pane(f"#{theatre.stage.view}").pane
+        pane = theatre.pane(f"#{theatre.stage.view}").panes[0]
         await until(theatre.pilot, lambda: pane.failure)
         await theatre.run(1)
         assert "--method FILE.py:mine" in pane.text
