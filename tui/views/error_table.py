@@ -187,14 +187,14 @@ def _ink(column: Column, line: TableLine) -> int:
 class ErrorTable(Pane):
     """Shows as many columns as fit.  The pointer on a head explains it."""
 
-    _head: Sequence[str] = ()
-
-    @property
-    def more(self) -> Sequence[Column]:
-        return ()
+    def __init__(self, more: Callable[[], Sequence[Column]] = lambda: ()) -> None:
+        """`more` returns columns after the errors."""
+        super().__init__()
+        self._more = more
+        self._head: Sequence[str] = ()
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        rows = table(source, sample, self.shown, self.room.width, self.more)
+        rows = table(source, sample, self.shown, self.room.width, self._more())
         self.styles.height = len(rows)  # hidden methods leave no gap
         self._head = [text for text, _ in rows[0]]
         return Picture(rows)

@@ -63,6 +63,14 @@ class PhasePane(Chooser[State]):
             return None
         return ring
 
+    def area_columns(self) -> Sequence[Column]:
+        """Return how each method has changed the area of the ring, if there is one."""
+        ring = self.ring
+        if ring is None:
+            return ()
+        ratios = dict(zip(self.cast, ring.area_ratios, strict=True))
+        return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
+
     @property
     def _cells(self) -> tuple[int, int]:
         # of the field; at least one, while the pane is being hidden
@@ -237,25 +245,9 @@ class SectionPane(PhasePane):
         self._section.result.add(result)
 
 
-class AreaTable(ErrorTable):
-    """Also says how each method has changed the area of the ring, if there is one."""
-
-    def __init__(self, pane: PhasePane) -> None:
-        super().__init__()
-        self._pane = pane
-
-    @property
-    def more(self) -> Sequence[Column]:
-        ring = self._pane.ring
-        if ring is None:
-            return ()
-        ratios = dict(zip(self.cast, ring.area_ratios, strict=True))
-        return [Column(9, AREA, lambda line, _: area_text(ratios[line.method]))]
-
-
 def view(name: str) -> StudyView:
     pane = SectionPane()
-    return StudyView(name, pane, AreaTable(pane))
+    return StudyView(name, pane, ErrorTable(pane.area_columns))
 
 
 def area_text(ratio: float) -> str:

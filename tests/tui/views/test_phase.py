@@ -13,7 +13,7 @@ from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Line, Scene
 from pendu_tui.engine.studies.ring import Neighbourhood
 from pendu_tui.tui.playback.live import Live
-from pendu_tui.tui.views.phase import AreaTable, PhasePane, SectionPane, area_text
+from pendu_tui.tui.views.phase import PhasePane, SectionPane, area_text
 from pendu_tui.tui.views.portrait import ring_text
 from pendu_tui.tui.views.viewport import LEFT
 from tests.tui.harness import lab, until
@@ -153,7 +153,7 @@ async def test_g_draws_a_ring_that_catches_up_in_a_paused_lab_and_takes_it_away(
         )
         assert pane.ring.area_ratios == expected.area_ratios
         theatre.stage.show_now()
-        table = theatre.pane(AreaTable)
+        table = theatre.pane("#phase ErrorTable")
         head, _, symplectic, _, rk4 = table.text.splitlines()
         assert "theta error  area/area0   theta [rad]" in head
         assert any(area in symplectic for area in (" 1 + ", " 1 - ", " 1 "))  # but for rounding
@@ -196,7 +196,7 @@ async def test_no_start_is_too_much_for_it(scene):
         pane.action_zoom(0.01)
         theatre.stage.show_now()
         pane.action_move(3, 2)
-        text = pane.text + theatre.text(AreaTable)
+        text = pane.text + theatre.text("#phase ErrorTable")
         assert "libration" in text or "rotation" in text
         assert not re.search("nan|inf", text)
 
