@@ -9,6 +9,7 @@ import pytest
 from textual import events
 
 from pendu_tui.engine.methods.own import OwnMethodError
+from pendu_tui.engine.models.model import State
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES, Line, Scene
 from pendu_tui.engine.studies.ring import Neighbourhood
@@ -97,17 +98,15 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
         keys = theatre.stage.active_bindings
         assert not {"enter", "escape"} <= {*keys}
         await theatre.press("right")
-        # a round number within half a dot of the dot beside the start's
-        assert viewport.x(pane.cursor.theta) == pytest.approx(viewport.x(1.0) + 4, abs=0.5)
+        assert pane.cursor == viewport.stepped(State(1.0, 0.0), 4, 0)
         await theatre.press("escape", "enter")
         assert (plot(pane), theatre.scene) == (plain, DRIFT)
         await theatre.press("left", "up")
-        expected = tuple(pane.cursor)
+        expected = viewport.stepped(viewport.stepped(State(1.0, 0.0), -4, 0), 0, 4)
+        assert pane.cursor == expected
         await theatre.press("z")  # around the crosshair, which is then in the middle
-        assert (pane.viewport.theta, pane.viewport.omega) == pytest.approx(expected)
-        assert pane.viewport.theta_span == pytest.approx(viewport.theta_span / 2)
-        assert viewport.x(expected[0]) == pytest.approx(viewport.x(1.0) - 4, abs=0.5)
-        assert viewport.y(expected[1]) == pytest.approx(viewport.y(0.0) - 4, abs=0.5)
+        near = viewport._replace(theta=expected.theta, omega=expected.omega)
+        assert pane.viewport == near.zoomed(0.5, *viewport.middle)
         await theatre.press("enter")
         assert state(theatre) == expected
         assert pane.cursor is None
@@ -120,11 +119,8 @@ async def test_the_wheel_zooms_around_the_pointer():
         x, y = pane.content_region.offset
         theatre.app.post_message(events.MouseScrollUp(None, x + 30, y + 2, *[0] * 6))
         await theatre.pilot.pause()
-        nearer = pane.viewport
-        assert nearer.theta_span == pytest.approx(0.8 * before.theta_span)
-        middle = 2 * (30 - LEFT) + 1, 4 * 2 + 2
-        assert nearer.theta_at(middle[0]) == pytest.approx(before.theta_at(middle[0]))
-        assert nearer.omega_at(middle[1]) == pytest.approx(before.omega_at(middle[1]))
+        nearer = before.zoomed(0.8, 2 * (30 - LEFT) + 1, 4 * 2 + 2)
+        assert pane.viewport == nearer
         await theatre.press("right", "escape")  # leaves the crosshair alone
         assert pane.viewport == nearer
         await theatre.press("escape")
