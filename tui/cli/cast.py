@@ -103,7 +103,8 @@ def _tried(source: str, key: str, file: str) -> Measured:
     process, results = started(_try, source, key, file)
     try:
         received(results, process)  # when it has started
-        found: Measured | OwnMethodError = received(results, process, MAX_SECONDS)
+        found: Measured = received(results, process, MAX_SECONDS)
+        return found
     except TimeoutError:
         why = f"takes more than {MAX_SECONDS:g} s for a trial"
         raise OwnMethodError(f"{file}: {key} {why}.") from None
@@ -112,9 +113,6 @@ def _tried(source: str, key: str, file: str) -> Measured:
     finally:
         process.kill()
         process.join()
-    if isinstance(found, OwnMethodError):
-        raise found
-    return found
 
 
 def _try(results: "Connection", source: str, key: str, file: str) -> None:

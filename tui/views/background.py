@@ -29,8 +29,6 @@ async def computed(
         process, results = started(_send_all, function, arguments)
     try:
         while (result := await asyncio.to_thread(received, results, process)) is not None:
-            if isinstance(result, Exception):
-                raise result
             yield result
     except EOFError:
         raise UserError("The process that computes for this view was ended.") from None

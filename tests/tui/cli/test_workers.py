@@ -134,10 +134,11 @@ def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.Monke
     assert pendu(*RUNS, "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
 
 
-def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
-    here = SimpleNamespace(recv=lambda: "done")
+def test_what_a_process_sends_is_awaited_and_its_errors_are_raised(monkeypatch):
+    sent = iter(["done", OwnMethodError("mine fails.")])
+    here = SimpleNamespace(recv=sent.__next__)
     process = SimpleNamespace(sentinel="ended")
-    ready = iter([[], ["ended"], [here]])
+    ready = iter([[], ["ended"], [here], [here]])
     waits = []
 
     def wait(_, seconds):
@@ -149,4 +150,6 @@ def test_a_process_is_awaited_for_so_long_but_not_after_its_end(monkeypatch):
         with pytest.raises(error):
             received(here, process, 3.0)
     assert received(here, process) == "done"
-    assert waits == [3.0, 3.0, None]
+    with pytest.raises(OwnMethodError):
+        received(here, process)
+    assert waits == [3.0, 3.0, None, None]
