@@ -393,6 +393,8 @@ def _whole(name: str, value: Any) -> int:
 def _array(name: str, values: Any) -> "Floats":
     import numpy as np
 
+    if np.ma.is_masked(values):
+        raise InputError(f"{name} has masked numbers; leave these samples out.")
     array = np.empty(0)
     with suppress(TypeError, ValueError, OverflowError):
         if not np.iscomplexobj(values):

@@ -158,6 +158,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
             (lambda e=e: judge([1, 2], e), "energies must be a list")
             for e in ([10**400, 1], [1j, 1])
         ),
+        (lambda: judge(TIMES, np.ma.masked_greater(WAVE, 10)), "energies has masked numbers"),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="frist"), "no scale 'frist': did you mean first"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),
