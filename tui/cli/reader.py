@@ -276,16 +276,53 @@ Prints = dict[str, tuple[str, int]]
 """The unit of each name that is printed in a line, and where its value begins."""
 
 
+class _Table(Sheet):
+    """The rows below one head, and how the next row may look."""
+
+    def __init__(self, wanted: Wanted) -> None:
+        super().__init__(wanted)
+        self.form: Form = (None, -1, "")
+        self.cells: dict[int, str] = {}  # the units in its fields
+        self.page: dict[str, list[list[str]]] = {}  # its head, which may be repeated on each page
+
+    def like_last(self, line: str) -> list[str] | None:
+        """Return the fields of a line that looks like the last row, None of another."""
+        delimiter, width, opening = self.form
+        fields = _split(line, delimiter)
+        if opening and len(fields) != width:
+            fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
+        if len(fields) != width or not line.startswith(opening):
+            return None
+        if (not delimiter and "," in line) or line.lstrip()[:1] in _MARKS:
+            return None
+        return None if self.cells and _units_in(fields) != self.cells else fields
+
+    def values(self, fields: list[str]) -> list[float | None]:
+        """Return the number, or that of its mark, in each field that is kept."""
+        values = [number(fields[place]) for place in self.kept]
+        for place in self.marks:
+            values[self.kept.index(place)] = zlib.crc32(fields[place].encode())
+        return values
+
+    def put_odd(self, line: int, numbers: Sequence[float | None], opening: str) -> None:
+        """Add what is certain of a row that is not quite like the others, or count it."""
+        if not self.names or opening != self.form[2] or not (opening or numbers[0] is not None):
+            return
+        if any(value != value for value in numbers[1:]):  # some of what ended are missing
+            self.put(line, self.kept, [float("nan")] * len(self.kept))
+        elif self.last == line - 1 and len(numbers) < self.form[1] and None not in numbers:
+            self.put_cut(line, numbers)
+        else:
+            self.skipped += 1
+
+
 class _Text:
     """Tables in lines of text."""
 
     def __init__(self, wanted: Wanted, file: str) -> None:
         self._wanted = wanted
         self._line = 0
-        self._tables = [Sheet(wanted)]  # the first has no columns
-        self._form: Form = (None, -1, "")  # of a row of the last table
-        self._cells: dict[int, str] = {}  # the units in its fields
-        self._page: dict[str, list[list[str]]] = {}  # its head, which may be repeated on each page
+        self._tables = [_Table(wanted)]  # the last has no columns before its first row
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
         self._shapes: dict[str, list[tuple[str, str, int]]] = {}
         """What a line holds, by its text with \\0 for each number: names, their units, and where
@@ -300,7 +337,6 @@ class _Text:
         self._above: dict[str, list[str]] = {}  # the names in lines above one line of numbers
         self._over = ""  # such a line
         self._is_over = False  # the data have ended
-        self._begins = False  # a new run
 
     def read(self, lines: Iterable[str]) -> list[Sheet]:
         """Return the sheets of these lines, in their order."""
@@ -312,12 +348,17 @@ class _Text:
                 raise unreadable(f"{MAX_LINES_BEFORE:,} lines without a row; is this a table?")
             if len(self._tables) + len(self._prints) > MAX_TABLES:
                 raise unreadable(f"more than {MAX_TABLES:,} tables; leave some out.")
-        named = [sheet for sheet in self._tables if any(sheet.names)]
+        named: list[Sheet] = [sheet for sheet in self._tables if any(sheet.names)]
         for sheet in self._prints:
             sheet.choose()
             if sheet.choice and sheet.choice.energy and not (named and sheet.choice.doubt):
                 named.append(sheet)
-        return sorted(named or self._tables[1:] or self._prints, key=lambda sheet: sheet.line)
+        bare = [sheet for sheet in self._tables if sheet.names]
+        return sorted(named or bare or self._prints, key=lambda sheet: sheet.line)
+
+    @property
+    def _table(self) -> _Table:
+        return self._tables[-1]
 
     def _read(self, line: str) -> None:
         """Read a row like the last one, printed values, or a line of a new form."""
@@ -332,8 +373,8 @@ class _Text:
             pass
         elif line in self._above:
             self._over = line
-        elif line in self._page:
-            self._heads[line] = self._page[line]
+        elif line in self._table.page:
+            self._heads[line] = self._table.page[line]
         else:
             fields = _NUMBERS.split(line)
             prints = self._shapes.get("\0".join(fields[::2]))
@@ -345,35 +386,18 @@ class _Text:
 
     def _is_next_row(self, line: str) -> bool:
         """Add a row like the last one to its table.  Return whether it is one."""
-        delimiter, width, opening = self._form
-        if self._begins or not line.startswith(opening):
+        table = self._table
+        if self._heads and not self._heads.keys() <= table.page.keys():
             return False
-        if self._heads and not self._heads.keys() <= self._page.keys():
-            return False
-        fields = _split(line, delimiter)
-        if opening and len(fields) != width:
-            fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
-        if len(fields) != width or (not delimiter and "," in line) or line.lstrip()[:1] in _MARKS:
-            return False
-        if self._cells and _units_in(fields) != self._cells:
-            return False
-        sheet = self._tables[-1]
-        values = self._values(fields)
+        fields = table.like_last(line)
+        values = table.values(fields) if fields else [None]
         if values[0] is None:
             return False
         if self._heads:
-            sheet.heads.append(self._line)
+            table.heads.append(self._line)
             self._heads.clear()
-        sheet.put(self._line, sheet.kept, values)
+        table.put(self._line, table.kept, values)
         return True
-
-    def _values(self, fields: list[str]) -> list[float | None]:
-        """Return the number, or that of its mark, in each field of a row that is kept."""
-        sheet = self._tables[-1]
-        values = [number(fields[place]) for place in sheet.kept]
-        for place in sheet.marks:
-            values[sheet.kept.index(place)] = zlib.crc32(fields[place].encode())
-        return values
 
     def _read_new(self, line: str) -> None:
         """Read a line of a new form: what a layout finds in it, or else words or a row."""
@@ -418,8 +442,9 @@ class _Text:
             case {"end": _} | {"again": _}:
                 self._is_over = "end" in groups
             case {"error": text}:
-                for sheet in (self._tables[-1], self._prints[-1]):
-                    sheet.error = sheet.error or text  # later ones follow from the first
+                for sheets in (self._tables, self._prints):
+                    last = next((each for each in reversed(sheets) if each.puts), sheets[-1])
+                    last.error = last.error or text  # later ones follow from the first
             case _ if self._is_over:
                 pass
             case {"value": value}:
@@ -452,9 +477,11 @@ class _Text:
 
     def _begin_run(self) -> None:
         """Begin a run, whose lines may look like earlier ones, but hold something else."""
-        self._begins = True
+        if self._table.names:
+            self._passed += self._table.form[1] - 1
+            self._tables.append(_Table(self._wanted))
+        self._shapes.clear()  # what held nothing may be a head
         self._is_over = False
-        self._passed += max(self._form[1] - 1, 0)
         self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
 
     def _print(self, name: str, text: str, unit: str) -> None:
@@ -476,7 +503,7 @@ class _Text:
         is_comment = text[0] in _MARKS and not _IS_FAILED.match(text)
         bare = text.lstrip(_MARKS + " \t") if is_comment else text
         fields, delimiter = self._fields(bare)
-        is_like = (len(fields), "") == self._form[1:]
+        is_like = (len(fields), "") == self._table.form[1:]
         numbers = [*map(number, fields)]
         if numbers.count(None) < len(fields):
             if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
@@ -485,7 +512,7 @@ class _Text:
         ways = _ways(bare)
         is_row = is_like and delimiter and not is_comment
         if is_row and not any(map(self._worth, chain(ways, *self._heads.values()))):
-            self._tables[-1].skipped += 1
+            self._table.skipped += 1
             return False
         self._heads[line] = ways
         if len(self._heads) > MAX_HEADS:
@@ -494,7 +521,7 @@ class _Text:
 
     def _fields(self, text: str, is_row: bool = False) -> tuple[list[str], str | None]:
         """Return the fields of a row and what separates them, None for blanks."""
-        delimiter, width, _ = self._form
+        delimiter, width, _ = self._table.form
         if delimiter and len(fields := _split(text, delimiter)) == width:
             return fields, delimiter
         text = text.strip()
@@ -512,60 +539,56 @@ class _Text:
         """Add a row to the last table, or to one that begins here.  Return whether it is a row."""
         numbers = [*map(number, fields)]
         is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
-        sheet = self._tables[-1]
-        if is_row:
-            sheet.put(self._line, sheet.kept, self._values(fields))
-            for place, unit in _units_in(fields).items():
-                sheet.check_unit(place, unit, self._line)
-        elif sheet.names and opening == self._form[2] and (opening or numbers[0] is not None):
-            is_below_row = sheet.last == self._line - 1
-            if any(value != value for value in numbers[1:]):  # some of what ended are missing
-                sheet.put(self._line, sheet.kept, [float("nan")] * len(sheet.kept))
-            elif is_below_row and len(numbers) < self._form[1] and None not in numbers:
-                sheet.put_cut(self._line, numbers)
-            else:
-                sheet.skipped += 1
-        return is_row
+        table = self._table
+        if not is_row:
+            table.put_odd(self._line, numbers, opening)
+            return False
+        table.put(self._line, table.kept, table.values(fields))
+        for place, unit in _units_in(fields).items():
+            table.check_unit(place, unit, self._line)
+        return True
 
     def _has_table(self, fields: list[str], numbers: Sequence[float | None], form: Form) -> bool:
         """Return whether a row belongs to the last table, or to one that begins here."""
-        last = self._tables[-1]
-        is_like = form[1:] == self._form[1:]
+        last = self._table
         names = self._head(fields, numbers)
-        goes_on = names == last.names and not self._begins
+        goes_on = names == last.names
         if names is None:
+            goes_on = form[1:] == last.form[1:]
             bare = [""] * len(fields)
             is_sure = None not in numbers[bool(form[2]) :] or self._worth(bare, numbers)
-            goes_on = is_like and not self._begins
-            if not goes_on and (not is_sure or (any(last.names) and not self._begins)):
+            if not goes_on and (any(last.names) or not is_sure):
                 return False
         elif goes_on:
             last.heads.append(self._line)
+        if not goes_on:
+            self._begin_table(names or self._labelled(len(fields)), fields)
         for line, ways in self._heads.items():
-            if names in ways and len(self._page) < MAX_HEADS:
-                self._page[line] = ways
+            if names in ways:
+                self._table.page[line] = ways
             elif not any(map(self._worth, ways)):  # it never will be a head
                 self._remember(line, {})
-        if not goes_on:
-            names = names or self._labelled(len(fields))
-            self._begins = False
-            self._page.clear()
-            self._shapes.clear()  # what held nothing may be a row
-            self._tables.append(Sheet(self._wanted, self._line))
-            self._cells = _units_in(fields)
-            for name, unit in zip(names, self._units_of(names, fields), strict=True):
-                self._tables[-1].add_column(name, unit)
-        if names:
-            self._form = form
+        if names or not goes_on:
+            self._table.form = form
         self._heads.clear()
         return True
+
+    def _begin_table(self, names: list[str], fields: list[str]) -> None:
+        """Begin a table of columns of these names above a row."""
+        if self._table.names:
+            self._tables.append(_Table(self._wanted))
+        self._shapes.clear()  # what held nothing may be a row
+        self._table.line = self._line
+        self._table.cells = _units_in(fields)
+        for name, unit in zip(names, self._units_of(names, fields), strict=True):
+            self._table.add_column(name, unit)
 
     def _head(self, fields: list[str], numbers: Sequence[float | None]) -> list[str] | None:
         """Return the best names above that fit a row, None without any."""
         found: list[str] | None = None
         most = 0
         width = len(fields)
-        labels = [] if any(self._tables[-1].names) else [self._labelled(width)]
+        labels = [] if any(self._table.names) else [self._labelled(width)]
         for names in chain(labels, *reversed(self._heads.values())):
             if len(names) == width - 1 and fields[-1] == "":
                 names = [*names, ""]
@@ -594,7 +617,7 @@ class _Text:
         if known > 1:
             return known
         is_data = any(number(name) is not None for name in names)
-        is_first = not self._tables[-1].names or self._begins
+        is_first = not self._table.names
         return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
 
     def _labelled(self, width: int) -> list[str]:
@@ -613,7 +636,8 @@ class _Text:
         for place, field in enumerate(fields):
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"
-            units[place] = self._cells.get(place) or units[place] or self._shared * (place > 0)
+            own = self._table.cells.get(place) or units[place]
+            units[place] = own or self._shared * (place > 0)
         return units
 
 
