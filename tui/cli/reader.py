@@ -55,7 +55,6 @@ _MARKED = re.compile(
 )
 _HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
-_BEGINS = re.compile(r"[-+]?[.,]?\d")  # a number
 _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
@@ -232,7 +231,8 @@ def _arrays(stream: io.BufferedReader) -> Any:
 def number(text: str) -> float | None:
     """Return the number in a field, nan if it ended, None if there is none.
 
-    It may have a decimal comma, Fortran's D, a unit or brackets.
+    It may have a decimal comma, Fortran's D, a unit or brackets.  A date counts in seconds since
+    1970, in UTC if it has no zone.
     """
     try:
         return float(text)
@@ -242,10 +242,10 @@ def number(text: str) -> float | None:
         return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):
         return float("nan")
-    if not _BEGINS.match(text):
-        return None
     if _DATE.match(text):
-        return _seconds(text)
+        with suppress(ValueError):
+            moment = datetime.fromisoformat(text)
+            return moment.replace(tzinfo=moment.tzinfo or UTC).timestamp()
     if match := _WITH_UNIT.fullmatch(text):
         text = match[1]
     text = re.sub(r"[.,](?=\d{3}[.,])", "", text)  # between thousands
@@ -253,14 +253,6 @@ def number(text: str) -> float | None:
     text = re.sub(r"(\.\d+)([-+](?:[12]\d\d|3[0-2]\d))$", r"\1e\2", text)
     with suppress(ValueError):
         return float(text.replace(",", ".").translate(str.maketrans("dD", "ee")))
-    return None
-
-
-def _seconds(date: str) -> float | None:
-    """Return the time of an ISO date since 1970, in s; UTC, unless it has a zone."""
-    with suppress(ValueError):
-        moment = datetime.fromisoformat(date)
-        return moment.replace(tzinfo=moment.tzinfo or UTC).timestamp()
     return None
 
 
