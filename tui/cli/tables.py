@@ -307,16 +307,24 @@ class Sheet:
         """
         if self.choice is None:
             self.choose()
-        time = (self.choice or Choice()).time
-        missing = next((value for value in numbers if value != value), None)
-        row = [*numbers, *[missing] * len(self.names)]
-        known = [*self._values[time[0]][-2:]] if time else []
-        if len(known) == 2:
-            ahead = row[time[0]] - known[1]
-            if ahead <= 0 or ahead > 10 * (known[1] - known[0]):
-                self.skipped += 1
-                return
-        self.put(line, time, [row[place] for place in time])
+        choice = self.choice or Choice()
+        if not choice.time:
+            self.skipped += 1
+            return
+        place = choice.time[0]
+        ended = [value for value in numbers if value != value]  # perhaps all there is
+        times = [*numbers[place:], *ended]
+        if times and self._may_follow(place, times[0]):
+            self.put(line, (place,), times[:1])
+        else:
+            self.skipped += 1
+
+    def _may_follow(self, place: int, time: float) -> bool:
+        """Return whether a time may be the next one in a column, or nan."""
+        known = self._values[place][-2:]
+        if len(known) < 2 or math.isnan(time):
+            return True
+        return 0 < time - known[1] <= 10 * (known[1] - known[0])
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
         """Add a value that is printed with its name.  Once is not repeatedly."""

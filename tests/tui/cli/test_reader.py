@@ -300,6 +300,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         ("t K E\n" + rows("{t} 3 {e}") + "45.0 nan\n45.5 nan\n", 44.5, 2),
         ("t K E\n" + rows("{t} 3 {e}") + "45.0***********\n", 44.5, 1),
         ("t K E\n" + rows("{t} 3 {e}") + "45.0 3\n**********\n", 45.0, 1),
+        ("K E t\n" + rows("{k} {e} {t}") + "3 4\n", None, 1),
         ("t K E\n" + rows("{t} 3 {e}") + "**********\ndone\n**********\n", None, 2),
         ("n t E\n" + rows("{n} {t} {e}") + 2 * "**********\n", 44.5, 2),
         ("ETITLE: t C E\n" + rows("ENERGY: {t} 1 {e}") + 2 * "ENERGY: 45.0 nan\n", 44.5, 2),
