@@ -434,9 +434,8 @@ class _Text:
             case {"end": _} | {"again": _}:
                 self._is_over = "end" in groups
             case {"error": text}:
-                for sheets in (self._tables, self._prints):
-                    last = next((each for each in reversed(sheets) if each.puts), sheets[-1])
-                    last.error = last.error or text  # later ones follow from the first
+                for sheet in (self._last_rows(), self._prints[-1]):
+                    sheet.error = sheet.error or text  # later ones follow from the first
             case _ if self._is_over:
                 pass
             case {"value": value}:
@@ -466,6 +465,10 @@ class _Text:
             case _:
                 return False
         return True
+
+    def _last_rows(self) -> _Table:
+        """Return the last table that has rows, also if a new run began below it."""
+        return next((each for each in reversed(self._tables) if each.puts), self._table)
 
     def _begin_run(self) -> None:
         """Begin a run, whose lines may look like earlier ones, but hold something else."""
@@ -533,7 +536,7 @@ class _Text:
         is_row = self._has_table(fields, numbers, (delimiter, len(fields), opening))
         table = self._table
         if not is_row:
-            table.put_odd(self._line, numbers, opening)
+            self._last_rows().put_odd(self._line, numbers, opening)
             return False
         table.put(self._line, table.kept, table.values(fields))
         for place, unit in _units_in(fields).items():
