@@ -351,9 +351,8 @@ class Sheet:
             self.mixed.setdefault(place, why)
 
     def _column(self, place: int) -> tuple[Any, Any]:
-        """Return the lines and values of a column, in the order of the lines."""
-        order = np.argsort(self._lines[place], kind="stable")
-        return np.asarray(self._lines[place])[order], np.asarray(self._values[place])[order]
+        """Return the lines and values of a column."""
+        return np.array(self._lines[place]), np.array(self._values[place])
 
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
