@@ -235,11 +235,9 @@ def number(text: str) -> float | None:
     1970, in UTC if it has no zone.
     """
     try:
-        return float(text)
+        return float(text.replace(",", "."))
     except ValueError:
         text = text.strip("()[] \t\r\n\"'")
-    with suppress(ValueError):
-        return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):
         return float("nan")
     if _DATE.match(text):
