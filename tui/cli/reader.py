@@ -325,7 +325,7 @@ class _Text:
         self._passed = 0  # columns of earlier sets
         self._shared = ""  # the only unit of xmgrace's y axis
         self._above: dict[str, list[str]] = {}  # the names in lines above one line of numbers
-        self._over = ""  # such a line
+        self._over: list[str] = []  # those in the line before
         self._is_over = False  # the data have ended
 
     def read(self, lines: Iterable[str]) -> list[Sheet]:
@@ -352,8 +352,8 @@ class _Text:
 
     def _read(self, line: str) -> None:
         """Read a row like the last one, printed values, or a line of a new form."""
-        over = self._above.get(self._over)
-        self._over = ""
+        over = self._over
+        self._over = []
         if self._is_over:
             self._read_new(line)
         elif over and len(values := line.split()) == len(over):
@@ -362,7 +362,7 @@ class _Text:
         elif self._is_next_row(line) or line in self._heads:
             pass
         elif line in self._above:
-            self._over = line
+            self._over = self._above[line]
         elif line in self._table.page:
             self._heads[line] = self._table.page[line]
         else:
@@ -438,7 +438,8 @@ class _Text:
                 pass
             case {"value": value}:
                 name = groups.get("name", "Step")
-                name += "'" * (name in prints)  # so that no energy is certain
+                if name in prints:
+                    name += "'"  # so that no energy is certain
                 unit = groups.get("unit") or self._unit(name)
                 self._print(name, value, unit)
                 prints[name] = (unit, match.start("value"))
@@ -446,23 +447,27 @@ class _Text:
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
-                self._above[line] = [*map(str.strip, re.findall(layout.cells, text))]
-                self._over = line
+                self._over = [*map(str.strip, re.findall(layout.cells, text))]
+                self._above[line] = self._over
             case {"row": text}:
                 fields, delimiter = self._fields(text, is_row=True)
-                self._row(fields, delimiter, fields[0] * (number(fields[0]) is None))
+                is_word = number(fields[0]) is None
+                self._row(fields, delimiter, fields[0] if is_word else "")
             case {"set": place, "label": label}:
                 self._labels[int(place) + 1] = label
             case {"label": label}:
                 self._labels[int(groups.get("place", 1)) - 1] = label
             case {"units": units}:
-                shared = re.findall(r"\(([^()]*)\)", units)
-                energies = [unit for unit in shared if plain("energy", unit) and unit != "K"]
-                self._units = ("", energies[0] if len(energies) == 1 else "")
-                self._shared = shared[0] if len(shared) == 1 else ""
+                self._share(re.findall(r"\(([^()]*)\)", units))
             case _:
                 return False
         return True
+
+    def _share(self, units: list[str]) -> None:
+        """Note the units of an axis: that of energies, and the only one, if it is certain."""
+        energies = [unit for unit in units if plain("energy", unit) and unit != "K"]
+        self._units = ("", energies[0] if len(energies) == 1 else "")
+        self._shared = units[0] if len(units) == 1 else ""
 
     def _last_rows(self) -> _Table:
         """Return the last table that has rows, also if a new run began below it."""
@@ -624,8 +629,8 @@ class _Text:
         others = (ways for ways in self._heads.values() if names not in ways)
         for row in chain.from_iterable(others):
             bare = [each.strip("()[]") for each in row]
-            if len(row) == len(names) and not any(units):
-                units = bare if any(map(is_unit, bare)) else units
+            if len(row) == len(names) and any(map(is_unit, bare)) and not any(units):
+                units = bare
         for place, field in enumerate(fields):
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"

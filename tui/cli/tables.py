@@ -350,13 +350,9 @@ class Sheet:
             why = f"{name} is in {own}, but in {unit} in line {line}; print it in one unit."
             self.mixed.setdefault(place, why)
 
-    def _column(self, place: int) -> tuple[Any, Any]:
-        """Return the lines and values of a column."""
-        return np.array(self._lines[place]), np.array(self._values[place])
-
     def choose(self) -> None:
         """Choose the columns of time and energy.  The others are no longer read."""
-        samples = [self._column(place)[1][:SAMPLE] for place in range(len(self.names))]
+        samples = [np.array(values[:SAMPLE]) for values in self._values]
         if self.names[:1] == [""] and not _are_numbered(self.names, samples):
             self.names = [""] * len(self.names)  # the head does not belong to these rows
         self.choice = choose(self.names, self.units, samples, self.wanted)
@@ -367,9 +363,10 @@ class Sheet:
         """Yield what lies between two starts of time.  Raises UserError if there are too many."""
         self.choose()
         choice = self.choice or Choice()
-        lines, _ = self._column([*choice.time, *choice.energy, 0][0]) if self.names else ((), ())
-        if not len(lines):
+        leading = [*choice.time, *choice.energy, 0][0]
+        if not self.names or not self._lines[leading]:
             return
+        lines = np.array(self._lines[leading])
         sums = [self._sum(group, lines) for group in choice[:3]]
         here = ~np.ma.getmaskarray(sum(sums))
         found = np.flatnonzero(here)
@@ -416,7 +413,7 @@ class Sheet:
         """
         total = np.ma.zeros(len(lines))
         for place in group:
-            own, values = self._column(place)
+            own = np.array(self._lines[place])
             record = np.searchsorted(lines, own, side="right") - 1
             if np.array_equal(record + 1, np.arange(len(lines))):
                 record += 1
@@ -424,7 +421,7 @@ class Sheet:
             if not self._is_printed:
                 fits &= lines[record] == own
             column = np.ma.array(np.zeros(len(lines)), mask=True)
-            column[record[fits]] = values[fits]
+            column[record[fits]] = np.array(self._values[place])[fits]
             total = total + column
         return total
 
