@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pendu_tui.engine.inputs import (
-    InputError,
     angle,
     check_name,
     did_you_mean,
@@ -48,10 +47,6 @@ from pendu_tui.tui.terminal.options import CALM_FPS, CHARACTER_SETS, FPS, cells
 Settings = dict[str, Any]  # of an option, as argparse takes them
 
 
-class Suggestions(list[str]):
-    """`choices` for the tab key only: the command itself checks the text."""
-
-
 def option(
     metavar: str | None, help: str, read: Callable[[str], Any] = str, **more: Any
 ) -> Settings:
@@ -62,6 +57,18 @@ def option(
 def file(metavar: str, help: str, read: Callable[[str], Any] = Path, **more: Any) -> Settings:
     """Return an option that the tab key completes to a file."""
     return option(metavar, help, read, is_file=True, **more)
+
+
+def choice(
+    help: str, words: Sequence[str], default: str, metavar: str | None = None, **more: Any
+) -> Settings:
+    """Return an option whose value is one of these words."""
+
+    def read(text: str) -> str:
+        check_name("choice", text, words)
+        return text
+
+    return option(metavar, help, read, choices=words, default=default, **more)
 
 
 def flag(help: str) -> Settings:
@@ -101,22 +108,20 @@ OPTIONS: dict[str, Settings] = {
         "FILE", "a file, a folder, latest, golden, or a name such as drift", str, nargs="+"
     ),
     "judge files": file("FILE", "the log or table of a program; - for stdin", str, nargs="+"),
-    "verb": option(
-        "|".join(VERBS), "what to do (%(default)s)", nargs="?", choices=VERBS, default="list"
-    ),
-    "name": option("SCENE", "the scene to show", nargs="?", choices=Suggestions(SCENES)),
-    "names": option("KEY", "the methods to show", nargs="*", choices=Suggestions(KEYS)),
-    "scene": option("SCENE", "the scene, as --scene", nargs="?", choices=Suggestions(SCENES)),
+    "verb": choice("what to do (%(default)s)", VERBS, "list", "|".join(VERBS), nargs="?"),
+    "name": option("SCENE", "the scene to show", nargs="?", choices=[*SCENES]),
+    "names": option("KEY", "the methods to show", nargs="*", choices=KEYS),
+    "scene": option("SCENE", "the scene, as --scene", nargs="?", choices=[*SCENES]),
     "--scene": option(
         "NAME|FILE.toml",
         f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json",
-        choices=Suggestions(SCENES),
+        choices=[*SCENES],
         dest="scene_option",
     ),
     "--methods": option(
         "KEY,KEY",
         "only these methods, in this order; the start of a name is enough",
-        choices=Suggestions(KEYS),
+        choices=KEYS,
     ),
     "--method": file(
         "FILE.py:FUNCTION",
@@ -143,13 +148,8 @@ OPTIONS: dict[str, Settings] = {
     "serve --record": file("FOLDER", "record each lab in FOLDER"),
     "--no-record": flag("do not record"),
     # the screen
-    "--theme": option(None, "colours (%(default)s)", choices=("auto", *PALETTES), default="auto"),
-    "--pixels": option(
-        None,
-        "what to draw with (%(default)s)",
-        choices=("auto", *CHARACTER_SETS),
-        default="auto",
-    ),
+    "--theme": choice("colours (%(default)s)", ("auto", *PALETTES), "auto"),
+    "--pixels": choice("what to draw with (%(default)s)", ("auto", *CHARACTER_SETS), "auto"),
     "--plain": flag("no TUI: print sentences about what happens; Ctrl+C stops"),
     "--no-mouse": flag("disable the mouse; every mouse action also has a key"),
     "--fps": option(
@@ -197,17 +197,15 @@ OPTIONS: dict[str, Settings] = {
         "N step sizes from A to B in s, log-spaced (12, with z = h·w0 from 0.6 to 0.0015)",
         ladder,
     ),
-    "--error": option(
-        None,
+    "--error": choice(
         "largest angle error [rad], largest energy error or final angle error (%(default)s)",
-        choices=("theta", "energy", "final"),
-        default="theta",
+        ("theta", "energy", "final"),
+        "theta",
     ),
-    "--cost": option(
-        None,
+    "--cost": choice(
         "what counts as cost (%(default)s); a method of your own is timed without Numba",
-        choices=("evaluations", "seconds"),
-        default="evaluations",
+        ("evaluations", "seconds"),
+        "evaluations",
     ),
     "--target": option(
         "ERROR",
@@ -362,12 +360,9 @@ class Parser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, str(error)) from None
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuse what is none of the choices, unless the command itself looks at the text."""
-        if action.choices is not None and not isinstance(action.choices, Suggestions):
-            try:
-                check_name("choice", value, action.choices)
-            except InputError as error:
-                raise argparse.ArgumentError(action, str(error)) from None
+        """Leave values to their readers; choices are for the tab key, except shtab's own."""
+        if action.type is None:
+            super()._check_value(action, value)
 
     def error(self, message: str) -> NoReturn:
         sentence = message.removeprefix("argument ")
