@@ -190,10 +190,12 @@ def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
     failed = next(each for each in live.milestones if each.kind == "failed")
     failed = failed._replace(step=live.sample.step)
     over = failed._replace(kind="over the top", step=failed.step - 1, method=USUAL_CAST[RK4])
-    live.milestones = [over, failed]
+    later = over._replace(step=failed.step, method=USUAL_CAST[VERLET])
+    live.milestones = [later, over, failed]
     assert insight(live).kind == "failed"
     found, *others = lasting(live)
     assert found.kind == "failed"
+    assert [each.text.split()[0] for each in others] == ["RK4", "Verlet"]
     assert seconds(live.sample.readings[EXPLICIT].diverged_at) in found.text
     assert not any("Explicit Euler" in each.text for each in others)
 
