@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import Stepping, change_before
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import Scene, Shot
 from pendu_tui.tui.cli.scene import TOUR, read_scenes
 from pendu_tui.tui.playback.live import Live
@@ -76,10 +76,10 @@ class Lesson:
 
     def is_astray(self, live: Live) -> bool:
         """Return whether the user has changed the run before its moment."""
-        at_start = change_before(live.changes, 1).stepping
-        later = [(each.step, each.stepping) for each in live.changes if each.step > 0]
-        turn = (self._turn, self._stepping.reversed())
-        is_page = (live.scene, at_start) == (self.page, self._stepping) and later in ([], [turn])
+        steppings = {change.step: change.stepping for change in live.changes}
+        straight = {0: self._stepping}
+        turned = {**straight, self._turn: self._stepping.reversed()}
+        is_page = live.scene == self.page and steppings in (straight, turned)
         return self.stage == "watching" and self.shot.moment is not None and not is_page
 
     def begin(self, live: Live, index: int) -> None:

@@ -147,7 +147,7 @@ def test_an_answer_is_judged_and_back_goes_to_the_question_and_from_there_to_the
 
 
 def test_after_a_change_of_the_run_it_waits_until_the_user_begins_the_page_again(lesson, live):
-    live.start(SCENES["spin"])
+    live.start(ASKS.altered(omega=0.1))
     assert lesson.is_astray(live)
     before = live.sample
     Clocked(live).run(2.0)
