@@ -92,19 +92,17 @@ class Slope:
         log = models.priors - models.freedoms / 2 * np.log(residual) - np.log(squares) / 2
         log = log - (sizes / 2 * log_sums).sum(axis=1)
         deviations = np.sqrt(residual / models.freedoms / squares)
-        columns: Any = (centres, deviations, models.freedoms, models.walks, log)
+        table = np.stack((centres, deviations, models.freedoms, models.walks, log))
         if white > 0:
-            known = _white_model(v, x, white)
-            columns = (np.append(*each) for each in zip(columns, known, strict=True))
-        centres, deviations, freedoms, walks, log = columns
+            table = np.column_stack((table, _white_model(v, x, white)))
+        centres, deviations, freedoms, walks, log = table
         weights = np.exp(log - log.max())
         weights = weights / weights.sum()
         self.mean = float((weights * centres).sum())
         self.uncertainty = float((weights * deviations).sum())  # 68 % lie within
-        self.walk = weights[walks].sum()  # probability of an endless variance
-        some = weights > _NEGLIGIBLE
-        columns = (centres, deviations, freedoms, weights)
-        self._parts = list(zip(*(column[some].tolist() for column in columns), strict=True))
+        self.walk = weights[walks > 0].sum()  # probability of an endless variance
+        parts = np.column_stack((centres, deviations, freedoms, weights))
+        self._parts = parts[weights > _NEGLIGIBLE].tolist()
 
     def below(self, slope: float) -> float:
         """Return the probability of a smaller slope."""
