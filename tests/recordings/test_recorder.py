@@ -105,6 +105,15 @@ def test_invalid_input_is_refused_before_it_spoils_a_chunk_and_no_sample_is_writ
     assert verify(recorder.path).samples == 2
 
 
+def test_a_mark_in_a_pause_is_read_of_a_lab_that_was_killed(tmp_path):
+    recorder = begin(Recorder(tmp_path / "a.mcap"))
+    recorder.add(Event("mark", 1, 0, 0.0), 0.5)
+    recorder.flush()  # a chunk without samples
+    with Recording.open(recorder.part) as recording:
+        assert [event.kind for _, event in recording.events] == ["start", "mark"]
+    recorder.abandon()
+
+
 @pytest.mark.parametrize("kind", [Recorder, LiveRecorder])
 def test_a_recording_without_a_start_leaves_no_file(tmp_path, monkeypatch, kind):
     monkeypatch.setattr("pendu_tui.recordings.recorder.FLUSH_EVERY", 0.01)
