@@ -117,16 +117,17 @@ class PhasePane(Chooser[State]):
             return
         from pendu_tui.engine.studies.ring import Neighbourhood
 
-        # large enough to see, small enough to stay a ring for a while
-        radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
-        if self.neighbours is None or self.neighbours.radius != radius:
-            self.neighbours = Neighbourhood(scene, radius, sample.run)
+        ring = self.ring
+        if ring is None:
+            # large enough to see, small enough to stay a ring for a while
+            radius = 0.1 * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
+            ring = Neighbourhood(scene, radius, sample.run)
         steps = 100  # a frame, which cost 5 ms
         if has_own(scene):
             steps = 1
         try:
             with limited():
-                self.neighbours = self.neighbours.following(
+                self.neighbours = ring.following(
                     scene, sample.run, sample.step, source.changes, steps
                 )
         except OwnMethodError as error:
