@@ -83,8 +83,8 @@ class PhasePane(Chooser[State]):
             return self.zoomed._replace(columns=columns, rows=rows)
         scene = self.source.scene
         half = math.pi
-        if self.sample is not None and not self.shown.overview:
-            found = reach(scene, self.source.stepping, self.sample, self.places)
+        if not self.shown.overview:
+            found = reach(scene, self.source.stepping, self.source.sample, self.places)
             half = self.shown.theta or found.frame
         line = self.shown.line
         fence = 0.0
