@@ -35,14 +35,14 @@ Mask = NDArray[np.bool_]  # (columns, methods)
 
 class Reading(NamedTuple):
     t: float  # s
-    values: list[float]  # in the order of `places`; nan where not known
+    values: list[float]  # in the order of `letters`; nan where not known
 
 
 class TimePlot(LineChart):
     """A chart that can be read out by column; its heights are log10 of values if `shown.log`."""
 
     picture: Picture
-    places: Sequence[int]  # in the cast
+    letters: Sequence[str]  # of the methods
     values: Floats  # (columns, methods)
 
     def __init__(
@@ -212,7 +212,7 @@ def time_chart(
         runs.append(_Run.of(ghost, shown.quantity, places))
     plot, sides = _plot(runs, shown, max(width, MIN_COLUMNS), max(height, MIN_ROWS) - 1)
     low, high = sides[0]
-    plot.places = places
+    plot.letters = [cast[place].letter for place in places]
     plot.values = np.where(abs(low) > abs(high), low, high)
     if shown.log:
         plot.values = 10.0**high
@@ -224,10 +224,8 @@ def time_chart(
         plot.draw_curves(map(faint, colours), *side)
     if shown.log:
         plot.draw_crossings(high, window.repeats)
-    labels = [
-        (cast[place].letter, names[place] if names else "", ink)
-        for place, ink in zip(places, colours, strict=True)
-    ]
+    shown_names = [names[place] if names else "" for place in places]
+    labels = zip(plot.letters, shown_names, colours, strict=True)
     plot.name_lines(plot.ends(labels, runs[0], low, high))
     plot.picture = Picture(plot.framed())
     return plot

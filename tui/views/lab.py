@@ -139,7 +139,7 @@ class TimeChart(Pane):
     def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
         room = self.room.width - 4
         if self.pointer is not None and (reading := plot.at(self.pointer)) is not None:
-            return _read_out(reading, [self.cast[place].letter for place in plot.places], room)
+            return _read_out(reading, plot.letters, room)
         known = [method.letter for method in self.cast if method.modified_energy]
         if look.quantity == "shadow_error" and len(known) < len(self.cast):
             return f"shadow energy is known for {' and '.join(known)} only"

@@ -80,8 +80,8 @@ class Seen:
         """The least share of its columns that a method is in, in a chart of this size."""
         self.draw(size)
         known = (abs(self.plot.values) <= LARGEST).sum(axis=0)
-        shown = [self.scene.cast[place].letter for place in self.plot.places]
-        return min(len(self.heights(each)) / of for each, of in zip(shown, known, strict=True))
+        pairs = zip(self.plot.letters, known, strict=True)
+        return min(len(self.heights(each)) / of for each, of in pairs)
 
     def count(self, *sign):
         return self.chart.text.count("".join(sign))
