@@ -259,13 +259,11 @@ class Live(Source):
             recorder.add(event, self._recorded)
         recorder.add(self.sample, self._recorded)
 
-    @property
-    def is_marked(self) -> bool:
-        here = ("mark", self.sample.run, self.sample.step)
-        return any((event.kind, event.run, event.step) == here for event in self.events)
-
     def mark(self, text: str | None = None) -> None:
-        if not self.is_marked:
+        """Mark this moment, once."""
+        here = (self.sample.run, self.sample.step)
+        marked = [(event.run, event.step) for event in self._events if event.kind == "mark"]
+        if here not in marked:
             self._note_here("mark", text=text)
 
     def close(self) -> None:
