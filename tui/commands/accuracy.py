@@ -132,10 +132,14 @@ class Results:
     def _record(self, point: Point) -> Row:
         """Return a point for JSON and CSV."""
         flaw = point.flaws[self.kind]
-        record = {"method": point.method.key, **fields_of(point, *NUMBERS)}
-        record |= {f"{kind}_error": error for kind, error in point.errors.items()}
-        record["force_evaluations"] = point.force_evaluations or None
-        return record | {"valid": flaw is None, "reason": flaw and REASONS[flaw]}
+        return {
+            "method": point.method.key,
+            **fields_of(point, *NUMBERS),
+            "force_evaluations": point.force_evaluations or None,
+            **{f"{kind}_error": error for kind, error in point.errors.items()},
+            "valid": flaw is None,
+            "reason": flaw and REASONS[flaw],
+        }
 
     def _rungs(self) -> list[Row]:
         """Return a row for each h, with the points of all methods."""

@@ -62,10 +62,11 @@ def methods(options: argparse.Namespace) -> int:
 
 
 def _gated(row: Row) -> Row:
-    """Return the measured properties as --fail-if compares them."""
-    numbers = {name: row[f"measured_{name}"] for name in MEASURED_NUMBERS}
-    words = {name: row[f"measured_{name}"] for name in MEASURED_WORDS}
-    return numbers | {name: word if word is None else yes(word) for name, word in words.items()}
+    """Return the measured properties as --fail-if compares them: yes and no are words."""
+    measured = {name: row[f"measured_{name}"] for name in MEASURED}
+    return {
+        name: yes(value) if isinstance(value, bool) else value for name, value in measured.items()
+    }
 
 
 def _row(method: Method) -> Row:

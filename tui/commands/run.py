@@ -148,20 +148,17 @@ def rows_of(lockstep: Lockstep, sample: Sample, is_whole: bool) -> list[Row]:
         theta_error = None
         if reading.diverged_at is None:
             theta_error = abs(model.theta_error(reading.theta, exact))
-        rows.append(
-            row
-            | {
-                "theta_error": theta_error,
-                "drift_per_second": judgement.trend,
-                **fields_of(judgement, "slope", "uncertainty", "bound", "share"),
-                **fields_of(judgement, "verdict", "rests"),
-                "reason": str(judgement.progress or judgement.reason),
-                "progress": judgement.progress and judgement.progress._asdict(),
-                "lyapunov_per_second": judgement.lyapunov,
-                "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
-                "diverged_at": reading.diverged_at,
-            }
-        )
+        row |= {
+            "theta_error": theta_error,
+            "drift_per_second": judgement.trend,
+            **fields_of(judgement, "slope", "uncertainty", "bound", "share", "verdict", "rests"),
+            "reason": str(judgement.progress or judgement.reason),
+            "progress": judgement.progress and judgement.progress._asdict(),
+            "lyapunov_per_second": judgement.lyapunov,
+            "force_evaluations": _evaluations(scene, method, reading, sample.step, is_whole),
+            "diverged_at": reading.diverged_at,
+        }
+        rows.append(row)
     return rows
 
 

@@ -109,8 +109,12 @@ def _linear(scene: Scene, method: Method) -> dict[str, Any]:
     theory = method.linear_limit
     if isinstance(method, OwnMethod):
         theory = None
-    fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
-    return fields | {"amplification": amplification(method, scene.z)}
+    return {
+        "method": method.key,
+        "limit_z": linear_limit(method.phases),
+        "theory_z": theory,
+        "amplification": amplification(method, scene.z),
+    }
 
 
 def _row_fields(row: Row) -> dict[str, Any]:
