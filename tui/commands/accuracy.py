@@ -241,11 +241,10 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
     if clock and not compilable(scene.cast):
         study_loops = timed_loops = loops.PlainLoops
     tasks = list(product(rungs, scene.cast))
-    total = sum(rungs) * len(scene.cast)
     search = 0
     if options.target is not None:  # to search for a method's h takes about as long as its points
         search = sum(rungs) * len(searched.cast)
-    with work_of(options, "steps", total + search) as work:
+    with work_of(options, "steps", sum(rungs) * len(scene.cast) + search) as work:
         for point in work.run(partial(measured_point, scene, results.time, study_loops), tasks):
             if clock:
                 point = timed(point, scene, clock, timed_loops)
@@ -256,7 +255,7 @@ def measure(results: Results, rungs: Sequence[int], searched: Scene) -> Work:
                 Study(searched, results.time, study_loops),
                 kind=results.kind,
                 target=options.target,
-                show=lambda share: work.show(total + share * search, total + search),
+                show=lambda share: work.show(work.done + share * search, work.total),
                 clock=clock,
                 loops=timed_loops,
             )
