@@ -59,6 +59,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("stability --scene damped", 2, "no friction"),
         ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),
         ("run --plain", 2, "no option --plain; it is an option of live, tour, replay.\n"),
+        ("run --strength 1", 2, "no option --strength; pendu-tui run --help"),  # not --length
         ("run --DT", 2, "there is no option --DT; pendu-tui run --help"),  # not --dask
         ("run --METHOD_", 2, "there is no option --METHOD_: did you mean --method?\n"),
         ("run --target 1", 2, "no option --target; it is an option of accuracy.\n"),

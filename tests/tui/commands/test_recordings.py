@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from pendu_tui.engine.run.lockstep import Lockstep
+from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings.recorder import Recorder
 from pendu_tui.recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, two_runs
@@ -106,6 +108,15 @@ def test_export_to_stdout_is_the_file(tmp_path):
     assert pendu("export", "drift", "-o", os.devnull).code == 0
     assert pendu("export", "drift", "-o", tmp_path / "a.parquet").refused(2, "a.csv")
     assert pendu("export", "drift", "-o", tmp_path / "no" / "a.csv").refused(5, "does not exist")
+
+
+def test_export_has_a_column_for_each_variable_of_each_model(here):
+    with Recorder(here / "two.mcap") as recorder:
+        for run, name in enumerate(("drift", "stiff-slow"), 1):
+            recorder.add(start(run, SCENES[name]), float(run))
+            recorder.add(Lockstep(SCENES[name]).sample()._replace(run=run), float(run))
+    first, *_, last = csv.DictReader(pendu("export", "two").out.splitlines())
+    assert (first["spring_energy"], last["spring_energy"]) == ("NaN", "1.0")
 
 
 def test_after_a_failure_export_writes_nan_and_not_the_last_finite_numbers(tmp_path):
