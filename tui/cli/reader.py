@@ -283,7 +283,7 @@ class _Table(Sheet):
             fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
         if len(fields) != width or not line.startswith(opening):
             return None
-        if (not delimiter and "," in line) or line.lstrip()[:1] in _MARKS:
+        if line.lstrip()[:1] in _MARKS:
             return None
         return None if self.cells and _units_in(fields) != self.cells else fields
 
@@ -417,9 +417,8 @@ class _Text:
                 return  # another name may have this shape
             holds.append((name, unit, place))
         shape = _NUMBERS.sub("\0", line)
-        is_text = not starts or re.search(r"[^\W\d_]", shape)
         is_odd = None in map(number, _NUMBERS.findall(line))  # as in a version, 1.2.3
-        if is_text and not is_odd and len(self._shapes) < MAX_SHAPES:
+        if not is_odd and len(self._shapes) < MAX_SHAPES:
             self._shapes[shape] = holds
 
     def _take(self, layout: Layout, match: re.Match[str], prints: Prints) -> bool:
@@ -561,13 +560,12 @@ class _Text:
             last.heads.append(self._line)
         if not goes_on:
             self._begin_table(names or self._labelled(len(fields)), fields)
+            self._table.form = form
         for line, ways in self._heads.items():
             if names in ways:
                 self._table.page[line] = ways
             elif not any(map(self._worth, ways)):  # it never will be a head
                 self._remember(line, {})
-        if names or not goes_on:
-            self._table.form = form
         self._heads.clear()
         return True
 

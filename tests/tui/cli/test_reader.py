@@ -64,6 +64,7 @@ def columns(series: Series) -> str | None:
         ("t,E,dE/E", "{t},{e},{k}", "t, E"),
         ("t,E,p", "{t},{e},word", "t, E"),
         ("t, E, h", "{t}, {e}, {k}", "t, E"),  # h is no hour
+        ("t x E\nt E x", "{t} {e} {k}", "t, E"),  # the nearest
         ("Step Time (ps) E (eV)", "{s} {t} {e}", "Time ps, E eV"),
         ("Time (ps) Total E (eV)", "{t} {e}", "Time ps, Total E eV"),
         ("# [1] = time [2]=dt [10]=tot-E", "{t} 1 {e}", "time, tot-E"),
@@ -219,7 +220,7 @@ def array(*unnamed: object, **named: object) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        "\ufeff" + json.dumps({"run": {"h": [], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
+        "\ufeff" + json.dumps({"run": {"h": [0.5], "data": {"t": TIMES, "E": ENERGIES}}}, indent=1),
         json.dumps({"t": dict(enumerate(TIMES)), "E": dict(enumerate(ENERGIES))}),
         json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
@@ -240,10 +241,6 @@ def array(*unnamed: object, **named: object) -> bytes:
         "t,E\n" + rows("{t},{e}\n,7"),
         "t E K\n"
         + rows("{t} {e} {k}").replace("\n9.0 ", "\nthe time passed\ntotal energy drift\n9.0 "),
-        "t,E\n" + rows("{t},{e}\n#{n},5\nwriting {s} to file"),
-        "ETITLE: TS TOTAL\n" + rows("ENERGY: {t} {e}\nInfo: {n} 1"),
-        rows(" time = {t}\n kinetic = {k}\n total energy = {e}"),
-        rows('{{"t": {t}, "E": [1, {n}], "a": {{"total_energy": {e}}}}}'),
         "".join(rows("t = {t}, E = {e}" + ", x = 1" * (n % 2), n, n + 1) for n in range(90)),
     ],
 )
@@ -334,7 +331,7 @@ def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(form
         (series,) = tables(rows(form) + form.format(t=45.0, e=end))
         assert (len(series.times), series.diverged_at) == (samples, diverged_at)
         assert series.skipped == (end == "-344.9")
-    few = rows(form, 0, 7) + form.format(t=45.0, e="-344.9")
+    few = rows(form, 1, 8) + form.format(t=45.0, e="-344.9")
     assert [len(series.times) for series in tables(few)] == [8]
 
 
@@ -435,9 +432,11 @@ LOOP = "Loop time of 1 on 1 procs for 1500 steps with 2000 atoms\n"
         "WARNING: bond missing\nWARNING 12 13\n",
     ],
 )
-@pytest.mark.parametrize("asked", [{}, {"time": "Step", "energy": "TotEng"}])
+@pytest.mark.parametrize("asked", [(None, None), ("Step", "TotEng"), ("1", "3")])
 def test_a_remark_below_the_head_is_a_remark(remark, asked):
-    (series,) = tables(HEAD + remark + rows("{s} {k} {e}"), **asked)
+    time, energy = asked
+    (series,) = tables(HEAD + remark + rows("{s} {k} {e}"), time=time, energy=energy)
+    assert columns(series) == "Step, TotEng"
     assert list(series.energies) == ENERGIES
 
 
@@ -490,6 +489,13 @@ def test_runs_are_parted_and_restarts_joined(text, lengths):
     assert [len(series.times) for series in tables(text)] == lengths
 
 
+def test_what_follows_a_run_is_counted_and_told_with_it_and_a_new_head_is_read_anew():
+    text = "t E\n" + rows("{t} {e}\nx y") + LOOP + "3 - 7\nERROR: lost\n"
+    first, second = tables(f"{text}x y\n{rows('{t} {e}')}")
+    assert (first.skipped, first.sheet.error) == (1, "ERROR: lost")
+    assert (second.skipped, second.sheet.names) == (0, ["x", "y"])
+
+
 @pytest.mark.parametrize(
     ("head", "asked", "found"),
     [
@@ -497,12 +503,13 @@ def test_runs_are_parted_and_restarts_joined(text, lengths):
         ("# t Kin Pot\n# [] (eV) (eV)\n", ("t", "kin+pot"), "t, Kin+Pot eV"),
         ("Time[fs]  Kin.[a.u.]  Pot.[a.u.]\n", ("time", "Kin.+Pot."), "Time fs, Kin.+Pot. hartree"),
         ("", ("1", "2+3"), "column 1, column 2+column 3"),
+        ("t E K\n1 2 3\nx y z\n", ("x", "y+z"), "x, y+z"),
     ],
 )
 def test_columns_are_named_or_numbered_and_added(head, asked, found):
     time, energy = asked
     form = "{t:.6E} {k} {p}" + " word" * (not head)
-    (series,) = tables(head + rows(form).replace("E+", "D+"), time=time, energy=energy)
+    *_, series = tables(head + rows(form).replace("E+", "D+"), time=time, energy=energy)
     assert columns(series) == found
     assert series.energies == pytest.approx(ENERGIES)
 
