@@ -1,6 +1,10 @@
 """Read the tables of any program: lines of text, JSON, NumPy arrays, compressed or not.
 
-Documents and arrays become lines of text, a record each, so that there is one reader.
+1. A file becomes lines: packed files are unpacked, documents and arrays have a line a record.
+2. A line is a row like the last one; or else what a layout finds in it, such as printed values,
+   which is remembered for other lines of its shape; or else words that may be a head, or a row.
+3. Rows go to the table of the last head above them, printed values to the sheet of their run.
+4. `tables` chooses the columns of time and energy of each, and parts the series in them.
 """
 
 import bz2
