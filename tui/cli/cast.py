@@ -81,8 +81,10 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     if key in [method.key for method in taken]:
         raise InputError(f"there is a method {key} already; give your function another name.")
     letters = {method.letter for method in taken}
-    wishes = (*key.upper(), *string.ascii_uppercase)
-    letter = next(each for each in wishes if each.isalpha() and each not in letters)
+    free = [each for each in (*key.upper(), *string.ascii_uppercase) if each not in letters]
+    letter = next(filter(str.isalpha, free), None)
+    if letter is None:
+        raise InputError(f"no letter is left for {key}; leave out another --method.")
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(MAX_SOURCE + 1)

@@ -1,14 +1,17 @@
 """The options --methods and --method."""
 
 import json
+import string
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, RK4, TAYLOR_20, USUAL_CAST, Cast, named
 from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.tui.cli.cast import cast_of
+from pendu_tui.tui.cli.cast import cast_of, own_method_at
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.commands.options import parser_of
 from tests.tui.command_line import EULER, PENDU, ROOT, pendu
@@ -57,6 +60,9 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     assert cast_from(*own, "--methods", "kick,rk4") == (last, RK4)
     assert cast_from(*own) == (*USUAL_CAST, last)
     assert [each.letter for each in cast_from(*own, "--method", "kick.py")[-2:]] == ["K", "I"]
+    others = [replace(RK4, key=letter, letter=letter) for letter in string.ascii_uppercase]
+    with pytest.raises(InputError, match="no letter is left for kick_drift"):
+        own_method_at("mine.py:kick_drift", others)
 
 
 @pytest.mark.other_process
