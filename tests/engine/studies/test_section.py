@@ -56,16 +56,6 @@ def test_small_swings_and_any_of_the_oscillator_turn_by_twice_the_arcsine_of_hal
     assert (found.spins, found.rotation) == (False, pytest.approx(expected, abs=1e-7))
 
 
-def test_small_steps_turn_as_the_exact_pendulum_does():
-    period = UNIT.exact(2.0, 0.0).period
-    assert kind(VERLET, 2.0, 0.01, 8000).rotation == pytest.approx(0.01 / period, rel=2e-5)
-    turning = UNIT.exact(0.0, 3.0).period
-    for omega in (3.0, -3.0):
-        spun = kind(VERLET, 0.0, 0.01, 8000, omega)
-        assert spun.spins
-        assert spun.rotation == pytest.approx(math.copysign(0.01 / turning, omega), rel=2e-5)
-
-
 def test_a_swing_that_starts_turns_away_turns_as_fast():
     here, away = (kind(VERLET, 1.0 + turns * math.tau, 0.3) for turns in (0, 3))
     assert away.rotation == pytest.approx(here.rotation, rel=1e-6)
