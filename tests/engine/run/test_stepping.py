@@ -11,7 +11,6 @@ from pendu_tui.engine.methods.splitting import FOREST_RUTH
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import DEFAULT_SCENE
-from tests.sine import needs_rounded_sine
 
 EQUAL = Stepping(0.2, equal_cost=True)
 
@@ -55,19 +54,6 @@ def test_a_step_is_made_with_the_last_change_before_it():
     changes = [SteppingChange(*each) for each in at]
     found = [change_before(changes, step).stepping for step in (0, 5, 6)]
     assert found == [first, first, EQUAL]
-
-
-@needs_rounded_sine
-@pytest.mark.parametrize("index", range(len(USUAL_CAST)), ids=[method.key for method in USUAL_CAST])
-def test_a_method_takes_the_step_in_its_own_parts(index):
-    equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
-    equal.set_stepping(EQUAL)
-    alone.set_stepping(Stepping(EQUAL.own[index]))
-    equal.advance(50)
-    alone.advance(50 * EQUAL.parts[index])
-    assert equal.t == 50 * 0.2
-    ours, own = (lockstep.sample().readings[index] for lockstep in (equal, alone))
-    assert ours[:5] == own[:5]
 
 
 def test_a_method_diverges_at_a_part_of_a_step_keeps_its_last_phase_and_others_go_on():
