@@ -324,7 +324,7 @@ class Sheet:
         known = self._values[place][-2:]
         if len(known) < 2 or math.isnan(time):
             return True
-        return time - known[1] <= 10 * (known[1] - known[0])
+        return 0 < time - known[1] <= 10 * (known[1] - known[0])
 
     def print(self, name: str, unit: str, line: int, value: float) -> None:
         """Add a value that is printed with its name.  Once is not repeatedly."""

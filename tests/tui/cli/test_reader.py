@@ -319,6 +319,11 @@ def test_rows_at_the_end_without_time_or_energy_have_failed_unless_they_are_rare
     assert series.skipped == skipped
 
 
+def test_a_number_alone_below_a_row_is_no_time_unless_it_is_later():
+    (series,) = tables("x,E\n" + rows("{t},{e}", 0, 20) + "3\n" + rows("{t},{e}", 20))
+    assert (columns(series), series.skipped) == ("x, E", 1)
+
+
 @pytest.mark.parametrize("form", ["{t},{e}", "{t} {e}", "{t};{e:}", "t = {t}, E = {e}"])
 def test_a_number_that_is_shorter_than_all_above_where_the_file_ends_is_cut(form):
     for end, samples, diverged_at in (
