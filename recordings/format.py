@@ -167,9 +167,8 @@ def encode_readings(sample: Sample) -> list[bytes]:
     messages = []
     for reading in sample.readings:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t, **values_of(reading)}
-        error = reading.energy_error
         for name in EXTREMES:
-            if fields[name] == error and repr(fields[name]) == repr(error):  # -0.0 is not 0.0
+            if repr(fields[name]) == repr(reading.energy_error):  # -0.0 is not 0.0
                 del fields[name]
         messages.append(_dumps(fields))
     return messages

@@ -79,11 +79,11 @@ def _solving(share: float, any_of: Callable[[Any], Any]) -> Phases:
 
 def implicit_midpoint_of_spring(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """The implicit midpoint rule on a spring, with a closed form for the middle."""
-    z, w = phase
+    q, w = phase
     while True:
-        middle = parts.solve(z + h / 2 * w + h * h / 4 * parts.slow(z), h * h / 4)
-        z, w = 2 * middle - z, 4 * (middle - z) / h - w
-        yield z, w
+        middle = parts.solve(q + h / 2 * w + h * h / 4 * parts.slow(q), h * h / 4)
+        q, w = 2 * middle - q, 4 * (middle - q) / h - w
+        yield q, w
 
 
 BACKWARD_EULER = Method(

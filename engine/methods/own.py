@@ -232,4 +232,5 @@ def _sentence(error: BaseException, file: str, where: str) -> str:
             where = place(file, line)
     if isinstance(error, TooLongError):
         return f"{where} {error}."
-    return f"{where} raises {_line(format_exception_only(error)[-1])[:250].removesuffix('.')}."
+    raised = _line(format_exception_only(error)[-1])[:250]
+    return f"{where} raises {raised.removesuffix('.')}."

@@ -90,15 +90,15 @@ INNER = 10  # steps of the fast motion in a step
 
 def respa(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """r-RESPA, the impulse method: steps with the fast force between half kicks of the slow."""
-    z, w = phase
-    slow = parts.slow(z)
+    q, w = phase
+    slow = parts.slow(q)
     while True:
         w = w + h / 2 * slow
-        inner = velocity_verlet(parts.fast, (z, w), h / INNER)
-        z, w = next(islice(inner, INNER - 1, None))
-        slow = parts.slow(z)
+        inner = velocity_verlet(parts.fast, (q, w), h / INNER)
+        q, w = next(islice(inner, INNER - 1, None))
+        slow = parts.slow(q)
         w = w + h / 2 * slow
-        yield z, w
+        yield q, w
 
 
 def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
@@ -106,11 +106,11 @@ def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
 
     It is stable at any h because it damps every motion.
     """
-    z, w = phase
+    q, w = phase
     while True:
-        following = parts.solve(z + h * (w + h * parts.slow(z)), h * h)
-        z, w = following, (following - z) / h
-        yield z, w
+        following = parts.solve(q + h * (w + h * parts.slow(q)), h * h)
+        q, w = following, (following - q) / h
+        yield q, w
 
 
 def mean_field_splitting(parts: MeanField, phase: Phase, h: float) -> Iterator[Phase]:
@@ -146,7 +146,7 @@ IMEX_EULER = Method(
     label="IMEX Euler",
     letter="u",
     phases=imex_euler,
-    formula="w' = w + h (fast(z') + slow(z));  z' = z + h w'",
+    formula="w' = w + h (fast(q') + slow(q));  q' = q + h w'",
     order=1,
     force_evaluations=1,
     other_names=("implicit-explicit Euler",),

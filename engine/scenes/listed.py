@@ -42,7 +42,7 @@ _FIRST_LOOK = (
     Scene(
         "large-swing",
         theta=2.5,
-        watch="A 143° swing lasts 1.64 times a small one; explicit Euler goes over the top.",
+        watch="A 143° swing takes 1.64 small-swing periods; explicit Euler goes over the top.",
     ),
     Scene(
         "crossover",

@@ -25,7 +25,7 @@ REFINED = 1.1  # times the steps must reach the target, too: an error may cross 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A method's cheapest run that reaches the target, or its last one and why it does not."""
+    """A method's cheapest run that reaches the target, or why none does and perhaps its last."""
 
     method: Method
     point: Point | None  # None: there was no usable h, or too many steps to try

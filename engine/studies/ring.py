@@ -66,16 +66,15 @@ class Neighbourhood:
         """Return whether this is the ring of a run."""
         return self._run == (scene, run)
 
-    def following(
-        self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
-    ) -> "Neighbourhood":
-        """Return the ring carried towards a step of a run, by at most `most` steps.
+    def following(self, step: int, changes: Sequence[SteppingChange], most: int) -> "Neighbourhood":
+        """Return the ring carried towards a step of its run, by at most `most` steps.
 
-        It is another ring for another run, or on a way back.  `changes` are all of the run's, in
-        order; those of its past stay, since a branch is another.
+        It is another ring on a way back.  `changes` are all of the run's, in order; those of its
+        past stay, since a branch is another.
         """
         ring = self
-        if not self.is_of(scene, run) or step < self.step:
+        if step < self.step:
+            scene, run = self._run
             ring = Neighbourhood(scene, self.radius, run)
         target = min(step, ring.step + most)
         while ring.step < target:

@@ -140,3 +140,10 @@ def test_the_way_of_a_run_grows_also_while_time_runs_back():
         run.add(9.0, Event("set_h", 1, step, t, h=h))
     assert [change.x for change in run.changes] == [0.0, 2.0, 4.0]  # s on the way
     assert not run.changes[0].stepping.equal_cost
+
+
+def test_a_recording_of_another_format_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("pendu_tui.recordings.recorder.FORMAT_VERSION", "2")
+    path = record(tmp_path / "a.mcap", two_runs())
+    with pytest.raises(RecordingError, match="another format; this version reads 3"):
+        Recording.open(path)

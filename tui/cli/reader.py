@@ -285,11 +285,12 @@ class _Table(Sheet):
         fields = _split(line, delimiter)
         if opening and len(fields) != width:
             fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
-        if len(fields) != width or not line.startswith(opening):
+        is_like = len(fields) == width and line.startswith(opening)
+        if not is_like or line.lstrip()[:1] in _MARKS:
             return None
-        if line.lstrip()[:1] in _MARKS:
+        if self.cells and _units_in(fields) != self.cells:
             return None
-        return None if self.cells and _units_in(fields) != self.cells else fields
+        return fields
 
     def values(self, fields: list[str]) -> list[float | None]:
         """Return the number, or that of its mark, in each field that is kept."""
@@ -300,7 +301,7 @@ class _Table(Sheet):
 
     def put_odd(self, line: int, numbers: Sequence[float | None], opening: str) -> None:
         """Add what is certain of a row that is not quite like the others, or count it."""
-        if not self.names or opening != self.form[2] or not (opening or numbers[0] is not None):
+        if not self.names or opening != self.form[2] or (numbers[0] is None and not opening):
             return
         if any(value != value for value in numbers[1:]):  # some of what ended are missing
             self.put(line, self.kept, [float("nan")] * len(self.kept))
@@ -360,8 +361,8 @@ class _Text:
         self._over = []
         if self._is_over:
             self._read_new(line)
-        elif over and len(values := line.split()) == len(over):
-            for name, value in zip(over, values, strict=True):
+        elif over and len(line.split()) == len(over):
+            for name, value in zip(over, line.split(), strict=True):
                 self._print(name, value, self._unit(name))
         elif self._is_next_row(line) or line in self._heads:
             pass
@@ -636,9 +637,8 @@ class _Text:
         for place, field in enumerate(fields):
             if _DATE.match(field.strip("\"' ")):
                 units[place] = "s"
-            own = self._table.cells.get(place) or units[place]
-            units[place] = own or self._shared * (place > 0)
-        return units
+            units[place] = self._table.cells.get(place) or units[place]
+        return [units[0], *(each or self._shared for each in units[1:])]
 
 
 def _ways(text: str, cells: str = "") -> list[list[str]]:

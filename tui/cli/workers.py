@@ -51,7 +51,7 @@ def started(function: Callable[..., object], *arguments: object) -> tuple[BasePr
 
 
 def received(results: Any, process: BaseProcess, seconds: float | None = None) -> Any:
-    """Return what a process sends, or raise it.  Raises EOFError if it ends, or TimeoutError.
+    """Return what a process sends.  Raises what it sends as an error, EOFError, or TimeoutError.
 
     On Windows no end of the pipe tells of a process that ends before it has begun.
     """

@@ -13,13 +13,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pendu_tui.engine.inputs import (
-    angle,
-    check_name,
-    did_you_mean,
-    number,
-    seconds,
-)
+from pendu_tui.engine.inputs import angle, check_name, did_you_mean, number, seconds
 from pendu_tui.engine.methods import METHODS
 from pendu_tui.engine.models import NUMBERS
 from pendu_tui.engine.run.verdicts import VERDICTS

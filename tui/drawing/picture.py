@@ -24,8 +24,6 @@ GOOD = -6
 NOBODY = -7
 """The other inks.  QUIET is for less important text; FRAME is too faint for words."""
 
-_COLOURS = {EXACT: "exact", QUIET: "exact", FRAME: "frame", WARN: "warn", GOOD: "good"}
-
 FAINT = 64
 """Added to a method's ink it gives the fainter one of its trail."""
 
@@ -47,8 +45,9 @@ class Palette(NamedTuple):
             return mixed(self.colour(ink - FAINT), self.background, 0.5)
         if ink >= 0:
             return self.methods[ink % len(self.methods)]
-        colour: str = getattr(self, _COLOURS.get(ink, "text"))
-        return colour
+        others = {EXACT: self.exact, QUIET: self.exact, FRAME: self.frame}
+        others |= {WARN: self.warn, GOOD: self.good}
+        return others.get(ink, self.text)
 
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the

@@ -212,7 +212,8 @@ class Live(Source):
             self._runs += 1
             state.run.branch(self._runs)
             self._enter(state.run, state.history)
-        if state.stepping != self.stepping and 0 < self._run.changes[-1].step == self._run.step:
+        last = self._run.changes[-1].step
+        if state.stepping != self.stepping and last > 0 and last == self._run.step:
             self._take_back_changes()
         if state.stepping != self.stepping:
             self.change(state.stepping)
@@ -221,7 +222,7 @@ class Live(Source):
     def _take_back_changes(self) -> None:
         """Go on as a new run without the changes at this step, which ended the verdicts."""
         step = self._run.step
-        self._go_to(step - 1)
+        self._go_to(step - 1)  # only from behind is a step reached before its changes
         self._go_to(step)
         self._branch()
         self._take_sample()

@@ -245,7 +245,9 @@ class AccuracyPane(Chooser[Point]):
             return math.hypot(column - x, 2 * (row - y))
 
         near = min(self._drawn, key=distance, default=None)
-        return near if near is not None and distance(near) <= 6 else None
+        if near is None or distance(near) > 6:
+            return None
+        return near
 
     def choose(self, place: Point) -> None:
         self.described = place.method.key

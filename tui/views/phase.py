@@ -102,7 +102,7 @@ class PhasePane(Chooser[State]):
         self._carry_ring(source, sample)
         below = "click: start, wheel: zoom, g: ring"
         if self.shown.ring:
-            below = portrait.ring_text(source, self.neighbours) or below
+            below = portrait.ring_text(source, self.ring) or below
         self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         ground = portrait.portrait_of(self.viewport, source.scene.equations)
         points = portrait.method_points(source, sample, self.shown, self.ring)
@@ -127,9 +127,7 @@ class PhasePane(Chooser[State]):
             steps = 1
         try:
             with limited():
-                self.neighbours = ring.following(
-                    scene, sample.run, sample.step, source.changes, steps
-                )
+                self.neighbours = ring.following(sample.step, source.changes, steps)
         except OwnMethodError as error:
             self._ringless = scene
             self.neighbours = None

@@ -206,15 +206,13 @@ def ring_text(source: Source, ring: Neighbourhood | None) -> str:
     """Return what there is to say about the ring, or why there is none."""
     if ring is None:
         return source.scene.why_no_ring
-    step = 0
-    if ring.is_of(source.scene, source.sample.run):
-        step = ring.step
-    change = change_before(source.changes, step)
-    left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
+    change = change_before(source.changes, ring.step)
+    t = change.t + (ring.step - change.step) * change.stepping.h
+    left = source.scene.equations.area_share(t)
     text = f"ring, radius {ring.radius:g} rad"
     if left != 1:
         text += f": the true motion leaves {left:.9f} of its area"
-    if behind := source.sample.step - step:
+    if behind := source.sample.step - ring.step:
         text += f", {behind} steps behind"
     return text
 

@@ -347,11 +347,11 @@ class Stage(Pane):
 
     def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
         """Start a run from the last angle, at the pointer's speed over the last 0.1 s."""
-        recent = sum(now - time < 0.1 for time, _ in drag)
-        if recent == 1:
-            recent = 2  # a slow pointer passes a cell at a time
-        first_time, first_theta = drag[-max(recent, 1) :][0]
+        recent = [each for each in drag if now - each[0] < 0.1]
+        if len(recent) == 1:
+            recent = [*drag[-2:]]  # a slow pointer passes a cell at a time
         last_time, last_theta = drag[-1]
+        first_time, first_theta = (*recent, drag[-1])[0]
         seconds = (last_time - first_time) * abs(self.source.playhead.speed)
         omega = 0.0
         if seconds > 0:

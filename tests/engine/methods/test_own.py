@@ -120,7 +120,10 @@ WRONG = {
         "mine gives other numbers than for floats; this was with NumPy arrays",
     ),
     "an infinite force": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
-    "an exception with a full stop": (euler("raise ValueError('It is odd.')"), "raises ValueError: It is odd."),
+    "an exception with a full stop": (
+        euler("raise ValueError('It is odd.')"),
+        "raises ValueError: It is odd.",
+    ),
     "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (

@@ -136,7 +136,7 @@ def with_chance(noise, chance):
     return energies
 
 
-OPEN = "a trend cannot be excluded"
+OPEN = levels.OPEN.partition(";")[0]
 SIDES = {
     # the chance of the slope is 0.02, that of its ranks 4e-6 or 2e-5
     "MOVES_BY_RANK": (

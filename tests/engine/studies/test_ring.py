@@ -48,7 +48,7 @@ def test_a_method_that_overflows_keeps_its_last_ring():
 
 
 def followed(ring, run, most=10_000):
-    return ring.following(run.scene, run.run, run.step, run.changes, most)
+    return ring.following(run.step, run.changes, most)
 
 
 def has_taken(ring, *stretches):
@@ -83,23 +83,16 @@ def test_neighbours_follow_so_many_steps_at_once_and_in_each_methods_own():
     assert np.array_equal(ring.rings, [*own[0].rings[:3], own[1].rings[3]])
 
 
-def test_they_go_back_with_the_run_and_begin_again_with_another():
-    run = RewindableRun(DRIFT, 1)
+def test_they_go_back_with_their_run_and_are_of_no_other():
+    run = RewindableRun(DRIFT, 2)
     run.forward(20)
-    ring = followed(Neighbourhood(DRIFT, 0.1), run)
+    ring = followed(Neighbourhood(DRIFT, 0.1, 2), run)
     run.go_to(15)
     ring = followed(ring, run)
     assert has_taken(ring, (15, 0.05))
-    run.branch(2)  # a run of its own, that shares the first 15 steps
-    run.change(Stepping(0.1))
-    run.forward(2)
-    ring = followed(ring, run)
-    assert has_taken(ring, (15, 0.05), (2, 0.1))
-    gentle = RewindableRun(SCENES["gentle"], 2)
     assert ring.is_of(DRIFT, 2)
-    assert not ring.is_of(gentle.scene, 2)
-    assert followed(ring, gentle).is_of(gentle.scene, 2)
-    assert followed(ring, gentle).radius == 0.1
+    assert not ring.is_of(DRIFT, 1)
+    assert not ring.is_of(SCENES["gentle"], 2)
 
 
 def test_a_ring_is_as_wide_in_theta_as_in_omega_over_w0():

@@ -72,6 +72,8 @@ def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(m
     ended = []
     asked = []
     handled = []
+    leave = object()
+    close = object()
     ignored = {watchdog.system.ENDING[0]: signal.SIG_IGN}  # as under nohup
     monkeypatch.setattr(signal, "signal", lambda number, _: handled.append(number))
     monkeypatch.setattr(signal, "getsignal", ignored.get)
@@ -79,8 +81,8 @@ def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(m
     monkeypatch.setattr(dog, "end", ended.append)
     monkeypatch.setattr(watchdog.system, "is_gone", lambda: False)
     loop = SimpleNamespace(call_soon_threadsafe=asked.append)
-    dog.guard(loop, leave=bool, close=id)
-    assert dog.close is id
+    dog.guard(loop, leave, close)
+    assert dog.close is close
     assert handled == [*watchdog.system.ENDING[1:]]
     dog._look()
     assert not asked
@@ -90,7 +92,7 @@ def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(m
         dog._asked_at = time.monotonic() - ago
         dog._look()
         assert ended == codes
-    assert {*asked} == {bool}
+    assert {*asked} == {leave}
 
 
 def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypatch, capfd):

@@ -108,7 +108,8 @@ def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapsho
     for each, sign in zip(plots[4:6], (3, -3), strict=True):
         assert each.at(40).values == pytest.approx(sign * late[278])  # the last row before 14 s
     assert plots[1].zoomed(window(t, late), 4.0) == pytest.approx((3 / 2.25**2, 3 * 2.25**2))
-    assert plots[1].at(plots[1].left - 1) is plots[1].at(plots[1].left + plots[1].columns) is None
+    for beside in (-1, plots[1].columns):
+        assert plots[1].at(plots[1].left + beside) is None
     snapshot("stretches.txt", "\n".join(look(each.picture) for each in plots))
 
 

@@ -93,7 +93,7 @@ def test_tables_and_titles(snapshot):
 
 def test_phase_space(snapshot):
     live = after(DRIFT, 12)
-    ring = Neighbourhood(DRIFT, 0.1).following(DRIFT, 1, live.sample.step, live.changes, 1000)
+    ring = Neighbourhood(DRIFT, 0.1).following(live.sample.step, live.changes, 1000)
     views = (
         (Viewport.portrait(46, 15, DRIFT), Shown(exact=True), None),
         (Viewport.portrait(78, 17, DRIFT, 1.1, 2.0), Shown(hidden=frozenset({"rk4"})), ring),
