@@ -54,6 +54,7 @@ SHORT = {"verdict": "undecided", "reason": "short"}
 LARGE = {"max_energy_error": 0.004, "verdict": "loses"}
 
 
+@pytest.mark.filterwarnings("error")  # about odd code, such as `3or`
 @pytest.mark.parametrize(
     ("expression", "of_rk4", "found"),
     [
@@ -70,7 +71,7 @@ LARGE = {"max_energy_error": 0.004, "verdict": "loses"}
         ("any.verdict == loses", LARGE, "rk4.verdict is loses"),
         ("all.verdict == bounded", LARGE, ""),
         (
-            "rk4.max_energy_error > 1e-3 or rk4.verdict != bounded or rk4.energy > 1",
+            "rk4.max_energy_error > 1e-3or rk4.verdict != bounded or rk4.energy > 1",
             LARGE,
             "rk4.max_energy_error is 0.004, rk4.verdict is loses",
         ),

@@ -115,14 +115,16 @@ def test_a_recording_is_a_file_or_a_bundled_one_or_the_latest_or_another_of_the_
     monkeypatch.setenv("PENDU_RECORDINGS", str(library))
     for folder in ("library", "drift"):  # which hides no file
         Path(folder).mkdir()
-    for name, suggestion in (("latest", "file, or one of changes"), ("drfit", "mean drift?")):
+    for name, suggestion in (("latest", "file, or one of changes"), ("drfit", r"mean drift\?$")):
         with pytest.raises(RecordingError, match=suggestion):
             resolve(name)
     for name, changed_at in (("drift", 2), ("old", 1)):
         (library / f"{name}.mcap").write_bytes((GOLDEN / "drift.mcap").read_bytes())
         os.utime(library / f"{name}.mcap", (changed_at,) * 2)
-    with pytest.raises(RecordingError, match=r"'\\x1b\[2J': choose a file, or one of latest, ch"):
-        resolve("\x1b[2J")
+    choice = r"'\\x1b\[2J': choose a file, or one of latest, ch"
+    for name, suggestion in (("\x1b[2J", choice), ("odl.mcap", r"mean old\.mcap\?$")):
+        with pytest.raises(RecordingError, match=suggestion):
+            resolve(name)
     assert resolve(__file__) == Path(__file__)
     assert resolve("drift") == GOLDEN / "drift.mcap"
     assert resolve("latest") == library / "drift.mcap"

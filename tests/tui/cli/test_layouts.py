@@ -132,7 +132,7 @@ CASES = {
 
 
 NAMES = """\
-time: SimTime, simulation time, simulated time, Model Time, MD time, Current Time, tsim, time_sim
+time: SimTime, simulation time, simulated time, Model Time, MD time, Current Time, tsim, time (sim)
 time: Time (ps), t
 step: Step, MD step, timestep, nsteps, Step Nr., step number, nfi, TS, iter, iteration, frame, \
 cycle, row
@@ -174,7 +174,13 @@ def test_each_layout_reads_its_case(layout):
 
 @pytest.mark.parametrize("first", ["ERROR on proc 12: Lost atoms", "Fatal error:"])
 def test_of_the_errors_that_end_a_log_the_first_is_told(first):
-    text = rows("t = {t}, E = {e}") + f"Error: nan \n{first}\nERROR: MPI abort follows\n"
+    form = "t = {t}, E = {e}"
+    text = (
+        rows(form, 0, 40)
+        + "ERROR: a retry\n"
+        + rows(form, 40)
+        + f"Error: nan \n{first}\nERROR: MPI abort follows\n"
+    )
     (series,) = tables(text)
     assert series.sheet.error == first
 

@@ -225,7 +225,7 @@ def array(*unnamed: object, **named: object) -> bytes:
         json.dumps({"t": TIMES, "E": ENERGIES} | dict.fromkeys("xva", 3 * [[1]])),
         array(t=TIMES, E=ENERGIES, h=0.5, x=np.zeros((90, 2, 3)), y=np.zeros(270), z=[1j] * 90),
         array(np.array([TIMES, ENERGIES]).T),
-        array(np.rec.fromarrays([TIMES, ENERGIES], names="t,E")),
+        array(np.rec.fromarrays([TIMES, ENERGIES, TIMES], names="t,E,x")),
         gzip.compress(rows("{t} {e}").encode()),
         lzma.compress(rows("{t} {e}").encode()),
         rows("{t}\t{e}").encode("utf-16"),
@@ -306,7 +306,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         (TABLE + '45.0,"-345.12,5"\n', None, 1),  # no numbers
         (TABLE + "45.0,10.000-344\n", None, 1),
         (TABLE + "a note\n45.0\n45.5\n", None, 2),
-        (TABLE + "3\n50\n", None, 2),  # a remark
+        *((TABLE + f"{remark}\n51\n", None, 2) for remark in (3, 50)),
         ("t E\n" + rows("{t} {e}") + "energy nan detected\n", None, 0),
         (TABLE + "45.0,\n45.5\n", 45.0, 0),
     ],
@@ -499,6 +499,8 @@ def test_what_follows_a_run_is_counted_and_told_with_it_and_a_new_head_is_read_a
     first, second = tables(f"{text}x y\n{rows('{t} {e}')}")
     assert (first.skipped, first.sheet.error) == (1, "ERROR: lost")
     assert (second.skipped, second.sheet.names) == (0, ["x", "y"])
+    again = tables(TABLE + ",7\n,7\n" + rows("{t},{e}"))  # one table
+    assert [(len(series.times), series.skipped) for series in again] == [(90, 2), (90, 0)]
 
 
 @pytest.mark.parametrize(
@@ -507,7 +509,7 @@ def test_what_follows_a_run_is_counted_and_told_with_it_and_a_new_head_is_read_a
         ("# t Kin Pot\n# [ps] (eV) (eV)\n", ("t", "kin+pot"), "t ps, Kin+Pot eV"),
         ("# t Kin Pot\n# [] (eV) (eV)\n", ("t", "kin+pot"), "t, Kin+Pot eV"),
         ("Time[fs]  Kin.[a.u.]  Pot.[a.u.]\n", ("time", "Kin.+Pot."), "Time fs, Kin.+Pot. hartree"),
-        ("", ("1", "2+3"), "column 1, column 2+column 3"),
+        ("", ("1", "2 + 3"), "column 1, column 2+column 3"),
         ("t E K\n1 2 3\nx y z\n", ("x", "y+z"), "x, y+z"),
     ],
 )
@@ -616,9 +618,9 @@ def test_steps_and_units_of_the_owner_are_applied():
 
 
 def test_a_span_has_units_and_keeps_the_rows_at_its_ends():
-    text = "t [ps],E\n" + rows("{t},{e}")
+    text = "t [ps],E\n" + rows("{t},{e}") + 2 * "nan,nan\n"
     (series,) = tables(text, span=((1.55e-11, "s"), (3.05e-11, "s")))
-    assert list(series.times) == TIMES[31:62]
+    assert (list(series.times), series.diverged_at) == (TIMES[31:62], None)
 
 
 @pytest.mark.timeout(30)

@@ -83,7 +83,10 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("[shot]\nvew = 'phase'", "line 2: there is no field 'vew': did you mean view?"),
         ("[shot]\nquantity = 'eror'", "line 2: there is no quantity 'eror'"),
         ("[shot]\nview = 'phse'", "line 2: there is no view 'phse': did you mean phase?"),
-        ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
+        (
+            "[[scene]]\nh = 0.1\n[scene.shot]\ntheta = 1\n [[scene]]\ntheta = 'x'",
+            "line 6: theta: 'x' is not an angle",
+        ),
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
