@@ -156,7 +156,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         *((lambda t=t: judge(t, t), "times must be a list of numbers") for t in ([TIMES], [], "t")),
         *(
             (lambda e=e: judge([1, 2], e), "energies must be a list")
-            for e in ([10**400, 1], [1j, 1])
+            for e in ([10**400, 1], np.array([1j, 1]))
         ),
         (lambda: judge(TIMES, np.ma.masked_greater(WAVE, 10)), "energies has masked numbers"),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
