@@ -7,15 +7,16 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from pendu_tui.engine.run.lockstep import Sample
+from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import SCENES
 from pendu_tui.recordings import events
+from pendu_tui.recordings.events import Entry
 from pendu_tui.recordings.files import RecordingError
 from pendu_tui.recordings.recording import Recording
 from pendu_tui.recordings.verification import recover, verify
 from pendu_tui.tui.playback.replay import Replay
-from tests.recordings.examples import record, run_of, samples_of
+from tests.recordings.examples import SCENE, record, run_of, samples_of, start
 from tests.recordings.killed import HEUN
 from tests.tui.command_line import pendu
 
@@ -40,13 +41,17 @@ def test_a_scene_is_recorded_verified_recovered_and_replayed(tmp_path, name, sce
 
 @pytest.fixture
 def path(tmp_path, monkeypatch):
-    """A recording with a method of one's own, which is then unknown again."""
+    """A run with a method of one's own, which is then unknown again, and one without."""
     monkeypatch.chdir(tmp_path)
     Path("mine.py").write_text(HEUN)
     own = "--method", "mine.py:my_heun", "--time", "20", "--record", "own.mcap"
     assert pendu("run", "--methods", "rk4", *own).code == 0
+    with Recording.open(Path("own.mcap")) as recording:
+        entries = [*recording.entries()]
+    entries += [Entry(20.0, value) for value in (start(2), Lockstep(SCENE, run=2).sample())]
+    record(Path("both.mcap"), entries)
     monkeypatch.setattr(events, "_own", {})
-    return Path("own.mcap")
+    return Path("both.mcap")
 
 
 def test_without_the_file_all_is_kept_but_only_the_other_methods_verify(path):
@@ -72,7 +77,7 @@ def test_a_changed_file_is_said_and_compared_by_its_numbers(path, factor, change
     Path("mine.py").write_text(HEUN.replace("h / 2 * (a + b)", f"h / {factor} * (a + b)"))
     verified = pendu("verify", path, "--method", "mine.py:my_heun", "--json")
     (row,) = verified.json["files"]
-    assert row["changed_sources"] == changed
+    assert (row["methods"][:2], row["changed_sources"]) == (["rk4", "my_heun"], changed)
     assert row["identical"] == (factor != "2.001")
     assert verified.code == (not row["identical"])
     if verified.code:

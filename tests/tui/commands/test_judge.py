@@ -93,7 +93,6 @@ mixed.csv --energy P
 zero.csv
 zero.csv --scale std
 zero.csv --scale 50
-spike.csv
 settled.csv
 failed.csv
 ended.csv
@@ -104,6 +103,7 @@ table.csv coarse.csv --steps 1,2 --fail-if 'fluctuation_order < 2.02'
 table.csv coarse.csv --steps 1,1.02 --fail-if 'fluctuation_order < 50'
 coarse.csv table.csv --steps 1,2 --energy E --fail-if 'fluctuation_order < 0'
 table.csv failed.csv --steps 1,2
+spike.csv table.csv --steps 1,2
 steep.csv steep.csv --steps 1,2
 falling.csv falls.csv --steps 1,2
 """
