@@ -82,6 +82,8 @@ async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it(monkeyp
             assert [each.text for each in cells.painted[1:]] == [f"│{text}def│", "╰──────╯"]
             for end in range(1, 9):
                 assert line.crop(0, end) == Strip([*line]).crop(0, end)
+        recoloured = Picture([[("b", 0), ("y", 1)]]).changes(Picture([[("a", 0), ("y", 0)]]), 2)
+        assert [*recoloured] == [(0, 2, 0)]
         cells.show(Picture([[("世bcdef", TEXT)]]))
         await pilot.pause()
         assert cells.painted[1].text == "│世bcde│"

@@ -5,6 +5,7 @@ import itertools
 import math
 import threading
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,6 +26,9 @@ from tests.tui.harness import FPS, Lab
 
 class Keeper:
     """A recorder in memory, as strict as the real one."""
+
+    path = Path("mine\a.mcap")
+    failed = None
 
     def __init__(self):
         self.samples: list[Sample] = []
@@ -60,9 +64,9 @@ def states(sample: Sample) -> list[tuple[float, float]]:
 def simulated(scene, step, changes=()) -> list[tuple[float, float]]:
     """The states at a step, simulated again without a lab."""
     lockstep = Lockstep(scene)
-    for at, h in changes:
+    for at, *stepping in changes:
         lockstep.advance(at - lockstep.step)
-        lockstep.set_stepping(Stepping(h))
+        lockstep.set_stepping(Stepping(*stepping, scene.cast))
     lockstep.advance(step - lockstep.step)
     return states(lockstep.sample())
 
@@ -183,7 +187,7 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench = Bench()
     lab = bench.live
     bench.run(1)
-    lab.change(Stepping(0.1))
+    lab.change(Stepping(0.1, equal_cost=True))
     bench.run(2)
     at = lab.step(-5).step
     lab.change(Stepping(0.02))
@@ -191,11 +195,11 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench.run(1)
     second = [each for each in bench.keeper.events if each.run == 2]
     assert second[0].scene == DEFAULT_SCENE
-    inputs = [(each.kind, each.step, each.h) for each in second if each.kind in ("start", "set_h")]
-    assert inputs == [("start", 0, None), ("set_h", 20, 0.1), ("set_h", at, 0.02)]
+    changes = [(20, 0.1, True), (at, 0.02, False)]
+    inputs = [(each.step, each.h, each.equal_cost) for each in second if each.kind == "set_h"]
+    assert inputs == changes
     samples = [sample for sample in bench.keeper.samples if sample.run == 2]
     assert samples[0].step == at
-    changes = [(20, 0.1), (at, 0.02)]
     assert states(samples[-1]) == simulated(DEFAULT_SCENE, samples[-1].step, changes)
 
 
@@ -219,7 +223,9 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     ]
     later = Keeper()
     lab.record(later)
-    assert later.events == bench.keeper.events
+    assert later.events == lab.events == bench.keeper.events
+    name = "mine\N{REPLACEMENT CHARACTER}.mcap"
+    assert lab.recording_status == (name, later.seconds, None)
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 

@@ -87,11 +87,11 @@ def test_charts_of_points_with_flaws_and_marks_and_a_line_for_each_order(snapsho
 async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_its_own_points():
     async with accuracy_view() as (pilot, pane, live):
         before = dict(pane.points)
-        await pilot.press("plus")
+        await pilot.press("plus", "b")
         await complete(pilot, pane)
-        assert pane.here == [50] * 4
+        assert pane.here == [50] * 4  # backwards, too
         assert before.items() <= pane.points.items()
-        await pilot.press("u", "n")
+        await pilot.press("u", "u", "n")
         await complete(pilot, pane)
         assert pane.here == [100, 100, 100, 25]  # at equal cost each method has its own
         await pilot.press("left", "left")
@@ -101,13 +101,19 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         await until(pilot, lambda: live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0]))
         assert (live.sample.run, pane.cursor) == (1, None)  # the run goes on
         await until(pilot, lambda: pane.settled)
-        live.change(Stepping(5.0 / 2_000_001, cast=USUAL_CAST))  # too many steps to compute
+        for steps in (1, 2_000_001):  # too few or too many to compute
+            live.change(Stepping(5.0 / steps, cast=USUAL_CAST))
+            pane.draw()
+            assert pane.settled
+            assert words(pane).startswith("the current h is not on this chart")
+        await pilot.press("left")
+        live.change(Stepping(0.07, cast=USUAL_CAST))
         pane.draw()
-        assert pane.settled
-        assert words(pane).startswith("the current h is not on this chart")
-        live.start(SCENES["large-swing"])
-        await until(pilot, lambda: not before.items() & pane.points.items())
+        live.start(SCENES["large-swing"].altered(h=5.0 / RUNGS[1]))
+        pane.draw()
         await complete(pilot, pane)
+        assert {steps for _, steps in pane.points} == {*RUNGS}  # nothing of the scene before
+        assert pane.cursor is None
         expected = Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0])
         shown = pane.points["velocity_verlet", RUNGS[0]]
         assert shown.errors == expected.errors
@@ -119,6 +125,7 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         column, row = pane._chart.result.cell(point.force_evaluations, point.errors["energy"])
         assert pane.text.splitlines()[row][column] == "r"
         at = (column + 1, row + 1)  # the frame
+        await pilot.press("right")  # the pointer goes before the cursor
         await pilot.hover(pane, (at[0] + 3, at[1]))
         assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a small")
         exact = replace(pane.points["rk4", RUNGS[1]], errors=dict.fromkeys(ERROR_LABELS, 0.0))

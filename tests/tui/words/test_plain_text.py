@@ -73,6 +73,8 @@ def test_descriptions_as_they_are_stored(snapshot):
         act()
         texts += [*description(live), *map(str, event_lines(live)[-3:]), ""]
     snapshot("descriptions.txt", "\n".join(texts))
+    live.judgements[1] = live.judgements[1]._replace(progress=None)
+    assert method_sentence(live, 1).endswith("; undecided: " + live.judgements[1].reason + ".")
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

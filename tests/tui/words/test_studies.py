@@ -58,12 +58,13 @@ def test_the_orbit_in_a_sentence(method, kind, parts):
 
 def test_the_front_names_ranges():
     entries = [
+        Cheapest(1e-1, VELOCITY_VERLET, 50, 1.21),
         Cheapest(1e-2, VELOCITY_VERLET, 100, 1.21),
         Cheapest(1e-3, VELOCITY_VERLET, 300, 1.19),
         Cheapest(1e-4, RK4, 900, 1.0),
     ]
     assert front_words(entries, "evaluations") == (
-        "Cheapest in force evaluations: Velocity Verlet from 1e-2 to 1e-3, RK4 at 1e-4."
+        "Cheapest in force evaluations: Velocity Verlet from 1e-1 to 1e-3, RK4 at 1e-4."
     )
     assert front_words(entries[:1], "seconds").startswith("Cheapest in seconds: Velocity")
     assert "No power of ten" in front_words([], "seconds")
