@@ -422,8 +422,9 @@ class _Text:
                 return  # another name may have this shape
             holds.append((name, unit, place))
         shape = _NUMBERS.sub("\0", line)
+        is_text = not starts or re.search(r"[^\W\d_]", shape)
         is_odd = None in map(number, _NUMBERS.findall(line))  # as in a version, 1.2.3
-        if not is_odd and len(self._shapes) < MAX_SHAPES:
+        if is_text and not is_odd and len(self._shapes) < MAX_SHAPES:
             self._shapes[shape] = holds
 
     def _take(self, layout: Layout, match: re.Match[str], prints: Prints) -> bool:

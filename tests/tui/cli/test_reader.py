@@ -488,6 +488,7 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
         (pages(rows("t E\n{s} {e}\nt K", 0, 1), "{t} {k}", 0), [1, 18] * 5),
         (pages("t E\n", "{t} {e}", 0) + "t E\n" + rows("{n} {t} {e}"), [90, 90]),
+        ("| atom | mass |\n| 1 | 2.5 |\n| t | E |\n" + rows("| {t} | {e} |"), [90]),
     ],
 )
 def test_runs_are_parted_and_restarts_joined(text, lengths):
