@@ -242,6 +242,8 @@ def number(text: str) -> float | None:
         return float(text.replace(",", "."))
     except ValueError:
         text = text.strip("()[] \t\r\n\"'")
+    with suppress(ValueError):
+        return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):
         return float("nan")
     if _DATE.match(text):
