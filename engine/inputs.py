@@ -10,12 +10,16 @@ class InputError(ValueError):
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known word that is most like this one and begins alike, "" if none is."""
+    """Return the known word that is most like this one, "" if none is.
+
+    One that begins with another letter must be much alike.
+    """
     from difflib import get_close_matches  # slow to load, and few words are wrong
 
     bare = word[:200].lstrip("-").lower()  # longer ones take seconds
     names = {each.lstrip("-").lower(): each for each in known}
-    alike = get_close_matches(bare, [each for each in names if each[:1] == bare[:1]])
+    alike = get_close_matches(bare, names, cutoff=0.8)
+    alike += get_close_matches(bare, [each for each in names if each[:1] == bare[:1]])
     return next((names[each] for each in alike), "")
 
 

@@ -568,6 +568,7 @@ class _Text:
             last.heads.append(self._line)
         if not goes_on:
             self._begin_table(names or self._labelled(len(fields)), fields)
+        if names or not goes_on:
             self._table.form = form
         for line, ways in self._heads.items():
             if names in ways:

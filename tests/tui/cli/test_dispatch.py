@@ -53,6 +53,7 @@ def test_a_scene_may_stand_before_or_after_the_options(words):
         ("swing.csv", 2, "pendu-tui judge swing.csv"),
         ("swing.py", 2, "pendu-tui --method swing.py"),
         ("crosover", 2, "did you mean crossover?"),
+        ("run --scene rift", 2, "there is no scene 'rift': did you mean drift?"),
         ("zzz", 2, "there is no command or scene 'zzz'; pendu-tui --help lists them."),
         ("run spin --scene drift --time 1", 2, "spin and drift"),
         ("--print-completion ksh", 2, "--print-completion: "),

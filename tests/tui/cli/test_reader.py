@@ -485,6 +485,11 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
         (json.dumps({name: {"t": TIMES, "E": ENERGIES} for name in "ab"}), [90, 90]),
         (json.dumps({"a": {"t": TIMES, "E": ENERGIES}, "b": {"t": [8, 9], "E": [1, 2]}}), [2, 90]),
         (pages("\nETITLE: TS BOND TOTAL\n", "ENERGY: {s} 1.5 {e}", 0), [90]),
+        (
+            f"ETITLE: t C E\n{rows('A: {t} 1 {e}', 0, 40)}ETITLE: t C E\n"
+            + rows("B: {t} 1 {e}", 40),
+            [90],
+        ),
         (pages("# new\nt,E\n", "{t},{e}", 1), [18, 19, 19, 19, 19]),
         (pages(rows("t E\n{s} {e}\nt K", 0, 1), "{t} {k}", 0), [1, 18] * 5),
         (pages("t E\n", "{t} {e}", 0) + "t E\n" + rows("{n} {t} {e}"), [90, 90]),
