@@ -249,8 +249,11 @@ def test_what_is_undecided_is_not_said_to_rest():
 
 
 def test_a_symplectic_method_comes_back():
-    judgement = judge_of(1e-3 * np.arange(6000), method=method_of("verlet_compensated")).judgement
-    assert (judgement.verdict, judgement.reason) == ("undecided", levels.RETURNS)
+    method = method_of("verlet_compensated")
+    wave = np.roll(BAND, 4) - 0.5
+    found = [judge_of(each, method=method).judgement for each in (1e-3 * np.arange(6000), wave)]
+    reasons = [(each.verdict, each.reason) for each in found]
+    assert reasons == [("undecided", levels.RETURNS), ("bounded", "")]
     assert judge_of(1e-3 * np.arange(100), method=V).judgement.trend is None
 
     judge = judge_of([0.0] * 200, method=FOREST_RUTH)
@@ -428,9 +431,10 @@ def test_a_method_fails_once_and_for_good():
         yield 4.0, 0.0  # over the top
         yield math.nan, 0.0
 
-    lost = moved(DRIFT.with_cast((replace(V, key="jumping", phases=jumping),)), [400])
+    lost = moved(DRIFT.with_cast((replace(V, key="jumping", phases=jumping), V)), [600])
     noted = [(each.kind, each.step, each.t) for each in lost.milestones]
-    assert noted == [("failed", 2, 2 * DRIFT.h)]
+    assert noted[:-1] == [("failed", 2, 2 * DRIFT.h)]
+    assert words(lost) == ["failed", "bounded"]  # the other is still judged
 
 
 @pytest.mark.parametrize(
