@@ -28,6 +28,7 @@ STARTS = {
     "just above it": (2.0, -JUST * math.cos(1.0) * (1 + 1e-13)),
     "within rounding of it": (0.0, JUST),
     "many turns down": (-1e6, -9.0),
+    "a turn up": (7.0, 1.0),
 }
 
 

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
@@ -114,6 +115,8 @@ def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monke
         outcome = pendu(*RUNS, "--workers", asked)
         assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
     assert ended == ["one"] * 4
+    monkeypatch.setattr(Lost, "map", Mock(side_effect=OwnMethodError("mine fails.")))
+    assert pendu(*RUNS, "--workers", 2).refused(3, "pendu-tui: mine fails.")
     assert pendu(*RUNS, "--workers", 1).code == 0
 
 

@@ -38,6 +38,10 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
         pendu("run", "--time", 3000, "--h", 0.1, "--methods", "verlet", "-o", tmp_path / "c.svg")
     ((_, t, _),) = drawn[0].figure.lines
     assert (len(t), t[1] - t[0]) == (395, pytest.approx(38 * 0.2))  # of 15 000 samples
+    matplotlib.reset_mock()
+    pendu("accuracy", "--all", "--time", 2, "--h-values", "0.2:0.1:2", "-o", tmp_path / "d.svg")
+    plots = matplotlib.figure.Figure().add_subplot().plot.call_args_list
+    assert len({plot.kwargs.get("label") for plot in plots}) > 9  # more than line styles
     monkeypatch.setattr("pendu_tui.tui.commands.run.stop_requests", lambda: nullcontext(lambda: 1))
     assert pendu(*RUN, tmp_path / "b.svg").code == 130  # after the first sample
     text = re.sub(r"\w+Path\(.*?\)", "FILE", "\n".join(texts))
