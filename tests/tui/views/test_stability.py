@@ -142,6 +142,7 @@ async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen
         assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
         for text in ("Explicit Euler: grows", "Symplectic Euler: held", "RK4: held", " 0.5 "):
             assert text in pane.text
+        live.change(live.stepping.reversed())
         assert pane.here(VERLET) == (live.scene.z, 1.0)
         assert pane.text.count("@") == 4
         piece = next(pieces(pane.grid, (20,)))

@@ -69,8 +69,8 @@ def test_small_swings_are_enlarged_to_23_to_46_degrees_as_the_stage_is_wide(room
     assert stage._lens(half).times == times
     stage.shown = Shown(theta=half)  # of a shot
     assert stage._lens(3.0).times == times
-    stage.shown = Shown(overview=True)
-    assert stage._lens(half).times == 1
+    for stage.shown in (Shown(overview=True), Shown(held=half)):
+        assert stage._lens(half).times == 1
 
 
 def on_lane(theatre, place):
@@ -125,7 +125,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
     fastest = 5 * SCENES["drift"].w0
     async with lab() as theatre:
-        theatre.source.set_speed(2.0)
+        theatre.source.set_speed(-2.0)  # of a replay that runs backwards
         for drag, now, theta, omega in (
             ([(0.9, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06, 0.6, 1.0),  # 2 rad a second, at 2×
             ([(0.0, 0.0), (1e-4, -1.0)], 0.01, -1.0, -fastest),  # the terminal was late
@@ -141,12 +141,12 @@ async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_al
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.click(Stage, *on_lane(theatre, 2)[1], button=3)
-        below = theatre.pane(Stage).size.height - 1
-        await theatre.click(Stage, 1, below)  # far off
+        for column in (6, 38):  # just beyond the outermost lane
+            await theatre.click(Stage, column, 16)
         assert not theatre.stage.shown.hidden
-        for place in (2, 0):
-            stage, cell = on_lane(theatre, place)
-            await theatre.click(stage, *cell)
+        stage, cell = on_lane(theatre, 2)
+        for place, at in ((2, cell), (0, (37, 16))):
+            await theatre.click(stage, *at)
             await theatre.run(0.1)
             assert theatre.stage.shown.places(theatre.scene.cast) == [place]
             assert theatre.sample.run == 1

@@ -44,6 +44,12 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
             await theatre.run(0)
         near = theatre.stage.shown.stretch
         assert 8 <= (near.end - near.begin) / WHOLE.h < 8 / 0.7 * 1.1 + 1
+        few = near._replace(end=near.begin + 3 * WHOLE.h)  # as where a long run has joined rows
+        theatre.stage.shown = theatre.stage.shown._replace(stretch=few)
+        await theatre.run(0)
+        chart.zoom(2)
+        await theatre.pilot.pause()
+        assert theatre.stage.shown.stretch.end > few.end
         await theatre.press("w")
         assert theatre.stage.shown == Shown().through(WHOLE)
         chart.zoom(0.5)

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from pendu_tui.engine.models.model import State
@@ -39,6 +39,7 @@ def test_both_edges_of_a_portrait_lead_to_what_is_drawn_there(edge):
 
 
 @given(sizes, st.floats(-math.pi, math.pi))
+@example((3, 2), math.pi)
 def test_every_angle_of_a_turn_is_on_the_portrait_and_every_turn_shows_the_same(size, theta):
     viewport = Viewport.portrait(*size, DRIFT)
     assert 0 <= viewport.x(theta) < 2 * size[0]
@@ -95,7 +96,7 @@ def test_the_swing_decides_and_explicit_euler_leaves_it_until_it_needs_the_whole
 
 def test_the_frame_leaves_out_a_method_beyond_its_limit():
     lab = Lab(SCENES["gentle"])
-    lab.live.change(Stepping(0.7))  # z = 2.2
+    lab.live.change(Stepping(-0.7))  # z = 2.2
     lab.run(20)
     found = reach(SCENES["gentle"], lab.live.stepping, lab.live.sample, (2,))
     assert found.frame < 0.12 < found.widest

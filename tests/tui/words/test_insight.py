@@ -94,7 +94,12 @@ def test_sentences_as_they_are_stored(judged, snapshot):
     ):
         found.append(drift(changed(live, RK4, **changes), RK4))
     found += [bounded(judged), bounded(judged, {"symplectic_euler"})]
-    found.append(bounded(after(DRIFT, 5)))
+    back = Live(DRIFT)
+    back.change(Stepping(-DRIFT.h))
+    back.step(200)
+    found += [bounded(after(DRIFT, 5)), insight(back)]
+    back.step(160)
+    found.append(bounded(back))
     snapshot("sentences.txt", "".join(f"{each and ': '.join(each)}\n" for each in found))
 
 
