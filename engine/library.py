@@ -182,11 +182,11 @@ class Judged:
             relative = f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}"
             absolute = f"{self.slope * self.scale:+.2e} ± {self.uncertainty * self.scale:.0e}"
             absolute = f"absolute {absolute} {energy_unit}".rstrip()
-            lines.append(f"trend         {relative}, {absolute} {per}")
             share = self.share or 0.0
             band = f"{100 * share:+.2g} % of" if abs(share) < 1 else f"{share:+.3g} times"
-            bound = f"relative {self.bound:.1e} {per} at 99 %; over this record {band} the band"
-            lines.append(f"bound         {bound}")
+            lines.append(f"trend         {relative}, {absolute} {per}")
+            lines.append(f"bound         relative {self.bound:.2e} {per} at 99 %")
+            lines.append(f"share         {band} the band over this record")
         error = "too large for a number"
         if math.isfinite(self.max_error):
             error = f"{self.error:+.2e} at the end, {self.max_error:.2e} at most, relative to "

@@ -111,7 +111,7 @@ RK4_LEARNED_FIELD = _by_rk4(
     label="Learned field",
     letter="j",
     other_names=("learned vector field",),
-    formula="RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
+    formula="RK4 on d(theta, omega)/dt = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
     "measurements",
     note="It conserves nothing: within 100 s the true energy of a swing from 1 rad is off by "
     "36 %, from 1.5 rad by 60 %, and from 0.2 rad it is nine times as large.",
@@ -123,8 +123,8 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     label="Learned H",
     letter="g",
     other_names=("learned Hamiltonian",),
-    formula="RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 "
-    "measurements",
+    formula="RK4 on Hamilton's equations of H = a sum of 60 tanh(a theta + b omega + c), fitted to "
+    "600 measurements",
     note="Its field is as inexact as the learned field, but its flow conserves H; RK4 loses 2.5e-7 "
     "of it a second from 1.5 rad at w0 h = 0.1. The true energy of a swing is off by 1.2 % from 1 "
     "rad, 0.3 % from 2, 12 % from 0.2.",

@@ -164,15 +164,15 @@ MEAN_FIELD_SPLITTING = Method(
     label="Exact splitting",
     letter="x",
     phases=mean_field_splitting,
-    formula="theta + h/2 omega;  s turned by nu h about b(theta), omega kicked by it;  theta + h/2 "
-    "omega",
+    formula="theta + h/2 omega;  s rotated by nu h about b(theta), while -kappa b'·s kicks omega;  "
+    "theta + h/2 omega",
     order=2,
     force_evaluations=1,
     symplectic=True,
     reversible=True,
     other_names=("Strang splitting",),
     reference=f"{HAIRER}, II.5",
-    note="Its kicks are counted; each turns the two levels exactly over one step.",
+    note="Each kick counts as one evaluation; it rotates the Bloch vector s exactly.",
     models=("mean_field",),
     takes="parts",
 )

@@ -109,8 +109,8 @@ BLANES_MOAN_4 = _method(
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
-    note="It follows a swing from 2 rad for 100 s to 1e-3 (1e-6) rad in 2,800 (7,800) evaluations; "
-    "Yoshida 6 takes 7,700 (23,800), RK4 15,600 (59,000).",
+    note="It follows a 2 rad swing for 100 s to within 1e-3 (1e-6) rad in 2,800 (7,800) "
+    "evaluations; Yoshida 6 takes 7,700 (23,800), RK4 15,600 (59,000).",
 )
 
 BLANES_MOAN_6 = _method(
@@ -151,7 +151,7 @@ BLANES_MOAN_6 = _method(
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
     note="Of order 6 only where the force depends on the position alone. It follows a swing from 2 "
-    "rad for 100 s to 1e-9 rad in 26,400 evaluations; BM4 takes 36,000, RK4 182,000.",
+    "rad for 100 s to within 1e-9 rad in 26,400 evaluations; BM4 takes 36,000, RK4 182,000.",
 )
 
 _YOSHIDA = (0.78451361047755726, 0.23557321335935813, -1.1776799841788710)

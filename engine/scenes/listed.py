@@ -191,7 +191,7 @@ _STRUCTURE = (
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
-        watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
+        watch="Explicit Euler gains energy despite friction, and spins; the others slow down.",
         often_said="RK4 is better where energy is lost. True for an accuracy of 0.1 % or better; "
         "at 1 % conformal Verlet costs half.",
     ),
@@ -216,7 +216,7 @@ _STIFFNESS = (
         h=0.02,
         cast=_SPRING,
         speed=0.5,
-        watch="h·omega = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
+        watch="h·omega_s = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
         often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the "
         "spring.",
         # Verlet and RESPA lie on implicit midpoint
@@ -233,7 +233,7 @@ _STIFFNESS = (
         h=0.05,
         cast=_SPRING,
         speed=0.25,
-        watch="h·omega = 2.5, beyond Verlet's limit of 2: in 1/4 s its bob is gone.",
+        watch="h·omega_s = 2.5, beyond Verlet's limit of 2: in 1/4 s its bob is gone.",
         shot=Shot(front=("velocity_verlet", "rk4", "implicit_midpoint", "imex_euler")),
     ),
     Scene(
@@ -244,7 +244,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="One step per period of the spring: RESPA resonates, implicit midpoint holds.",
-        often_said="With impulses only the slow motion limits h. But h must not come near the "
+        often_said="With impulses, only the slow motion limits h. But h must not come near the "
         "spring's period.",
     ),
 )

@@ -115,14 +115,16 @@ def test_a_judged_series_prints_as_the_command_does():
     assert found.lines("ps", "eV") == [
         "verdict       grows: it waits",
         "trend         relative +5.00e-05 ± 2e-06 per ps, absolute +1.00e-03 ± 4e-05 eV per ps",
-        "bound         relative 6.0e-05 per ps at 99 %; over this record +50 % of the band",
+        "bound         relative 6.00e-05 per ps at 99 %",
+        "share         +50 % of the band over this record",
         "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20 eV",
     ]
     settled = replace(found, rests=True, reason="", share=-1.0)
     assert settled.lines(step="step") == [
         "verdict       grows, then settles",
         "trend         relative +5.00e-05 ± 2e-06 per step, absolute +1.00e-03 ± 4e-05 per step",
-        "bound         relative 6.0e-05 per step at 99 %; over this record -1 times the band",
+        "bound         relative 6.00e-05 per step at 99 %",
+        "share         -1 times the band over this record",
         "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20",
     ]
     failed = judge(TIMES, [*WAVE[:-1], math.nan])

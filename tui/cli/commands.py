@@ -132,7 +132,7 @@ verdicts:
 FILE is a log or table from any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
 .npz, …, also compressed.  Without options its tables and columns are listed, and the energy is
 judged if it is clear which column holds it.  Results have the units of the file's headers.
-The verdict failed means exit code 1.
+A verdict of `failed` exits with 1.
 """,
     ),
     "verify": Command(

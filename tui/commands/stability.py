@@ -70,7 +70,7 @@ def report(scene: Scene, steps: int, rows: Sequence[Row], is_whole: bool = True)
     pendulum = [_row_fields(row) for row in rows]
     return Report(
         name="stability",
-        title="Linear oscillator: spectral radius of one step; stable up to z = h·w0",
+        title="Linear oscillator: the largest stable z = h·w0, and the spectral radius of one step",
         columns=(
             method_column(scene.cast),
             Column("measured", "limit_z", limit_text),
