@@ -7,30 +7,30 @@ from pendu_tui.engine.quantities import CHARTED, QUANTITIES, RECORDED
 from pendu_tui.engine.run.lockstep import Reading
 
 ROWS = """
-theta, rad, always, gate
-omega, rad/s, always, gate
-energy, s⁻², always, gate
-energy_error, (E - E0) / E0, always, gate
-max_energy_error, over every step so far, always, gate
+theta, rad, always, gate, theta [rad]
+omega, rad/s, always, gate, omega [rad/s]
+energy, s⁻², always, gate, energy [1/s²]
+energy_error, (E - E0) / E0, always, gate, dE/E0, |dE/E0|
+max_energy_error, over every step so far, always, gate, largest
 energy_error_low, since the sample before, if known
 energy_error_high, since the sample before, if known
 diverged_at, s, if known, gate
 max_invariant_error, over every step so far, if known, gate
 log_energy_error, gate
-theta_error, rad, gate
-shadow_error
-drift_per_second, 1/s, gate
+theta_error, rad, gate, theta error, theta error [rad]
+shadow_error, |shadow error|
+drift_per_second, 1/s, gate, trend per s
 slope, 1/s, gate
 bound, 1/s, gate
 share, gate
-force_evaluations, gate
+force_evaluations, gate, evals/step
 """
 
 
 def told(each):
-    """Name, unit or what it is, whether recorded and compared."""
-    gate = "gate" if each.in_gate else ""
-    return ", ".join(filter(None, (each.name, each.unit, each.about, each.recorded, gate)))
+    """Name, unit or what it is, whether recorded and compared, and its titles."""
+    words = [each.name, each.unit, each.about, each.recorded, "gate" if each.in_gate else ""]
+    return ", ".join(filter(None, (*words, each.head.wide, each.chart.magnitude)))
 
 
 def test_a_quantity_is_recorded_compared_and_shown_in_its_unit():

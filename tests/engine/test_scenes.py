@@ -112,49 +112,55 @@ def test_a_scene_says_why_there_is_no_map_of_it_and_no_ring():
         assert method.label in replace(DEFAULT_SCENE, cast=(method,)).why_no_ring
 
 
+TOLD = (
+    r"\b(?:RK4|Verlet|RESPA|IMEX|\w+plicit|symplectic|bits|gains?|loses?|\w+est|below|above|beyond"
+    r"|over|right|holds?|energy|probability)\b|\b[\d.]*\d"
+)
+
+
 def shown(scene):
-    """Speed, edge [rad], seconds, pause, line; what is unusual; front; the numbers it tells."""
+    """Speed, edge [rad], seconds, pause, line; what is unusual; front; what it tells, in order."""
     shot, line = scene.shot, scene.shot.line or Line("", 0.0, "")
     numbers = scene.speed, shot.theta, shot.seconds, shot.moment, line.value
     words = [scene.name, *(f"{each:.4g}" for each in numbers if each), line.name, line.quantity]
     words += [shot.view, shot.quantity, shot.log or "linear", scene.often_said and "belief"]
     words += ["".join(method_of(key).letter for key in shot.front)]
-    words += re.findall(r"\b[\d.]*\d", scene.watch)
+    words += re.findall(TOLD, scene.watch)
     return " ".join(word for word in words if word not in ("", True, "lab", "energy_error"))
 
 
 SHOWN = """
 first look:
-drift 1 3.142
-gentle 1 evr 72
-linear 2 3.142 25
-large-swing 1 143 1.64
-crossover 4 50 linear vr
-near-separatrix 4 theta_error
-spin 1 sv
+drift 1 3.142 Explicit gains energy symplectic RK4 loses
+gentle 1 evr explicit gains energy RK4 loses 72
+linear 2 3.142 explicit gains 25 energy
+large-swing 1 143 1.64 explicit over
+crossover 4 50 linear vr RK4 energy below Verlet
+near-separatrix 4 theta_error RK4 smallest energy
+spin 1 sv symplectic
 stability:
-euler-caught 60 3.142 110 110 E0 110
-verlet-limit 16 60 43.56 linear v 2 11 98
-verlet-limit-above 16 0.6 60 21.62 0.48 rad linear v 2 0.48
-rk4-limit 8 60 22.4 -0.5 half linear r 2 2 4
-rk4-limit-above 8 0.25 linear r 2 2 0.2
-chaos-fenced 64 3.142 3.223 pi/h omega phase sv 0.95
+euler-caught 60 3.142 110 110 E0 Explicit energy 110
+verlet-limit 16 60 43.56 linear v below 2 11 Verlet loses 98 energy
+verlet-limit-above 16 0.6 60 21.62 0.48 rad linear v above 2 Verlet holds 0.48
+rk4-limit 8 60 22.4 -0.5 half linear r below 2 2 RK4 energy 4 over
+rk4-limit-above 8 0.25 linear r above 2 2 RK4 gains energy holds 0.2
+chaos-fenced 64 3.142 3.223 pi/h omega phase sv 0.95 symplectic
 chaos-loose 2048 3.142 5.991 2 pi/h omega phase sv 1.1 2
-resonance 16 linear belief v 4
+resonance 16 linear belief v 4 Verlet energy
 structure:
-damped 2 belief
-halving 4 linear belief hav 19 29.6 8
+damped 2 belief Explicit gains energy
+halving 4 linear belief hav gains 19 29.6 Verlet 8
 stiffness:
-stiff-slow 0.5 spring_energy linear belief riu 1
-stiff-limit 0.25 vriu 2.5 2 1 4
-stiff-resonance 0.5 belief
+stiff-slow 0.5 spring_energy linear belief riu 1 RK4 IMEX
+stiff-limit 0.25 vriu 2.5 beyond Verlet 2 1 4
+stiff-resonance 0.5 belief RESPA implicit holds
 precision:
-precision 1 theta_error 32 5.5 64 0.003
-precision-deep 4 theta_error 64 35 3 4
+precision 1 theta_error 32 bits Verlet over 5.5 64 bits right 0.003
+precision-deep 4 theta_error 64 bits lose 35 right 3 4
 learning:
-learned 8 belief ztr 100 60 1
+learned 8 belief ztr 100 lose 60 energy 1
 mean field:
-mean-field 4 probability_error linear 4 4 15
+mean-field 4 probability_error linear RK4 energy right 4 4 15 probability
 """
 
 

@@ -57,7 +57,7 @@ def path(tmp_path, monkeypatch):
 def test_without_the_file_all_is_kept_but_only_the_other_methods_verify(path):
     assert pendu("verify", path, "--methods", "rk4").code == 0
     pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun")
-    with pytest.raises(RecordingError, match="my_heun"):
+    with pytest.raises(RecordingError, match="needs the user's own method my_heun"):
         verify(path, only={"my_heun"})
     assert "my_heun" in pendu("recordings", "show", path).out
     assert "my_heun" in pendu("export", path).out
