@@ -126,6 +126,9 @@ def test_a_sample_that_lacks_a_method_is_damage(tmp_path):
         recorder.add(sample._replace(step=1, readings=sample.readings[:3]), 0.5)
     with Recording.open(path) as recording:
         assert (recording.damaged, recording.reason) == (True, "a sample is incomplete")
+    path.write_bytes(path.read_bytes()[:-1])
+    with Recording.open(path) as recording:  # the first reason
+        assert (recording.damaged, recording.reason) == (True, "its end is missing or damaged")
 
 
 def test_a_step_of_no_length_is_refused(tmp_path):

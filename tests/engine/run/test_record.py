@@ -40,7 +40,10 @@ MAKES = {
     "an approach of a third of the record": (10 - 10 * np.exp(-T / 33) + NOISE, "grows"),
     "cooling to a floor": (100 * np.exp(-T / 10) + 0.2 * noise_of(20), "loses"),
     "backward Euler in a quartic well": ((1 + 0.06 * T) ** -2 * (1 + 0.01 * SINE), "loses"),
-    "a walk": (np.cumsum(NOISE), levels.WALKS),
+    "a walk": (
+        np.cumsum(NOISE),
+        "it cannot be told from a random walk; a longer record may not help",
+    ),
     "a wrong end": (NOISE + 20 * (T > 98), levels.UNLIKE_END),
     "a wobble that gets wider": (T * np.sin(7 * T), levels.WIDENS),
     "a wobble that gets wider in turns": (NOISE * np.repeat((1, 3, 2, 4), 500), "bounded"),

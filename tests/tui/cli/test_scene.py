@@ -8,7 +8,7 @@ import pytest
 
 from pendu_tui.engine.scenes import SCENES, Line, Shot
 from pendu_tui.tui.cli.scene import read_scenes, scene_text
-from tests.tui.command_line import own_method, pendu
+from tests.tui.command_line import EULER, own_method, pendu
 
 
 @pytest.fixture
@@ -117,6 +117,8 @@ def test_methods_of_ones_own_lie_beside_the_file(here, monkeypatch):
     own_method(here)
     scene = read_scene(Path("mine.toml"), 'methods = ["rk4", "my methods.py:mine"]')
     assert [method.key for method in scene.cast] == ["rk4", "mine"]
+    Path("own.py").write_text(EULER.format(name="RK4"))
+    assert read_scene(Path("own.toml"), 'methods = ["own.py:RK4"]').cast[0].key == "RK4"
     saved = scene_text(scene)
     monkeypatch.chdir("/")
     assert read_scene(here / "elsewhere.toml", saved).cast[1].key == "mine"
