@@ -39,6 +39,9 @@ async def test_it_has_themes_pixels_and_scenes_first_then_keys_each_once():
 
 async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
     async with lab(size=SIZE) as theatre:
+        await theatre.press("P", "x")
+        assert theatre.app.screen.query_one(Input).value == "scene x"
+        await theatre.press("escape")
         for words, first, number in (
             ("scene prob", "scene mean-field", 1),  # "of the probability is gone"
             ("PIXELS half", "pixels half", 1),

@@ -176,6 +176,8 @@ async def test_the_lab_stands_still_and_says_so_below_a_dialog_and_while_the_pen
         theatre.stage.post_message(Held(1.0))
         assert not await runs("held")
         assert theatre.text(ErrorTable).count(" +1.00000      +0.00000 ") == 4
+        theatre.stage.show_now()
+        assert "Let go or throw" in theatre.text(InsightLine)
         theatre.stage.post_message(Held(None))
         assert await runs("running")
         for gap, played in ((0.99, 0.99), (1.01, 0.0)):  # as after ctrl+z

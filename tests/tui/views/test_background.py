@@ -29,6 +29,8 @@ def forever() -> Iterator[int]:
 
 
 def busy() -> Iterator[int]:
+    for stream in (1, 2):
+        os.write(stream, b"What nobody may read.")
     yield os.getpid()
     while True:
         pass
@@ -100,7 +102,7 @@ def test_no_process_outlives_a_reader_that_is_killed(tmp_path):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     ) as reader:
-        worker = int(reader.stdout.readline())
+        first = reader.stdout.readline()
         reader.kill()
-        assert ends(worker)
+        assert ends(int(first))
         assert reader.stderr.read() == ""

@@ -92,6 +92,9 @@ async def test_the_pointer_is_described_with_its_orbit_and_letting_go_inside_sta
 
 async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_leaves_it():
     async with phase_view() as (theatre, pane):
+        for size in ((40, 8), (120, 40)):  # too small for a moment
+            await theatre.pilot.resize_terminal(*size)
+            await theatre.pilot.pause()
         assert pane.has_focus
         viewport = pane.viewport
         plain = plot(pane)

@@ -3,10 +3,11 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from textual.geometry import Size
 
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.error_table import ErrorTable
@@ -30,6 +31,7 @@ def letters(drawn):
     st.floats(0.1, math.pi),
     st.booleans(),
 )
+@example(*SMALL, [(0.0, math.inf)], 1.0, False)
 def test_each_letter_stands_once_on_the_stage_wherever_the_bobs_are(
     columns, rows, bobs, widest, rigid
 ):
@@ -135,6 +137,14 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
             await theatre.pilot.pause()
             found = theatre.scene.theta, theatre.scene.omega
             assert found == pytest.approx((theta, omega), abs=0.005)
+
+
+@pytest.mark.parametrize(("h", "joins"), [(-0.3, True), (-0.33, False)])
+async def test_a_trail_has_gaps_where_steps_are_long_either_way_of_time(h, joins):
+    async with lab() as theatre:
+        theatre.source.change(Stepping(h))
+        theatre.stage.show_now()
+        assert theatre.pane(Stage)._drawn[1].joins == joins
 
 
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
