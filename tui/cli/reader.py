@@ -486,7 +486,6 @@ class _Text:
             self._passed += self._table.form[1] - 1
             self._tables.append(_Table(self._wanted))
         self._shapes.clear()  # what held nothing may be a head
-        self._is_over = False
         self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
 
     def _print(self, name: str, text: str, unit: str) -> None:
