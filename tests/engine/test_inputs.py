@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pendu_tui.engine.inputs import angle, number, seconds, start_angle
+from pendu_tui.engine.inputs import angle, did_you_mean, number, seconds, start_angle
 
 
 @pytest.mark.parametrize(
@@ -51,3 +51,7 @@ def test_a_number_is_read_in_its_unit(read, text, value):
 def test_what_is_no_such_number_is_refused(read, text, why):
     with pytest.raises(ValueError, match=why):
         read(text)
+
+
+def test_a_suggestion_is_alike_in_any_case():
+    assert did_you_mean("enrgy", ["Energy"]) == ": did you mean Energy?"
