@@ -226,8 +226,7 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     later = Keeper()
     lab.record(later)
     assert later.events == lab.events == bench.keeper.events
-    name = "mine\N{REPLACEMENT CHARACTER}.mcap"
-    assert lab.recording_status == (name, later.seconds, None)
+    assert lab.recording_status == ("mine\ufffd.mcap", later.seconds, None)
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 
