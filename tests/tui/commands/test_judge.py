@@ -81,7 +81,6 @@ printed.txt --json
 printed.txt --energy E2
 errors.csv
 steps.txt --step 2 --units time=ps
-steps.txt {PER_ATOM}
 steps.txt {PER_ATOM} --fail-if 'energy_per_ns_per_atom > 5005 or skipped > 0'
 steps.txt {PER_ATOM} --fail-if 'kt_per_ns_per_atom > 194000'
 steps.txt faster.txt --steps 1,2 --atoms 10 --step 1fs --units energy=eV --json
@@ -94,7 +93,6 @@ zero.csv
 zero.csv --scale std
 zero.csv --scale 50
 settled.csv
-failed.csv
 ended.csv
 huge.csv
 cold.csv --scale kinetic:K
