@@ -20,18 +20,18 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 845_600,
-    "characters_of_engine": 255_600,
+    "characters": 838_300,
+    "characters_of_engine": 255_200,
     "characters_of_recordings": 68_100,
-    "characters_of_tui": 521_800,
+    "characters_of_tui": 514_900,
     "characters_of_tests": 767_500,
     "characters_of_bench": 60_000,
     "files": 127,
-    "parallel_assignments": 9,
+    "parallel_assignments": 8,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
     "long_lines": 0,
-    "numeric_constants": 219,
+    "numeric_constants": 217,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 
