@@ -174,6 +174,11 @@ def test_each_layout_reads_its_case(layout):
     assert (len(series.times), series.skipped) == (90, 0)
 
 
+def test_columns_without_names_of_their_own_are_named_in_their_order():
+    (series,) = tables(rows("3e2 {t} {e} 0.1 10.0"), "thermo.out", energy="potential (eV)")
+    assert series.energies == pytest.approx(ENERGIES, abs=0.006)
+
+
 @pytest.mark.parametrize("first", ["ERROR on proc 12: Lost atoms", "Fatal error:"])
 def test_of_the_errors_that_end_a_log_the_first_is_told(first):
     form = "t = {t}, E = {e}"

@@ -130,6 +130,8 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
         theatre.source.set_speed(-2.0)  # of a replay that runs backwards
         for drag, now, theta, omega in (
             ([(0.9, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06, 0.6, 1.0),  # 2 rad a second, at 2×
+            ([(0.0, 0.0), (0.9, 0.4), (1.1, 0.5)], 1.15, 0.5, 0.25),  # a cell at a time
+            ([(0.0, 0.0), (0.9, 0.5)], 1.01, 0.5, 0.0),  # the pointer rested
             ([(0.0, 0.0), (1e-4, -1.0)], 0.01, -1.0, -fastest),  # the terminal was late
             ([(0.0, 3.1), (0.05, -3.1)], 0.06, -3.1, 0.83),  # over the top
         ):
