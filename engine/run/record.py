@@ -118,7 +118,7 @@ def fluctuation(times: Any, energies: Any) -> Fluctuation:
 def order_of(steps: Sequence[float], fluctuations: Sequence[Fluctuation]) -> Order:
     """Return the slope of log fluctuation over log step, weighted by the uncertainties.
 
-    Raises ValueError unless two step sizes differ and all fluctuations are above zero.
+    Raises ValueError unless two step sizes differ and each has a fluctuation above zero.
     """
     if len(set(steps)) < 2 or min(steps) <= 0:
         raise ValueError("give two step sizes or more, all above zero and not all the same.")

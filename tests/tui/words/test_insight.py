@@ -210,6 +210,17 @@ def test_a_method_that_went_over_the_top_may_be_chaotic_too(judged):
     assert "chaotic" in [each.kind for each in lasting(live)]
 
 
+def test_time_is_back_at_0_but_for_rounding():
+    live = Live(DRIFT.altered(h=0.1), clock=lambda: 0.0)
+    live.step(3)
+    live.change(live.stepping._replace(h=-0.03))
+    live.step(9)
+    assert not live.is_back
+    live.step(1)
+    assert live.sample.t != 0
+    assert live.is_back
+
+
 def test_there_and_back_shows_at_the_start_which_methods_are_reversible():
     scene = DRIFT.altered(omega=0.1)
     live = Live(scene, clock=lambda: 0.0)
