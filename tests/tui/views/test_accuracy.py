@@ -110,7 +110,7 @@ async def test_another_h_moves_the_mark_enter_uses_the_cursors_and_a_start_has_i
         live.change(Stepping(0.07, cast=USUAL_CAST))
         pane.draw()
         live.start(SCENES["large-swing"].altered(h=5.0 / RUNGS[1]))
-        pane.draw()
+        await until(pilot, lambda: pane.sample.run == live.sample.run)  # the next frame
         await complete(pilot, pane)
         assert {steps for _, steps in pane.points} == {*RUNGS}  # nothing of the scene before
         assert pane.cursor is None
