@@ -110,8 +110,10 @@ class Canvas:
         high = min(floor(max(start, start + step)), size - 1)
         stride = 3 if dotted else 1
         dots = range(low, high + 1, stride) if step >= 0 else range(high, low - 1, -stride)
-        # the ends need not be in the middle of a dot
-        shares = [min(max((at + 0.5 - start) / (step or 1.0), 0.0), 1.0) for at in dots]
+        shares = [(at + 0.5 - start) / (step or 1.0) for at in dots]
+        if shares:  # the ends need not be in the middle of a dot
+            shares[0] = max(shares[0], 0.0)
+            shares[-1] = min(shares[-1], 1.0)
         if steep:
             self.points(zip([x0 + share * dx for share in shares], dots, strict=True), ink)
         else:

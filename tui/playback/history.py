@@ -185,14 +185,15 @@ class History:
         return self._filled.recent_until(self._current, length)["states"][-length:]
 
     def thetas(self, length: int) -> list[Sequence[float]]:
-        """Return the last angles [rad] of each method, oldest first; needs no NumPy at first."""
+        """Return each method's last angles [rad] before the current sample, oldest first.
+
+        The first paint needs no NumPy for them.
+        """
         if self._rows is not None:
-            states = self.trails(length).tolist()
+            states = self._filled.before(self.step)[-length:]["states"].tolist()
         else:
-            states = [row.states for row in self._waiting if row.step < self.step]
-            states = [*states, self._current.states][-length:]
-        methods = ([theta for theta, _ in each[:-1]] for each in states)
-        return [*zip(*methods, strict=True)]
+            states = [row.states for row in self._waiting if row.step < self.step][-length:]
+        return [[each[place][0] for each in states] for place in range(len(self.scene.cast))]
 
     def ghost(self) -> "Ghost":
         """Return this run to lay under another one."""

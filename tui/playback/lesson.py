@@ -100,9 +100,9 @@ class Lesson:
         """Pause if the moment has come since a sample; return whether it has."""
         if self.stage == "told" and live.sample.step < self._turn:
             self.stage = "watching"  # the user went back
-        if self.stage != "watching" or self.is_astray(live):
+        if self.stage != "watching":
             return False
-        if before.step < self._end(live) <= live.sample.step:
+        if before.step < self._end(live) <= live.sample.step and not self.is_astray(live):
             self._reach(live)
         return self.stage != "watching"
 

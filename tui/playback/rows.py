@@ -4,7 +4,7 @@ Memory does not grow with the run, and no extreme is lost.
 """
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -100,6 +100,10 @@ class Rows:
         """Drop the rows after a step; long ago, the whole wide row."""
         self._wide = _up_to(step, self._wide)
         self._count = len(_up_to(step, self._recent[: self._count]))
+
+    def before(self, step: int) -> Records:
+        """Return the recent rows before a step."""
+        return self._recent[: bisect_left(self._recent["step"], step, hi=self._count)]
 
     def until(self, current: tuple[Any, ...]) -> Records:
         """Return the rows of the whole run up to the current sample."""

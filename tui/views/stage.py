@@ -26,6 +26,7 @@ Dot = tuple[float, float]
 Each = TypeVar("Each")
 
 TRAIL = 15  # samples: half a second
+RECENT = 4  # of them, drawn twice as wide
 GAP = 1.0  # rad between samples, beyond which nothing is known of the way
 STRETCH = 1.1  # over its rest length, of a spring that holds
 LETTERED = 2.5  # dots: a bob of this radius has its letter inside
@@ -144,12 +145,11 @@ def stage_picture(columns: int, rows: int, bobs: Sequence[Bob], look: Look) -> P
 
 
 def _draw(canvas: Canvas, places: Lanes, radius: float, bob: Bob, look: Look) -> None:
-    recent = TRAIL // 3
     ring = _ring(canvas.columns, canvas.rows, places, radius)
     inside = _ring(canvas.columns, canvas.rows, places, radius - 1)
-    for begin, end in _stretches(bob.trail[: 1 - recent], look.joins):
+    for begin, end in _stretches(bob.trail[: 1 - RECENT], look.joins):
         canvas.dots(arc(ring, begin, end), faint(bob.ink))
-    for begin, end in _stretches(bob.trail[-recent:], look.joins):
+    for begin, end in _stretches(bob.trail[-RECENT:], look.joins):
         canvas.dots(arc(ring, begin, end), bob.ink)
         canvas.dots(arc(inside, begin, end), bob.ink)
     size = places.bob
@@ -214,7 +214,7 @@ class Lens(NamedTuple):
     times: int = 1
 
     def __call__(self, theta: float) -> float:
-        if not isfinite(theta):
+        if self.times == 1 or not isfinite(theta):
             return theta
         rest = remainder(theta, tau)
         edge = self.times * self.half
@@ -274,7 +274,7 @@ class Stage(Pane):
         ghosts = {}
         if source.ghost is not None:
             ghosts = source.ghost.rods(sample.t)
-        trails = source.history.thetas(TRAIL)
+        trails = source.history.thetas(TRAIL - 1)
         bobs = []
         for place in self.places:
             method = scene.cast[place]
