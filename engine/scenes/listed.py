@@ -21,7 +21,7 @@ _STIFF = 2500.0  # s⁻²: the spring vibrates at 50 rad/s, the swing at 3
 _FIRST_LOOK = (
     Scene(
         "drift",
-        watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little.",
+        watch="Explicit Euler gains energy, symplectic methods keep it, RK4 loses a little.",
         shot=Shot(theta=math.pi),
     ),
     Scene(
@@ -70,7 +70,7 @@ _FIRST_LOOK = (
         theta=0.0,
         omega=8.0,
         h=0.02,
-        watch="One turn a second: symplectic Euler is half a kick off in omega, not in theta.",
+        watch="One turn a second: symplectic Euler's omega, not its theta, is half a kick off.",
         shot=Shot(front=("symplectic_euler", "velocity_verlet")),  # on one ray, errors far apart
     ),
 )
@@ -95,7 +95,7 @@ _STABILITY = (
             seconds=60.0,
             front=("velocity_verlet",),
             moment=43.56,
-            sentence="Twice in 43 s Verlet's energy went down to 2 %, and it has come back.",
+            sentence="Twice in 43 s Verlet's energy fell to 2 % and recovered.",
         ),
     ),
     Scene(
@@ -104,7 +104,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.02,
         speed=16.0,
-        watch="Just above z = 2: Verlet leaves the bottom, nonlinearity holds it at 0.48 rad.",
+        watch="Just above z = 2: Verlet's swing grows until nonlinearity turns it at 0.48 rad.",
         shot=Shot(
             theta=0.6,
             log=False,
@@ -146,7 +146,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(0.95),
         speed=64.0,
-        watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
+        watch="K = z² = 0.95: symplectic orbits are chaotic, yet |omega| stays below pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -160,7 +160,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(1.1),
         speed=2048.0,
-        watch="K = z² = 1.1: no barrier is left, |omega| passes 2 pi/h.",
+        watch="K = z² = 1.1: no barrier is left, and |omega| exceeds 2 pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -175,9 +175,9 @@ _STABILITY = (
         h=1.45,
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
-        watch="4 steps a swing: Verlet's energy doubles and comes back. Press - to avoid this.",
-        often_said="h over the golden ratio avoids resonances because the ratio is irrational. 5/8 "
-        "of h does so too: it is as far from the resonance that counts.",
+        watch="4 steps a period: Verlet's energy doubles and returns. Press - to avoid this.",
+        often_said="“h over the golden ratio avoids resonances: the ratio is irrational.” But 5/8 "
+        "of h does too: it is just as far from the relevant resonance.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )
@@ -192,8 +192,8 @@ _STRUCTURE = (
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
         watch="Explicit Euler gains energy despite friction, and spins; the others slow down.",
-        often_said="RK4 is better where energy is lost. True for an accuracy of 0.1 % or better; "
-        "at 1 % conformal Verlet costs half.",
+        often_said="“RK4 is better where energy is lost.” True for an accuracy of 0.1 % or better, "
+        "but at 1 % conformal Verlet costs half as much.",
     ),
     Scene(
         "halving",
@@ -201,8 +201,8 @@ _STRUCTURE = (
         h=0.2,
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
         speed=4.0,
-        watch="Step doubling gains 19 % in a minute, 29.6 % in two; Verlet stays within 8 %.",
-        often_said="Adaptive steps are better. They make the energy of a symplectic method drift.",
+        watch="Step doubling gains 19 % energy in 1 min, 29.6 % in 2; Verlet stays within 8 %.",
+        often_said="“Adaptive steps are better.” But they make a symplectic method's energy drift.",
         # RK4 lies on Richardson's line
         shot=Shot(log=False, front=("halving_verlet", "halving_richardson", "velocity_verlet")),
     ),
@@ -217,7 +217,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="h·omega_s = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
-        often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the "
+        often_said="“IMEX Euler is stable at any h.” True, but it stops the swing as well as the "
         "spring.",
         # Verlet and RESPA lie on implicit midpoint
         shot=Shot(
@@ -233,7 +233,7 @@ _STIFFNESS = (
         h=0.05,
         cast=_SPRING,
         speed=0.25,
-        watch="h·omega_s = 2.5, beyond Verlet's limit of 2: in 1/4 s its bob is gone.",
+        watch="h·omega_s = 2.5, beyond Verlet's limit of 2: it blows up within 1/4 s.",
         shot=Shot(front=("velocity_verlet", "rk4", "implicit_midpoint", "imex_euler")),
     ),
     Scene(
@@ -243,9 +243,9 @@ _STIFFNESS = (
         h=0.125,
         cast=_SPRING,
         speed=0.5,
-        watch="One step per period of the spring: RESPA resonates, implicit midpoint holds.",
-        often_said="With impulses, only the slow motion limits h. But h must not come near the "
-        "spring's period.",
+        watch="One step per spring period: RESPA resonates, implicit midpoint stays bounded.",
+        often_said="“With impulses, only the slow motion limits h.” But h must not come near a "
+        "multiple of the spring's period.",
     ),
 )
 
@@ -255,7 +255,7 @@ _PRECISION = (
         theta=math.pi - 1e-3,
         h=1 / 256,
         cast=_PRECISE,
-        watch="32 bits carry Verlet over the top at 5.5 s; 64 bits are right to 0.003 rad.",
+        watch="In 32 bits Verlet goes over the top at 5.5 s; in 64 it is good to 0.003 rad.",
         shot=Shot(quantity="theta_error"),
     ),
     Scene(
@@ -264,7 +264,7 @@ _PRECISION = (
         h=1 / 1024,
         cast=_PRECISE,
         speed=4.0,
-        watch="64 bits lose the angle at 35 s; with compensated sums it is right to 3e-4 rad.",
+        watch="In 64 bits theta is lost by 35 s; with compensated sums it is good to 3e-4 rad.",
         shot=Shot(quantity="theta_error"),
     ),
 )
@@ -282,8 +282,8 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="In 100 s field and map lose 60 % of the energy; H and SympNet err by under 1 %.",
-        often_said="A learned Hamiltonian conserves energy. It conserves the learned one; the true "
+        watch="In 100 s the field and map lose 60 % of the energy; H and SympNet err by < 1 %.",
+        often_said="“A learned Hamiltonian conserves energy.” But only the learned one; the true "
         "one is off by a percent.",
         # the field lies on the map, H on SympNet
         shot=Shot(front=("learned_map", "learned_symplectic_map", "rk4")),
@@ -296,7 +296,7 @@ _MEAN_FIELD = (
         model="mean_field",
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
-        watch="RK4's energy is right to 4e-4; in a minute 15 % of the probability is gone.",
+        watch="RK4's energy is accurate to 4e-4, but in a minute |s| has shrunk by 15 %.",
         shot=Shot(quantity="probability_error", log=False),
     ),
 )

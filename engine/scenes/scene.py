@@ -152,7 +152,7 @@ class Scene:
         counted = [method for method in self.cast if method.force_evaluations]
         names = ", ".join(method.label for method in counted if not method.general)
         if names:
-            return f"Maps and studies are for methods that take any force, not for {names}."
+            return f"Maps and studies apply to methods that take any force, not to {names}."
         return ""
 
     @property
