@@ -36,7 +36,7 @@ T = TypeVar("T")
 
 
 class ByMethod(dict[str, T]):
-    """One value for each method, by any name or the start of its key."""
+    """One value for each method, by any of its names, which may be shortened."""
 
     def __init__(self, methods: Cast, values: Iterable[T]) -> None:
         super().__init__(zip((method.key for method in methods), values, strict=True))
@@ -176,7 +176,7 @@ class Judged:
         if self.reason:
             verdict += f": {self.reason}"
         if self.diverged_at is not None:
-            verdict += f": its numbers end at {self.diverged_at:g} {time_unit}".rstrip()
+            verdict += f": its energies break down at {self.diverged_at:g} {time_unit}".rstrip()
         lines = [f"verdict       {verdict}"]
         if self.slope is not None and self.uncertainty is not None:
             relative = f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}"
@@ -292,7 +292,9 @@ def limits(
     chosen = _general(scene, methods, numbers)
     theta = amplitude(chosen)
     if theta is None or chosen.equations.is_linear:
-        raise InputError("limits are those of a pendulum that swings; use another start or scene.")
+        raise InputError(
+            "limits are those of a pendulum that swings; use another initial state or scene."
+        )
     grid = ladder_of(chosen, [theta], None, _whole("steps", steps))
     found = []
     for row in table(chosen, grid, grid.cells()):
@@ -312,9 +314,9 @@ def recommend(
 ) -> "list[Attempt]":
     """Return the cheapest run of each method with an error up to `target`, the cheapest first.
 
-    By default all general methods are tried, over ten small swings.  Look at `method.key`,
+    By default all general methods are tried, over ten small-amplitude periods.  See `method.key`,
     `point.h` [s], `point.z`, `point.steps_per_swing`, `point.force_evaluations` and `times`, the
-    cost over that of the cheapest.  `error` is "theta" [rad], "energy" or "final" (theta at the
+    cost over the cheapest's.  `error` is "theta" [rad], "energy" or "final" (theta at the
     end).  Raises ValueError if no method reaches the target.
     """
     from pendu_tui.engine.run.loops import TieredLoops
@@ -394,7 +396,7 @@ def _array(name: str, values: Any) -> "Floats":
     import numpy as np
 
     if np.ma.is_masked(values):
-        raise InputError(f"{name} has masked numbers; leave these samples out.")
+        raise InputError(f"{name} has masked values; leave those samples out.")
     array = np.empty(0)
     with suppress(TypeError, ValueError, OverflowError):
         if not np.iscomplexobj(values):
@@ -422,7 +424,7 @@ def _series(
     t = _finite("times", _array("times", times))
     e = _array(name, energies)
     if len(t) != len(e):
-        raise InputError(f"{len(t)} times and {len(e)} energies do not belong together.")
+        raise InputError(f"{len(t)} times and {len(e)} energies: give one energy for each time.")
     later = np.diff(t) > 0
     if not later.all():
         place = np.argmin(later) + 1
@@ -431,7 +433,7 @@ def _series(
         )
     span = t[-1] - t[0]
     if len(t) > 1 and not 1e-100 < span < 1e100:  # else squares are beyond doubles
-        raise InputError(f"times span {span:.3g}; give them in a unit nearer to that.")
+        raise InputError(f"times span {span:.3g}; give them in a unit closer to that.")
     return t, e
 
 

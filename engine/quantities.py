@@ -120,7 +120,7 @@ EVALUATIONS = Quantity(
     label="force evaluations",
     form="d",
     head=Head("evals/step", 10, "evals/step", 10),
-    sentence="force evaluations a step: what the method costs",
+    sentence="force evaluations per step: what the method costs",
 )
 
 QUANTITIES = (

@@ -139,7 +139,7 @@ def folder() -> Path:
         return platformdirs.user_data_path("pendu-tui", False) / "recordings"
     expanded = os.path.expanduser(chosen)  # noqa: PTH111  # Path's raises for an unknown user
     if "://" in expanded or expanded.startswith("~") or os.path.isfile(expanded):  # noqa: PTH113
-        raise DiskError("PENDU_RECORDINGS names no folder", chosen)
+        raise DiskError("PENDU_RECORDINGS does not name a folder", chosen)
     return Path(expanded)
 
 

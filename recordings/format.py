@@ -255,7 +255,7 @@ def _dumps(fields: dict[str, Any]) -> bytes:
 
 def _refused(error: Exception) -> RecordingError:
     """Return the error of a message that cannot be decoded: its text names the field."""
-    return RecordingError(f"a message is not one of ours: {printable(str(error))}")
+    return RecordingError(f"a message is not one of pendu-tui's: {printable(str(error))}")
 
 
 def _scene(fields: dict[str, Any]) -> Scene:

@@ -75,7 +75,7 @@ class Contents:
         """Add a channel.  Raises RecordingError if the file is of another format."""
         version = channel.metadata.get("format")
         if channel.topic == EVENTS and version != FORMAT_VERSION:
-            raise RecordingError(f"it is of another format; this version reads {FORMAT_VERSION}")
+            raise RecordingError(f"it has another format; this version reads {FORMAT_VERSION}")
         self.topics[channel.id] = channel.topic
 
 

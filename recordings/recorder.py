@@ -105,7 +105,7 @@ class Recorder:
         data = encode_event(event)
         if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
             self.close()
-            raise DiskError("is full and was finished; start the lab again for another", self.path)
+            raise DiskError("is full and was finished; restart the lab for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:

@@ -58,7 +58,7 @@ def named(name: str, methods: Sequence[Method] = METHODS, model: str | None = No
         return found[0]
     if found:
         keys = " or ".join(method.key for method in found)
-        raise InputError(f"{name!r} may be {keys}; write more of it.")
+        raise InputError(f"{name!r} may be {keys}; type more of it.")
     if matching(name, (TAYLOR_20,)):
         raise InputError(
             "the Taylor series has no force evaluations to count; see it with pendu-tui accuracy "
@@ -84,7 +84,7 @@ def all_named(
             raise InputError(f"{method.key} is given twice; name each method once.")
         cast.append(method)
     if not cast:
-        raise InputError("no method is given; name one at least, for example rk4.")
+        raise InputError("no method is given; name at least one, for example rk4.")
     return tuple(cast)
 
 

@@ -99,9 +99,9 @@ BACKWARD_EULER = Method(
     other_names=("implicit Euler",),
     reference=f"{HAIRER}, I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
-    note="The mirror image of explicit Euler: it loses the energy of small swings. Newton's "
-    "iteration to 1e-12 rad usually takes three rounds of two evaluations; beyond z = 1 a step may "
-    "have several solutions, and fails if the iteration finds none.",
+    note="The mirror image of explicit Euler: it loses energy in small swings. Newton's "
+    "method, to 1e-12 rad, usually takes three iterations of two evaluations; beyond z = 1 a step "
+    "may have several solutions, and fails if the iteration finds none.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -122,8 +122,8 @@ IMPLICIT_MIDPOINT = Method(
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
     note="It keeps the energy of small swings exactly, but not their phase; beyond z = 2 a step "
-    "fails if Newton's iteration, to 1e-12 rad with two evaluations a round, finds no solution. A "
-    "step on a spring has a closed form, counted as one evaluation.",
+    "fails if Newton's method, to 1e-12 rad with two evaluations per iteration, finds no solution. "
+    "A step on a spring has a closed form, counted as one evaluation.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

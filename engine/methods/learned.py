@@ -125,9 +125,9 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     other_names=("learned Hamiltonian",),
     formula="RK4 on Hamilton's equations of H = a sum of 60 tanh(a theta + b omega + c), fitted to "
     "600 measurements",
-    note="Its field is as inexact as the learned field, but its flow conserves H; RK4 loses 2.5e-7 "
-    "of it a second from 1.5 rad at w0 h = 0.1. The true energy of a swing is off by 1.2 % from 1 "
-    "rad, 0.3 % from 2, 12 % from 0.2.",
+    note="Its field is as inexact as the learned field, but its flow conserves H; from 1.5 rad at "
+    "w0 h = 0.1 RK4 loses 2.5e-7 of H per second. The true energy of a swing is off by 1.2 % from "
+    "1 rad, 0.3 % from 2, 12 % from 0.2.",
     used="energy-conserving learned dynamics: DiffEqFlux, HamiltonianNN [docs.sciml.ai, "
     "Hamiltonian Neural Network]",
 )
@@ -187,8 +187,8 @@ LEARNED_MAP = _learned(
     force_evaluations=1,
     other_names=("plain learned map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
-    note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy of a swing is off by "
-    "35 % from 1 rad, by 61 % from 1.5, and nine times as large from 0.2.",
+    note="It preserves no structure: within 100 s at w0 h = 0.1 the true energy of a swing is off "
+    "by 35 % from 1 rad, by 61 % from 1.5, and nine times as large from 0.2.",
 )
 
 LEARNED_SYMPLECTIC_MAP = _learned(
@@ -204,8 +204,8 @@ LEARNED_SYMPLECTIC_MAP = _learned(
     symplectic=True,
     other_names=("learned symplectic map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
-    note="It keeps area, so it nearly conserves a modified energy: within 100 s at w0 h = 0.1 the "
-    "true one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2.",
+    note="It preserves area, so it nearly conserves a modified energy: within 100 s at w0 h = 0.1 "
+    "the true one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2.",
 )
 
 FAMILY = (RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN, LEARNED_MAP, LEARNED_SYMPLECTIC_MAP)

@@ -166,13 +166,13 @@ def _examine(phases: Phases, who: str) -> None:
         raise OwnMethodError(f"{who} does not stay finite for {STEPS} steps of an ordinary swing.")
     if _path(phases, path[CUT - 1])[STEPS - CUT - 1] != path[-1]:
         raise OwnMethodError(
-            f"{who} gives other numbers when it begins again after {CUT} of {STEPS} steps; a run "
-            "may stop and go on after any step, so a step may use only theta and omega."
+            f"{who} gives different numbers when restarted after {CUT} of {STEPS} steps; a run "
+            "may stop and resume after any step, so a step may use only theta and omega."
         )
     for kind, are_same in (("NumPy arrays", _are_same_arrays), ("complex numbers", _are_complex)):
         try:
             if not are_same(phases):
-                raise OwnMethodError(f"{who} gives other numbers than for floats")
+                raise OwnMethodError(f"{who} gives different numbers than for floats")
         except OwnMethodError as error:
             why = str(error).rstrip(".")
             raise OwnMethodError(

@@ -183,7 +183,7 @@ def guarded(function: Phases, file: str) -> Phases:
                     value = next(following)
                 yield _phase(value, phase[0], f"{where}: {name}")
         except StopIteration:
-            raise OwnMethodError(f"{where}: {name} ends while the run goes on; {FORM}.") from None
+            raise OwnMethodError(f"{where}: {name} ends while the run continues; {FORM}.") from None
         except (OwnMethodError, OverflowError, KeyboardInterrupt, GeneratorExit):
             raise
         except BaseException as error:

@@ -77,7 +77,7 @@ CONFORMAL_VERLET = Method(
     first_same_as_last=True,
     other_names=("conformally symplectic Verlet",),
     reference="Bhatt, Floyd & Moore, J. Sci. Comput. 66 (2016) 1234",
-    note="A step shrinks all areas by exp(-gamma h), as the motion does.",
+    note="A step multiplies all areas by exp(-gamma h), as the motion does.",
     models=("damped",),
     takes="parts",
 )
@@ -135,8 +135,8 @@ RESPA = Method(
     reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
     used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, "
     "MTSIntegrator]",
-    note="Its kicks resonate if h is a multiple of the fast motion's period. Evaluating "
-    "either part counts as one.",
+    note="With this uniform slow force, its kicks resonate if h is a multiple of the fast period. "
+    "Evaluating either part counts as one.",
     models=("spring",),
     takes="parts",
 )

@@ -84,8 +84,8 @@ FOREST_RUTH = _method(
     other_names=("Yoshida 4", "triple jump"),
     reference="Forest & Ruth, Physica D 43 (1990) 105",
     used="orbits in galaxies: gala, Ruth4Integrator [gala.adrian.pw, Ruth4Integrator]",
-    note="Its middle step goes backwards by 1.7 h. Its limit is the smallest of the "
-    "symplectic methods, and at 20 evaluations a second its energy error is hardly smaller than "
+    note="Its middle step goes backwards by 1.7 h. Its limit is lower than any other "
+    "symplectic method's, and at 20 evaluations a second its energy error is hardly smaller than "
     "Verlet's.",
 )
 

@@ -39,13 +39,13 @@ class DampedPendulum(Pendulum):
     equation = "theta'' = -w0² sin theta - gamma omega"
     parameters = (
         # beyond, the pendulum creeps, and its exact motion takes too many steps
-        Number("friction", "s⁻¹", "friction in s⁻¹", 0.0, 100.0, max_over_w0=100),
+        Number("friction", "s⁻¹", "damping rate in s⁻¹", 0.0, 100.0, max_over_w0=100),
     )
     offers = ("parts", "rates")
     has_separatrix = False
     error = ENERGY_RATIO
     caption = "curves of equal energy; damped motion crosses them inwards"
-    without_force = "Maps and studies are for a pendulum with no friction, which keeps its energy."
+    without_force = "Maps and studies apply to a pendulum with no friction, which keeps its energy."
     exact = Model.exact
 
     def rates(self, sin: Sine = math.sin) -> Rates:

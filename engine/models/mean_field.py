@@ -5,7 +5,8 @@ b(theta) = (sin theta, 0, cos theta), and the pendulum feels the expectation val
 
     theta' = omega,  omega' = -w0² sin theta - kappa b'(theta)·s,  s' = nu b(theta) × s
 
-Energy and |s|, the probability, are conserved for any nu.  Tully, Faraday Discuss. 110 (1998) 407.
+Energy and |s|, the norm of the state, are conserved for any nu: Tully, Faraday Discuss. 110
+(1998) 407.
 """
 
 import math
@@ -43,7 +44,7 @@ class MeanField(Model):
         Number(
             "coupling",
             "s⁻²",
-            "coupling of the bob to its two levels in s⁻²",
+            "coupling of the bob to the two-level system in s⁻²",
             min=-1e6,
             max=1e6,
             default=2.0,
@@ -51,7 +52,7 @@ class MeanField(Model):
         Number(
             "level_frequency",
             "s⁻¹",
-            "frequency of the two levels in s⁻¹",
+            "transition frequency of the two-level system in s⁻¹",
             min=1e-3,
             max=1e4,
             default=20.0,
@@ -66,23 +67,25 @@ class MeanField(Model):
         Quantity("sz", about="of the Bloch vector"),
         Quantity(
             "probability_error",
-            about="length of the Bloch vector - 1, which the true motion keeps at 0",
-            chart=Chart("probability error"),
+            about="length of the Bloch vector - 1; the true motion keeps it at 0",
+            chart=Chart("norm error |s| - 1"),
         ),
     )
     extra_columns = (
         ExtraColumn(
             "|s|",
-            "probability",
-            "the length of the Bloch vector, the probability, which the true motion keeps at 1",
+            "norm |s|",
+            "the length of the Bloch vector (the norm of the state); the true motion keeps it at 1",
             lambda extra: 1 + extra["probability_error"],
         ),
     )
     frequency_symbol = "nu"
     caption = "a projection: angle and angular velocity, without the two levels"
-    without_force = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
+    without_force = (
+        "Maps and studies apply to a single angle; here there is a Bloch vector as well."
+    )
     without_ring = (
-        "A projection of five dimensions onto two: no curves and no ring of neighbouring starts."
+        "A projection from five dimensions onto two: no curves of equal energy and no ring."
     )
 
     @property
@@ -103,7 +106,7 @@ class MeanField(Model):
         return Observation(theta, omega, extra)
 
     def invariant(self) -> Callable[[Phase], float]:
-        """Return |s|, the probability, as a function."""
+        """Return |s|, the norm of the state, as a function."""
         return _length
 
     def rates(self, sin: Sine = math.sin) -> Rates:
@@ -123,7 +126,7 @@ class MeanField(Model):
         return mean_field_rates
 
     def kick(self, phase: Phase, h: float) -> Phase:
-        """Return the exact phase after h [s] in which theta stands still.
+        """Return the exact phase after h [s] in which theta is constant.
 
         b, b' and b × b' are orthonormal: s keeps its part along b, and its parts u and v along the
         other two turn by nu h.

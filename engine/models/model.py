@@ -84,7 +84,7 @@ class EnergyReference(NamedTuple):
 ENERGY_RATIO = ENERGY_ERROR._replace(
     label="ln(E/E_true)",
     head=Head("ln E/Et", 8, "ln E/Et", 8),
-    sentence="the logarithm of the energy over that of the exact motion, which also falls",
+    sentence="ln of the energy over the energy of the exact motion, which also falls",
     chart=Chart("ln(E/E_true)", "|ln(E/E_true)|"),
 )
 """The energy error of a model that does not conserve its energy."""
@@ -204,7 +204,7 @@ COMMON = (
     Number(
         "theta",
         "rad",
-        "start angle from straight down: 2 (in rad), pi/2 or 115deg",
+        "initial angle from straight down: 2 (in rad), pi/2 or 115deg",
         min=-1e9,
         max=1e9,
         default=1.0,
@@ -215,7 +215,7 @@ COMMON = (
     Number(
         "omega",
         "rad/s",
-        "start angular velocity: 2 (in rad/s) or 30deg/s",
+        "initial angular velocity: 2 (in rad/s) or 30deg/s",
         min=-1e9,
         max=1e9,
         read=angle,
@@ -356,7 +356,7 @@ class Model(ABC):
         return _reference(self, theta, omega).at(t)
 
     def exact_step(self) -> tuple[Step, float]:
-        """Return the step of order 8, and the size [s] with which it is right to ACCURACY."""
+        """Return the step of order 8, and the size [s] with which it is accurate to ACCURACY."""
         return compose_verlet(self.force()), 0.05 / self.fastest
 
     def invariant(self) -> Callable[[Phase], float] | None:

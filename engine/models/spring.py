@@ -1,6 +1,6 @@
 """A bob on a stiff spring in the plane: a swing, and a vibration some ten times as fast.
 
-A position is a complex number q = x + iy in units of the spring's length at rest, y upwards and the
+A position is a complex number q = x + iy in units of the spring's natural length, y upwards and the
 pivot at 0, so methods run on it unchanged: q'' = -k (1 - 1/|q|) q - i w0².
 """
 
@@ -42,7 +42,7 @@ def _length(extra: Mapping[str, float]) -> float:
 class Spring(Model):
     """q'' = -k (1 - 1/|q|) q - i w0²."""
 
-    w0_squared: float  # g/L [s⁻²], L being the length at rest
+    w0_squared: float  # g/L [s⁻²], L being the spring's natural length
     stiffness: float  # k, the spring constant over the mass [s⁻²]
 
     key = "spring"
@@ -50,23 +50,23 @@ class Spring(Model):
     turns = False  # the angle follows from the position, so it is within ±pi
     parameters = (Number("stiffness", "s⁻²", "spring constant over mass in s⁻²", 1.0, 1e18),)
     variables = (
-        Quantity("x", about="over the length at rest"),
-        Quantity("y", about="likewise, upwards from the pivot"),
+        Quantity("x", about="over the spring's natural length"),
+        Quantity("y", about="upwards from the pivot, likewise"),
         Quantity("vx", "s⁻¹"),
         Quantity("vy", "s⁻¹"),
         Quantity(
             "spring_energy",
-            about="over that at the start",
-            chart=Chart("spring energy (1 at start)"),
+            about="over its initial value",
+            chart=Chart("spring energy (1 at t = 0)"),
             relative=True,
         ),
     )
     extra_columns = (
-        ExtraColumn("length", "length", "the length of the rod over its length at rest", _length),
+        ExtraColumn("length", "length", "the spring's length over its natural length", _length),
         ExtraColumn(
             "spring",
             "spring E",
-            "the energy in the spring over that at the start",
+            "the spring's energy over its initial value",
             itemgetter("spring_energy"),
         ),
     )
@@ -74,11 +74,13 @@ class Spring(Model):
     counted_parts = ("fast", "solve")
     rigid = False
     frequency_symbol = "omega_s"
-    caption = "a projection: angle and angular velocity of the swing"
-    without_force = "Maps and studies are for one angle; the bob on a spring has two coordinates."
+    caption = "a projection: angle and angular velocity"
+    without_force = (
+        "Maps and studies apply to a single angle; the bob on a spring has two coordinates."
+    )
     without_ring = (
-        "Angle and angular velocity of the swing: a projection of four dimensions, without curves "
-        "or ring."
+        "Angle and angular velocity: a projection from four dimensions, without curves of equal "
+        "energy or ring."
     )
 
     @property

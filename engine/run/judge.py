@@ -237,7 +237,7 @@ class Judge:
             need = levels.MIN_SWINGS
         if swings >= need:
             return None
-        return Progress(int(swings), math.ceil(need), "swings")
+        return Progress(int(swings), math.ceil(need), "cycles")
 
 
 class _Orbit(Stretching):

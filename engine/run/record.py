@@ -86,7 +86,7 @@ class Order(NamedTuple):
     def doubt(self) -> str:
         """A sentence for an order without a highest power, and how long runs would help."""
         longer = math.ceil((2 * self.uncertainty) ** 2 + 1)
-        why = f"runs about {longer} times as long would tell one order from the next"
+        why = f"runs about {longer} times as long would distinguish one order from the next"
         return f"cannot tell: the energy fluctuates as {self}; {why}"
 
     def __str__(self) -> str:
@@ -121,9 +121,9 @@ def order_of(steps: Sequence[float], fluctuations: Sequence[Fluctuation]) -> Ord
     Raises ValueError unless two step sizes differ and each has a fluctuation above zero.
     """
     if len(set(steps)) < 2 or min(steps) <= 0:
-        raise ValueError("give two step sizes or more, all above zero and not all the same.")
+        raise ValueError("give two or more step sizes, all above zero and not all the same.")
     if len(fluctuations) != len(steps):
-        raise ValueError("each step needs the fluctuation of its record.")
+        raise ValueError("give one fluctuation for each step size.")
     if not all(each.size > 0 for each in fluctuations):
         raise ValueError("an energy that never changes has no order.")
     sizes, uncertainties = np.array(fluctuations).T

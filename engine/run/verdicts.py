@@ -45,27 +45,27 @@ VERDICTS: dict[str, Verdict] = {
             sign="+",
             ink="text",
             meaning="the mean energy has risen for good; if it then levelled off, "
-            "the slope is that of the level part",
+            "the slope is taken after that",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
             meaning="the mean energy has fallen for good; if it then levelled off, "
-            "the slope is that of the level part",
+            "the slope is taken after that",
         ),
         Verdict(
             CHAOTIC,
             sign="!",
             ink="text",
-            meaning="nearby starts of a symplectic method separate exponentially",
+            meaning="nearby trajectories of a symplectic method separate exponentially",
         ),
         Verdict(
             FAILED,
             sign="!",
             ink="warn",
-            meaning="the numbers have broken down: nan, infinite, too large, "
-            "or a step without a solution",
+            meaning="the computation has broken down: a value is nan, infinite or too large, "
+            "or a step has no solution",
         ),
         Verdict(
             UNDECIDED,
@@ -85,11 +85,11 @@ def direction(change: float) -> str:
 
 
 class Progress(NamedTuple):
-    """How far it is to a verdict: "4 of 8 swings"."""
+    """How far it is to a verdict: "4 of 8 cycles"."""
 
     have: int
     need: int
-    unit: str  # "swings", "steps", "samples"
+    unit: str  # "cycles", "steps", "samples"
 
     def __str__(self) -> str:
         return f"{self.have} of {self.need} {self.unit}"
@@ -167,9 +167,9 @@ def not_within(
     if excess > margin:
         side = {1.0: "above", -1.0: "below"}[sign]
         return f"{name} is {slope:.3g}, {side} {limit:g}"
-    advice = "a longer record may not tell"
+    advice = "a longer record may not help"
     if excess:
         longer = math.ceil((margin / abs(excess)) ** (2 / 3))
         if longer <= LONGEST:
-            advice = f"a record about {longer} times as long would tell"
+            advice = f"a record about {longer} times as long would decide"
     return f"cannot tell: {name} is {slope:.3g} ± {margin:.1g} at 99 %; {advice}"

@@ -7,5 +7,5 @@ engine.studies.stability.wobble."""
 LOST = f"""\
 A swing is lost if it goes over the top, if it is chaotic and 10 % wider than on the linear
 oscillator, or, unless the method is symplectic, if its energy leaves the oscillator's band by
-{100 * BAND:.0f} %. Above its linear limit a symplectic method may keep a small swing around two
+{100 * BAND:.0f} %. Above its linear limit a symplectic method may hold a small swing about two
 other points, with many times its energy; that is not a loss."""

@@ -35,7 +35,7 @@ ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 
 Flaw = Literal["lost", "rounding"]
 REASONS: dict[Flaw, str] = {
-    "lost": "no digit is right",
+    "lost": "no correct digit",
     "rounding": "rounding error: a smaller h no longer reduces it",
 }
 Errors = Mapping[ErrorKind, float]

@@ -128,7 +128,7 @@ def test_a_judged_series_prints_as_the_command_does():
         "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20",
     ]
     failed = judge(TIMES, [*WAVE[:-1], math.nan])
-    assert failed.lines("fs")[0] == "verdict       failed: its numbers end at 1999 fs"
+    assert failed.lines("fs")[0] == "verdict       failed: its energies break down at 1999 fs"
     assert "nan" not in str(failed)
     assert "± 2e-06 per unit of time, absolute" in str(found)
 
@@ -160,7 +160,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
             (lambda e=e: judge([1, 2], e), "energies must be a list")
             for e in ([10**400, 1], np.array([1j, 1]))
         ),
-        (lambda: judge(TIMES, np.ma.masked_greater(WAVE, 10)), "energies has masked numbers"),
+        (lambda: judge(TIMES, np.ma.masked_greater(WAVE, 10)), "energies has masked values"),
         (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
         (lambda: judge(TIMES, WAVE, scale="frist"), "no scale 'frist': did you mean first"),
         (lambda: judge(TIMES, WAVE, scale=10**400), "not a finite number"),

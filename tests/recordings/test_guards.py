@@ -59,7 +59,7 @@ def energy_gate():
     [
         (stale, r"^stale: its order is 1\.0"),
         (kicks(second=0.0), "no order: its error stays above"),
-        (kicks(dropped=40), "begins again after"),
+        (kicks(dropped=40), "when restarted after"),
     ],
 )
 def test_a_broken_method_fails_for_what_is_broken(broken, reason):
@@ -151,5 +151,5 @@ def test_an_energy_that_is_nan_fails_with_its_time_and_errors_are_divided_by_the
     once, twice = (energy_gate.check(times, energies, scale=scale) for scale in (1.0, 2.0))
     assert twice.max_error == pytest.approx(once.max_error / 2)
     energies = np.where(times > 100.001, np.nan, energies)
-    with failing(r"is None, more than 1\n(?s:.*)its numbers end at 100\.05"):
+    with failing(r"is None, more than 1\n(?s:.*)its energies break down at 100\.05"):
         energy_gate.check(times, energies, "failed", max_fluctuation=1.0)

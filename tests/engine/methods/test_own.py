@@ -100,7 +100,7 @@ WRONG = {
         "mine is not a generator function; make it one that takes (force, phase, h)",
     ),
     "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
-    "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run goes on; write `while True:`"),
+    "one step and no more": (euler("yield theta, omega; return"), "line 2: mine ends while the run continues; write `while True:`"),
     "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
     "more than a phase": (euler(yields="1, 2, *range(9)"), "mine yields (1, 2, 0, 1, 2, 3, ...); write `while True:`"),
     "no numbers of its start": (euler(yields="0.5, 0.5"), "mine yields (0.5, 0.5); write"),
@@ -117,7 +117,7 @@ WRONG = {
     "one omega of an array": (euler(yields="theta, sum(omega) / 3 if hasattr(omega, 'shape') else omega"), "`yield theta, omega`; this was"),
     "other numbers for arrays": (
         euler("theta = theta + 1e-10 * hasattr(theta, 'shape')"),
-        "mine gives other numbers than for floats; this was with NumPy arrays",
+        "mine gives different numbers than for floats; this was with NumPy arrays",
     ),
     "an infinite force": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
     "an exception with a full stop": (
@@ -128,9 +128,9 @@ WRONG = {
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
-        "mine gives other numbers when it begins again after 37 of 80 steps",
+        "mine gives different numbers when restarted after 37 of 80 steps",
     ),
-    "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers than for floats; this was with complex numbers"),
+    "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "different numbers than for floats; this was with complex numbers"),
     "a control character": ("A#\x1b", "line 1: `A#` raises NameError: name 'A' is not defined."),
     "a character that ends a text": ("\0", "source code string cannot contain null bytes."),
     "no Python": ("\ndef mine(:", "line 2: invalid syntax."),

@@ -60,12 +60,12 @@ def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
         (
             "spring",
             "-k (1 - 1/|q|) q - i w0², q = x + iy; parts force; fast solve; omega_s; 3; "
-            "spring energy (1 at start)",
+            "spring energy (1 at t = 0)",
         ),
         (
             "mean_field",
             "-w0² sin theta - kappa b'·s, s' = nu b × s; parts rates; force; nu; 3; "
-            "probability error",
+            "norm error |s| - 1",
         ),
     ],
 )
@@ -87,7 +87,7 @@ def test_a_model_adds_columns_to_readings():
     length = pytest.approx(abs(SPRING.start(1.0, 0.5)[0]))
     energy = pytest.approx(2500 * 0.04**2 / 2, rel=1e-2)
     spring = {"length": ("length", length), "spring": ("spring E", energy)}
-    assert columns == spring | {"|s|": ("probability", 1.0)}
+    assert columns == spring | {"|s|": ("norm |s|", 1.0)}
 
 
 @each_model

@@ -273,11 +273,11 @@ def test_at_equal_cost_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_l
     assert [each.progress.have for each in lockstep.judgements] == [2] * 4
 
 
-def test_before_four_swings_there_is_neither_verdict_nor_slope():
+def test_before_four_cycles_there_is_neither_verdict_nor_slope():
     for h, steps, known in ((0.1, 64, False), (0.1, 66, True), (1.6, 8, False), (1.6, 9, True)):
         judgement = judge_of([0.0] * steps, h=h).judgement
         assert (judgement.verdict, judgement.slope is not None) == ("undecided", known)
-    assert str(judge_of([0.0] * 33).judgement) == "undecided: 2 of 4 swings"
+    assert str(judge_of([0.0] * 33).judgement) == "undecided: 2 of 4 cycles"
 
 
 def test_a_run_that_has_grown_is_not_called_losing_later():

@@ -42,7 +42,7 @@ MAKES = {
     "backward Euler in a quartic well": ((1 + 0.06 * T) ** -2 * (1 + 0.01 * SINE), "loses"),
     "a walk": (
         np.cumsum(NOISE),
-        "it cannot be told from a random walk; a longer record may not help",
+        "the energy cannot be told from a random walk; a longer record may not help",
     ),
     "a wrong end": (NOISE + 20 * (T > 98), levels.UNLIKE_END),
     "a wobble that gets wider": (T * np.sin(7 * T), levels.WIDENS),
