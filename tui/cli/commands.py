@@ -38,7 +38,7 @@ COMMANDS = {
         """\
   pendu-tui tour
 
-Enter goes on, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
+Enter continues, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
         place="lab:tour",
     ),
@@ -94,11 +94,11 @@ Exit code 1: no method reaches the target.
   pendu-tui stability --steps 1000 -o limits.svg
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.csv
 
-CSV has every swing of the map; a figure shows the limits against amplitude.
+The CSV has every point of the map; a figure shows the limits against amplitude.
 """,
     ),
     "run": Command(
-        "run a scene without the screen and judge each method; for CI",
+        "run a scene without a screen and judge each method; for CI",
         "SCENE --time --record --sample-every --fail-if FORM --force WORKERS",
         """\
   pendu-tui run --time 100
@@ -106,9 +106,9 @@ CSV has every swing of the map; a figure shows the limits against amplitude.
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
-slope: of the relative energy error, per second; |slope| is below `bound` at 99 %; share: what it
-adds up to over the run, in widths of the band; drift_per_second: the slope, or null without
-evidence for a trend
+slope: of the relative energy error, per second; |slope| is below `bound` with 99 % confidence;
+share: what it adds up to over the run, in band widths; drift_per_second: the slope, or null if no
+trend is evident
 
 verdicts:
 {verdicts}
@@ -149,7 +149,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 """,
     ),
     "export": Command(
-        "write a recording as CSV, a row for each sample and method",
+        "write a recording as CSV, one row per sample and method",
         "file -o --force",
         """\
   pendu-tui export latest -o latest.csv
@@ -196,7 +196,7 @@ Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be 
 IN_LAB = "pendu-tui live, and there F3 and the key x"
 EXIT_CODE = "the exit code, or the pytest plugin and pytest --junit-xml"
 WORKERS = "--workers N, or --dask ADDRESS for other machines"
-COMPILED = "nothing, because compiled loops give the same bits"
+COMPILED = "nothing, because compiled loops give bitwise identical results"
 DROPPED = {
     "methods --methods": "the names alone",
     "replay --methods": "the keys 1 to 6, which show and hide methods",

@@ -30,8 +30,8 @@ which conserve it and which lose it.
 commands (pendu-tui COMMAND --help shows details):
 {commands}
 
-Without a command: live.  A scene or a scene file opens in the lab, a recording is replayed.
---version prints the version, --print-completion bash|zsh|tcsh|fish a script for the tab key.
+Without a command: live.  Scenes and scene files open in the lab; recordings are replayed.
+--version prints the version; --print-completion bash|zsh|tcsh|fish, a completion script.
 
 exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsuitable terminal,
 5 disk error, 130 interrupted.

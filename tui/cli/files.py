@@ -19,7 +19,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """Yield a temporary path; the file gets the name `path` at the end, which is said on stderr.
 
     If the block raises, or at Ctrl+C, SIGTERM or SIGHUP, nothing is left of it and an older file
-    stays as it was.  Devices and pipes are written to directly.  Raises DiskError before the block
+    is unchanged.  Devices and pipes are written to directly.  Raises DiskError before the block
     if the name is taken.
     """
     from tempfile import TemporaryDirectory  # loads random and hashlib, which --help needs not
@@ -54,7 +54,7 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 def keep_older(path: Path | None) -> None:
     """Raise UserError if an unfinished result would replace a file."""
     if path is not None and path.is_file():
-        raise UserError(f"interrupted; {path} stays as it was.", Exit.INTERRUPTED)
+        raise UserError(f"interrupted; {path} is unchanged.", Exit.INTERRUPTED)
 
 
 def interruptible() -> AbstractContextManager[None]:

@@ -26,7 +26,7 @@ MAX_SERIES = 1000
 MAX_NAMES = 500  # of values that are printed with their names
 NOT_LATER = (
     "most of its rows are not later than those before; name the column of times with --time, or "
-    "print numbers without marks between thousands."
+    "print numbers without thousands separators."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
@@ -384,7 +384,9 @@ class Sheet:
         begins[_blocks(self._sum(self.marks, lines).filled(0)[here])] = True
         runs = list(islice(_runs(times, begins), MAX_SERIES))
         if self.skipped > rows:
-            why = "most of its rows differ from its head in the number of columns; keep one table."
+            why = (
+                "most of its rows differ from its header in the number of columns; keep one table."
+            )
             raise unreadable(why)
         if rows > 1 and len(runs) in (rows, MAX_SERIES):
             raise unreadable(NOT_LATER)
@@ -519,7 +521,7 @@ class Series:
         if behind > len(times) / 10:
             raise unreadable(
                 f"its last {behind} rows are not later than {np.nanmax(times):g}; keep one run, "
-                "and print numbers without marks between thousands."
+                "and print numbers without thousands separators."
             )
 
     def _units(self) -> tuple[str, str]:

@@ -81,12 +81,12 @@ def _check(options: argparse.Namespace) -> None:
     are_fit = len(set(steps)) > 1 and len(steps) == len(options.files)
     if (steps or len(options.files) > 1) and not are_fit:
         raise UserError(
-            "several files need --steps, one for each and not all the same, such as --steps 1,2."
+            "several files need --steps, one per file and not all the same, such as --steps 1,2."
         )
     if "time" in options.units and options.step and options.step[1]:
         raise UserError("--step already gives the unit of time; leave time= out of --units.")
     if options.temperature is not None and options.atoms is None:
-        raise UserError("--temperature belongs to --atoms: give the number of atoms, too.")
+        raise UserError("--temperature needs --atoms: give the number of atoms, too.")
 
 
 @np.errstate(over="ignore", invalid="ignore")  # energies may be as large as a number can be
@@ -131,7 +131,7 @@ def read(name: str, options: argparse.Namespace) -> list[Series]:
         why = f"{error.strerror}; give a log or a table, or - for stdin."
         raise unreadable(why) from None
     if not found:
-        raise unreadable("it has no row of numbers.")
+        raise unreadable("it has no rows of numbers.")
     return found
 
 
@@ -299,7 +299,7 @@ def lines_of(answer: Answer) -> list[str]:
     distances = np.abs(answer.series.energies - np.median(answer.series.energies))
     far = (distances > FAR * np.quantile(distances, 0.98)).sum()
     if far and fields["verdict"] in LEAVES and not fields["rests"]:
-        hint = f"{counted(far, 'value')} far from all others may blur the trend"
+        hint = f"{counted(far, 'value')} far from all others may distort the trend"
     return [*lines, _line("hint", hint)] if hint else lines
 
 

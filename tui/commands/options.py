@@ -114,12 +114,12 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--methods": option(
         "KEY,KEY",
-        "only these methods, in this order; the start of a name is enough",
+        "only these methods, in this order; names may be shortened",
         choices=KEYS,
     ),
     "--method": file(
         "FILE.py:FUNCTION",
-        "add your own method: a generator function (force, phase, h), see "
+        "add a method of your own: a generator function (force, phase, h), see "
         ".github/docs/methods.md; the file runs with your rights (repeatable)",
         str,
         action="append",
@@ -173,11 +173,13 @@ OPTIONS: dict[str, Settings] = {
     "run --time": option(
         "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
     ),
-    "accuracy --time": option("S", "simulated time (ten small swings)", above_zero(seconds)),
+    "accuracy --time": option(
+        "S", "simulated time (ten small-amplitude periods)", above_zero(seconds)
+    ),
     "snapshot --time": option("S", "simulated time (%(default)g)", moment, default=12.0),
     "--sample-every": option("N", "record every N steps (default: every 1/30 s)", count),
     "stability --steps": option(
-        "N", "steps for each swing (%(default)s)", above_zero(count, 2**31), default=10_000
+        "N", "steps in each run (%(default)s)", above_zero(count, 2**31), default=10_000
     ),
     "--max-steps": option("N", "simulate at most N steps of each recording", count),
     "--workers": option(
@@ -203,17 +205,17 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--target": option(
         "ERROR",
-        "find the cheapest h of each method, or of each in --methods, for this error",
+        "find the cheapest h for this error, for each method or each of --methods",
         positive,
     ),
     "--theta-values": option(
         "LIST",
-        f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; 100 for a map)",
+        f"amplitudes: 0.5,1,120deg or {LIST} (0.1,0.5,1,2,3 and the scene's; for a map, 100)",
         values(above_zero(angle, math.pi)),
     ),
     "--z-values": option(
         "LIST",
-        f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 in steps of 1 %%; 200 up to 3 for a map)",
+        f"z = h·w0: 0.5,1 or {LIST} (up to 3.2 by factors of 1.01; for a map, 200 up to 3)",
         values(above_zero(number, Z_LIMITS[1])),
     ),
     # gates
@@ -234,7 +236,7 @@ OPTIONS: dict[str, Settings] = {
     "--table": option("N", "judge table N (default: the last one)", count),
     "--step": option(
         "TIME",
-        "the time of a step, or of a row if there is no column of times, such as 0.5fs",
+        "the duration of a step, or of a row if there is no column of times, such as 0.5fs",
         units.quantity,
     ),
     "judge --json": flag("one JSON object, in the units of the file"),
@@ -255,8 +257,8 @@ OPTIONS: dict[str, Settings] = {
         scale,
         default=(None, None),
     ),
-    "--atoms": option("N", "print the trend per ns and atom, too", count),
-    "--temperature": option("K", "with --atoms: give the trend in kT, too", positive),
+    "--atoms": option("N", "also print the trend per ns and atom", count),
+    "--temperature": option("K", "with --atoms: also give the trend in kT", positive),
     "judge --steps": option(
         "H,H",
         "the step size of each file, to see how the errors scale with it",

@@ -198,7 +198,7 @@ def _report(
             scene.cast,
             _lines(scene, samples[1:] or samples),
             x_label="time / s",
-            y_label=f"largest {scene.equations.error.chart.magnitude} of a half swing",
+            y_label=f"largest {scene.equations.error.chart.magnitude} per half period",
             log="y",
         ),
     )

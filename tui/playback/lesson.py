@@ -9,7 +9,7 @@ from pendu_tui.engine.scenes import Scene, Shot
 from pendu_tui.tui.cli.scene import TOUR, read_scenes
 from pendu_tui.tui.playback.live import Live
 
-ASTRAY = "This is your own run now. Enter begins the page again."
+ASTRAY = "This is your own run now. Enter restarts the page."
 
 Stage = Literal["watching", "told", "asked", "answered", "over"]
 

@@ -275,7 +275,7 @@ class StartForm(Form[Scene]):
 
     def compose(self) -> ComposeResult:
         with Container(id="form") as form:
-            form.border_title = "Start values"
+            form.border_title = "Initial values"
             form.border_subtitle = "Enter starts, Esc cancels"
             numbers = self._before.numbers
             for name, value in numbers.items():

@@ -77,7 +77,7 @@ class LabScreen(SizedScreen[None]):
     BLANK = True  # covered by its children
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     BINDING_GROUP_TITLE = "Lab"
-    HELP = "Drag the pendulum: throw it. Click a key, an event, a row, a pane; the wheel zooms."
+    HELP = "Drag the pendulum to throw it. Click a key, an event, a row, a pane; the wheel zooms."
     BINDINGS: ClassVar[list[BindingType]] = KEYS
 
     shown: var[Shown] = var(Shown())
@@ -291,7 +291,7 @@ class LabScreen(SizedScreen[None]):
         where = "not recorded"
         if live.recorder is not None:
             where = f"recorded as {live.recorder.path}"
-        self.notify(f"Live from {seconds(t)} on, {where}; u leads back to the replay.", timeout=8)
+        self.notify(f"Live from {seconds(t)} on, {where}; u returns to the replay.", timeout=8)
 
     async def start(self, scene: Scene) -> bool:
         """Begin a run; return whether that was possible."""
@@ -380,12 +380,12 @@ class LabScreen(SizedScreen[None]):
         if not await self.change(getattr(lesson, way)):
             return
         if lesson.stage == "over":
-            self._leave_lesson("That was the last page. T begins again.")
+            self._leave_lesson("That was the last page. T starts over.")
         elif (lesson.index, self.source.sample.run) != before:
             self._show_shot(lesson.page)
 
     def _leave_lesson(
-        self, notice: str = "T resumes the lesson; u brings back the run before it."
+        self, notice: str = "T resumes the lesson; u restores the run before it."
     ) -> None:
         before, view, self._undo = self._before_lesson
         self.is_guided = False

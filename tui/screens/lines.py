@@ -82,7 +82,7 @@ def status_row(source: Source, shown: Shown, width: int, stands_still: bool = Fa
 def _time(source: Source, shown: Shown, stands_still: bool) -> Iterator[Segment]:
     playhead = source.playhead
     if source.failure:
-        yield Segment(12, "stands still", WARN)
+        yield Segment(12, "stopped", WARN)
     elif shown.held is not None:
         yield Segment(12, "held   ")
     elif playhead.paused or stands_still:
@@ -154,7 +154,7 @@ class InsightLine(Pane):
             text = "Let go or throw: all methods start from your hand."
         ink = TEXT
         if source.failure:
-            text = f"{without_folder(source.failure)} The run stands still; space tries again."
+            text = f"{without_folder(source.failure)} The run has stopped; space tries again."
             ink = WARN
         elif status is not None and status.failed:
             text = f"Not recording: {without_folder(status.failed)}"
@@ -191,7 +191,7 @@ class LessonPanel(Pane):
         screen: Any = self.screen
         lesson = screen.lesson
         text = lesson.text
-        forward = "enter go on"
+        forward = "enter continue"
         if lesson.is_astray(source):
             text = (ASTRAY,)
             forward = "enter again"

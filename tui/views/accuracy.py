@@ -32,8 +32,8 @@ MARKS: dict[Flaw, str] = {"lost": "x", "rounding": "~"}
 """The marks of points whose error says nothing about the order."""
 
 ERROR_LABELS: dict[ErrorKind, str] = {
-    "theta": "theta error [rad], the largest distance from the exact swing",
-    "energy": "energy error, the largest of all steps, relative",
+    "theta": "theta error [rad], the largest distance from the exact motion",
+    "energy": "relative energy error, the largest over all steps",
     "final": "theta error at the end [rad]",
 }
 CHART_ROWS = 9  # which leave the words of a small screen two
@@ -181,7 +181,7 @@ class AccuracyPane(Chooser[Point]):
         chart = self._chart(self.room, computed, chosen, self.shown).picture
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.time:g} s: {self.chart} error{left}"
-        self.write_titles(title, "@ current h  x no digit right  ~ limited by rounding")
+        self.write_titles(title, "@ current h  x no correct digit  ~ limited by rounding")
         words = self.words(*self._sentences(), rows=self.room.height - len(chart.rows))
         return Picture([*chart.rows, *words])
 

@@ -52,7 +52,7 @@ class Column(NamedTuple):
 
 
 def _verdict(line: TableLine, width: int) -> str:
-    """Return "+ grows"; of an undecided one what is missing: "5 of 8 swings" or "5/8 swings"."""
+    """Return "+ grows"; of an undecided one what is missing: "5 of 8 cycles" or "5/8 cycles"."""
     if line.held:
         return "held"
     verdict = VERDICTS[line.verdict]
@@ -101,7 +101,7 @@ def _columns(
     while heads and spare < 0:
         _, size = heads.pop(min(heads, key=lambda column: column.keep))
         spare += size + 1
-    more_room = {VERDICT: min(spare, 3)}  # "2 of 5 swings"
+    more_room = {VERDICT: min(spare, 3)}  # "2 of 5 cycles"
     return [
         (title, size + more_room.get(column, 0), column) for column, (title, size) in heads.items()
     ]

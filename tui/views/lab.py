@@ -69,7 +69,7 @@ def title(shown: Shown, exact: ExactMotion, model: Model, room: int) -> str:
     if not shown.log:
         parts = [chart.title, "", span]
     else:
-        cycles = {"libration": " per half swing", "rotation": " per turn"}
+        cycles = {"libration": " per half period", "rotation": " per turn"}
         cycle = ""
         if exact.period and shown.stretch is None:
             cycle = cycles.get(exact.regime, "")
@@ -146,7 +146,7 @@ class TimeChart(Pane):
         if source.ghost is not None:
             return source.ghost.label
         if not source.knows_past:
-            return "reading what came before …"
+            return "reading the earlier samples …"
         keys = "e: quantity, w: window, z: zoom, y: axes"
         return keys if len(keys) <= room else keys.rpartition(",")[0]
 

@@ -36,7 +36,7 @@ class PhasePane(Chooser[State]):
     """A click or enter starts a run there; the exact orbit under the pointer is drawn."""
 
     BINDING_GROUP_TITLE = "Phase space"
-    HELP = "A click starts there, the pointer shows the orbit; the wheel zooms, arrows move."
+    HELP = "Click to start there; the pointer shows the orbit, the wheel zooms, arrows move."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "screen.switch('ring')", "Ring", tooltip="ring of neighbours"),

@@ -14,11 +14,11 @@ from pendu_tui.tui.words.numbers import counted, motion_text, z_text
 WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 
 GLOSSARY = {
-    "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
-    "z": "h·w0, the step in units of 1/w0; w0 = sqrt(g/L). Beyond its limit in z a method is "
+    "h": "the step size [s]: methods give the motion only at times 0, h, 2h, ...",
+    "z": "h·w0, the step in units of 1/w0; w0 = sqrt(g/L). Above its limit in z a method is "
     "unstable",
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
-    "E/Es": "the energy over that of the separatrix: libration (swings) below 1, rotation above",
+    "E/Es": "the energy over the separatrix's: libration (it swings) below 1, rotation above",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
     "colours": "each method keeps its colour and letter everywhere; its digit is its place, "
     "and its key",
@@ -64,12 +64,12 @@ def method_card(method: Method) -> str:
     costs = f"{counted(method.force_evaluations, 'force evaluation')} per step"
     if method.varies:
         costs = f"about {costs}"
-    symplectic = "no: phase-space area changes"
+    symplectic = "no: does not preserve phase-space area"
     if method.symplectic:
-        symplectic = "yes: conserves phase-space area"
+        symplectic = "yes: preserves phase-space area"
     reversible = "no"
     if method.reversible:
-        reversible = "yes: run backwards, it returns to its start"
+        reversible = "yes: with time reversed, it returns to its initial state"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
@@ -89,7 +89,7 @@ def scene_card(scene: Scene) -> str:
     exact = scene.exact()
     reference = None
     if exact.accuracy and scene == SCENES.get(scene.name):
-        accuracy = f"theta right to {exact.accuracy:g} rad for a minute"
+        accuracy = f"theta accurate to {exact.accuracy:g} rad for a minute"
         reference = f"Kahan & Li's method of order 8, {accuracy}; no closed form"
     lines = {
         "watch": scene.watch,

@@ -1,4 +1,4 @@
-"""The insight of the moment: a sentence on what was measured, or a slope that goes on."""
+"""The insight of the moment: a sentence on what was measured, or a slope that continues."""
 
 import math
 import re
@@ -155,7 +155,7 @@ def milestone_insight(milestone: Milestone, conserved: bool) -> Insight:
     """Return the insight on a method that failed, went over the top, or passed another's error."""
     name = short_name(milestone.method)
     at = seconds(milestone.t)
-    text = f"{name} failed at {at}: its numbers have broken down."
+    text = f"{name} failed at {at}: its computation has broken down."
     if milestone.other:
         other = short_name(milestone.other)
         text = f"{name}'s error passed {other}'s at {at}: smaller at first, it kept growing."
@@ -193,7 +193,7 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
     pace = "exponentially"
     if judgement.lyapunov:
         pace = f"tenfold every {about(math.log(10) / judgement.lyapunov)}"
-    return Insight(CHAOTIC, f"{name} is chaotic: nearby starts separate {pace}.")
+    return Insight(CHAOTIC, f"{name}'s motion is chaotic: nearby orbits separate {pace}.")
 
 
 def drift(source: Source, index: int) -> Insight | None:

@@ -34,7 +34,7 @@ def fitting(value: float | None, width: int, *formats: str) -> str:
 
 
 def start(theta: float, omega: float) -> str:
-    """Write start values: "57.3° 0 rad/s"."""
+    """Write initial values: "57.3° 0 rad/s"."""
     return f"{math.degrees(theta):.4g}° {omega:.4g} rad/s"
 
 

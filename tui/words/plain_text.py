@@ -29,8 +29,8 @@ def description(source: Source, stands_still: bool = False) -> list[str]:
     at = f'{seconds(source.sample.t)} of run {source.sample.run} of the scene "{scene.name}"'
     began = start(scene.theta, scene.omega).replace("°", "°,")
     if source.exact.period is not None:
-        cycle = "turn" if source.exact.regime == "rotation" else "swing"
-        began += f"; one {cycle} takes {about(source.exact.period)}"
+        cycle = "one turn takes" if source.exact.regime == "rotation" else "the period is"
+        began += f"; {cycle} {about(source.exact.period)}"
     h = source.stepping.h
     step = f"{abs(h):.4g} s, z = {abs(h) * scene.equations.fastest:.3g}"
     if source.stepping.equal_cost:
@@ -43,7 +43,7 @@ def description(source: Source, stands_still: bool = False) -> list[str]:
         f"The step size is {step}.",
     ]
     if source.failure:
-        lines.append(f"It stands still: {source.failure}")
+        lines.append(f"The run has stopped: {source.failure}")
     if source.ghost:
         lines.append(f"{source.ghost.label.capitalize()}.")
     methods = [method_sentence(source, index) for index in range(len(scene.cast))]
@@ -85,7 +85,7 @@ def tell(
 ) -> None:
     """Emit the description and each event, until `stopped` or the end of a recording.
 
-    A lesson goes on by itself, after time to read it.
+    A lesson continues by itself, after time to read it.
     """
     if lesson is not None and isinstance(source, Live):
         lesson.begin(source, 0)
@@ -169,7 +169,7 @@ def _inputs(source: Source) -> Iterator[EventLine]:
         elif event.h is not None:
             parts = [f"h {abs(event.h):.4g} s"]
             if event.h < 0:
-                parts.insert(0, "time runs back")
+                parts.insert(0, "time runs backwards")
             if event.equal_cost:
                 parts.append("equal cost")
             yield EventLine(*place, ", ".join(parts), "change")

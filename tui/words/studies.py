@@ -32,7 +32,7 @@ def point_words(point: Point, kind: ErrorKind) -> str:
     error = f"{kind} error {point.errors[kind]:.1e}"
     if flaw := point.flaws[kind]:
         error += f" ({REASONS[flaw]})"
-    swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
+    swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a period"
     text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
     return f"{text} for {point.force_evaluations} force evaluations."
 
@@ -59,7 +59,7 @@ def orbit_words(method: Method, kind: OrbitKind) -> str:
     if not kind.moves:
         return "An equilibrium: it stays where it is."
     if kind.chaotic:
-        return f"Chaotic: neighbouring starts separate by a factor of e^{kind.lyapunov:.3f} a step."
+        return f"Chaotic: neighbouring orbits separate by a factor of e^{kind.lyapunov:.3f} a step."
     shape = "Regular"
     if not method.symplectic:
         shape = "A slow spiral"
@@ -67,8 +67,8 @@ def orbit_words(method: Method, kind: OrbitKind) -> str:
             shape = f"It spirals {'outwards' if kind.drift > 0 else 'inwards'}"
     if not kind.rotation or kind.fraction is None:
         if shape.startswith("It"):
-            return f"{shape}: no rotation number, since that changes on the way."
-        return f"Undecided in {kind.steps} steps: regular so far, but with no definite rotation."
+            return f"{shape}: no rotation number, since it changes along the way."
+        return f"Undecided in {kind.steps} steps: regular so far, but no definite rotation number."
     over = " over the top" if kind.spins else ""
     turns, steps = kind.fraction.as_integer_ratio()
     if kind.island:

@@ -77,7 +77,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
         ("mine.py:rk4", 2, "there is a method rk4 already"),
         ("kick.py --method kick.py", 2, "there is a method kick already"),
         ("no:absent.py:kick_drift", 3, "no:absent.py cannot be read: No such file"),
-        ("once.py", 3, "once ends while the run goes on"),
+        ("once.py", 3, "once ends while the run continues"),
         ("long.py:kick_drift", 3, "too long; use a file of at most 30,000 characters"),
     ],
 )

@@ -50,7 +50,7 @@ def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code
         interrupted(error, done=0)
     older = tmp_path / "older.csv"
     older.touch()
-    with pytest.raises(UserError, match="stays as it was"):
+    with pytest.raises(UserError, match="is unchanged"):
         interrupted(error, done=1, output=older)
 
 

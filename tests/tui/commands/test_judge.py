@@ -125,7 +125,7 @@ WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
 @pytest.mark.parametrize(
     ("data", "names", "code", "words"),
     [
-        ("", "t E", 3, "no row of numbers"),
+        ("", "t E", 3, "no rows of numbers"),
         (WIDE, f"t {50 * 'x'}", 2, f"{39 * 'x'}…'; choose from t, {39 * 'E'}…{18 * ', n'}."),
         (TABLE.replace("E", "energy"), "t enrgy", 2, "'enrgy': did you mean energy?"),
         ("1 2\n", "1 2+", 2, "there is no column ''"),

@@ -19,10 +19,10 @@ MISTAKES = {
     },
     "judge absent.csv": {
         "--temperature 0 --atoms 9": "--temperature",
-        "--temperature 5": "belongs to --atoms",
+        "--temperature 5": "needs --atoms",
         "--step 0.5fs --units time=ps": "--step already gives the unit of time; leave time= out",
         "again.csv --steps 1,1": "not all the same",
-        "again.csv --steps 1,2,3": "one for each",
+        "again.csv --steps 1,2,3": "one per file",
         "again.csv": "several files need --steps",
         "--steps 1": "not all the same",
         "--fail-if 'rk4.verdict == grows'": "is not understood",

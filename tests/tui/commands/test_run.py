@@ -66,14 +66,14 @@ def test_a_recording_has_the_same_bytes_each_time_and_is_overwritten_by_force_on
 def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
     judgements = (
         Judgement("undecided", reason="it beats"),
-        Judgement("undecided", reason="2 of 8 swings", progress=Progress(2, 8, "swings")),
+        Judgement("undecided", reason="2 of 8 cycles", progress=Progress(2, 8, "cycles")),
         Judgement("chaotic", lyapunov=0.2),
         Judgement("grows", rests=True),
     )
     lockstep = SimpleNamespace(scene=DEFAULT_SCENE, milestones=[], judgements=judgements)
     assert [*run._notes(lockstep)] == [
         "Explicit Euler is undecided: it beats.",
-        "Verlet is chaotic: nearby starts separate tenfold every 12 s.",
+        "Verlet's motion is chaotic: nearby orbits separate tenfold every 12 s.",
     ]
     (verlet,) = pendu("run", "chaos-loose", "--time", 300, "--methods", "v", "--json").json[
         "methods"
@@ -122,7 +122,7 @@ def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, 
     assert f"wrote {tmp_path / 'run-2.mcap'}\n" in outcome.err
     assert outcome.err.endswith("interrupted at t = 2 s, showing the results up to then.\n")
     assert pendu(*line, "-o", tmp_path / "new.csv").code == 130
-    assert pendu(*line, "-o", tmp_path / "new.csv").refused(130, "stays as it was")
+    assert pendu(*line, "-o", tmp_path / "new.csv").refused(130, "is unchanged")
 
 
 def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_failed():

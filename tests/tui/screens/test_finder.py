@@ -43,9 +43,9 @@ async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
         assert theatre.app.screen.query_one(Input).value == "scene x"
         await theatre.press("escape")
         for words, first, number in (
-            ("scene prob", "scene mean-field", 1),  # "of the probability is gone"
+            ("scene shr", "scene mean-field", 1),  # "has shrunk by 15 %"
             ("PIXELS half", "pixels half", 1),
-            ("double", "double speed", None),  # before scenes in whose sentences it stands
+            ("double", "double speed", None),  # before scenes in whose sentences it is
             ("ouble speed", None, 0),
         ):
             texts = await found(theatre, words)

@@ -51,7 +51,7 @@ async def test_it_is_walked_on_the_smallest_terminal_with_every_sentence_in_full
             choice = 1 + number % 2
             await theatre.press(str(choice))
             result = "Right." if choice == shot.right else "Not quite."
-            assert panel(theatre).startswith(f"{title} enter go on")
+            assert panel(theatre).startswith(f"{title} enter continue")
             told = f"{result} {shot.right}: {shot.answers[shot.right - 1]} {shot.truth}"
             assert panel(theatre).endswith(words(told))
             await theatre.press("enter")

@@ -54,7 +54,7 @@ async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
             assert shown.errors["theta"] == point.errors["theta"]
             assert shown.errors["energy"] == point.errors["energy"]
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
-        assert pane.border_subtitle == "@ current h  x no digit right  ~ limited by rounding"
+        assert pane.border_subtitle == "@ current h  x no correct digit  ~ limited by rounding"
         points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]
         cheapest = front(points, "energy", "evaluations")
         assert {one.method.key for one in cheapest} == {"velocity_verlet", "rk4"}
@@ -127,7 +127,7 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         at = (column + 1, row + 1)  # the frame
         await pilot.press("right")  # the pointer goes before the cursor
         await pilot.hover(pane, (at[0] + 3, at[1]))
-        assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a small")
+        assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a period")
         exact = replace(pane.points["rk4", RUNGS[1]], errors=dict.fromkeys(ERROR_LABELS, 0.0))
         pane.add(exact)
         pane._chart.forget()
