@@ -36,7 +36,7 @@ FIELDS = (*(each.name for each in QUANTITIES if each.in_gate), *_OWN)
 """The fields of `run --json` that are numbers."""
 
 JUDGED = (
-    *("max_energy_error", "trend", "slope", "bound", "share", "absolute_trend", "fluctuation"),
+    *(LARGEST.name, "trend", "slope", "bound", "share", "absolute_trend", "fluctuation"),
     *("energy_per_ns_per_atom", "kt_per_ns_per_atom", "samples", "skipped"),
     *("independent_samples", "fluctuation_order", "drift_order"),
 )

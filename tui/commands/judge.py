@@ -16,6 +16,7 @@ import numpy as np
 
 from pendu_tui.engine import library
 from pendu_tui.engine.inputs import did_you_mean
+from pendu_tui.engine.quantities import ENERGY_ERROR, LARGEST
 from pendu_tui.engine.run.record import Fluctuation, Order, fluctuation, order_of
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
@@ -202,8 +203,8 @@ def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:
         "time_unit": time_unit,
         "energy_unit": energy_unit,
         "independent_samples": judged.independent,
-        "max_energy_error": judged.max_error,
-        "energy_error": judged.error,
+        LARGEST.name: judged.max_error,
+        ENERGY_ERROR.name: judged.error,
         "first_energy": series.energies[0],
         "lowest_energy": series.energies.min(),
         "highest_energy": series.energies.max(),

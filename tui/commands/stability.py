@@ -10,6 +10,7 @@ import numpy as np
 from pendu_tui.engine.methods import Method
 from pendu_tui.engine.methods.measure import linear_limit
 from pendu_tui.engine.methods.own import OwnMethod
+from pendu_tui.engine.quantities import LARGEST
 from pendu_tui.engine.scenes import Scene
 from pendu_tui.engine.studies import BAND, LOST
 from pendu_tui.engine.studies.stability import (
@@ -134,7 +135,7 @@ def _cell_fields(cell: Any) -> dict[str, Any] | None:
     return {
         "fate": FATES[cell["fate"]],
         "steps_survived": int(cell["steps"]),
-        "max_energy_error": cell["error"],
+        LARGEST.name: cell["error"],
     }
 
 
