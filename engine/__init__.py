@@ -1,8 +1,8 @@
 """The laboratory without a screen.  Pure: no clock, no file, no thread, no randomness.
 
-A scene (`scenes`) gives a model (`models`) its start, and `run` moves the methods (`methods`) side
-by side.  `studies` look closer: at what speed costs, where methods
-fail, and what a step does to neighbouring starts.
+A scene (`scenes`) gives a model (`models`) its initial state, and `run` advances the methods
+(`methods`) side by side.  `studies` look closer: at what accuracy costs, where methods fail, and
+what a step does to neighbouring states.
 
 The names below are those of `library`, loaded when they are used.
 """

@@ -80,4 +80,4 @@ def _float(bare: str, text: str, what: str, example: str) -> float:
     try:
         return float(bare)
     except ValueError:
-        raise ValueError(f"{text!r} is not {what}; use for example {example}") from None
+        raise ValueError(f"{text!r} is not {what}; use, for example, {example}") from None

@@ -73,7 +73,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
     ByMethod(listed.METHODS, map(_public, listed.METHODS))
 )
 """The methods by key.  `phases(force, (q, p), h)` of those with `general` yields the phases after
-one step of h, after two, and so on without end; q, p and force(q) are numbers or arrays, and
+one step of h, after two, and so on endlessly; q, p and force(q) are numbers or arrays, and
 q'' = force(q)."""
 
 SCENES: Mapping[str, Scene] = MappingProxyType(scenes.SCENES)
@@ -115,7 +115,7 @@ def simulate(
     """Run methods side by side for `time` [s], by default those of the scene.
 
     `numbers` replace the scene's: theta [rad], omega [rad/s], length [m], gravity [m/s²], h [s],
-    and the parameters of its model.  The arrays hold the start, each `every`-th step, and the last.
+    and the parameters of its model.  The arrays hold step 0, every `every`-th step, and the last.
     """
     import numpy as np
 
@@ -156,7 +156,7 @@ class Judged:
     uncertainty: float | None  # of the slope: 68 % lie within
     bound: float | None  # |slope| is below it with a probability of 99 %
     share: float | None  # what the slope adds up to, over the width of the band
-    rests: bool  # the energy left its start and stays in another band; the slope is of that rest
+    rests: bool  # the energy stays in another band than at first; the slope is of that part
     error: float  # the distance of the last energy from the first, over the scale
     max_error: float  # the largest such distance
     fluctuation: float | None  # standard deviation about a line, over the scale
@@ -268,7 +268,7 @@ def fluctuation_order(runs: "Iterable[tuple[float, ArrayLike, ArrayLike]]") -> "
 class Limit:
     """Where a method loses a swing; z = h·sqrt(g/L)."""
 
-    linear: float | None  # z: the limit of small swings; 0: none is stable, None: no one number
+    linear: float | None  # z: the limit of small swings; 0: none is stable, None: no single number
     z: float | None  # the smallest at which the swing is lost; None: held up to z = 3.2
     h: float | None  # s, the same for this scene
     reason: str  # over the top, grows, loses or chaotic; "" if it is held

@@ -82,7 +82,7 @@ class EnergyDrift(_Checks):
         """Fail unless the energy of runs (h, times, energies) fluctuates as h^`at_least` or better.
 
         It fails if the order plus twice its uncertainty is below the limit, and if the runs are so
-        short that they do not tell one order from the next.
+        short that they cannot distinguish one order from the next.
         """
         __tracebackhide__ = True
         from pendu_tui.engine import fluctuation_order
@@ -112,7 +112,7 @@ class MethodProperties(_Checks):
         symplectic: bool | None = None,
         reversible: bool | None = None,
     ) -> "Measured":
-        """Fail unless a generator function (force, phase, h) has the properties that are given.
+        """Fail unless a generator function (force, phase, h) has the properties given.
 
         The order may be higher, and is measured to ORDER_TOLERANCE.
         """

@@ -1,4 +1,4 @@
-"""Verification: simulate a recording's runs again from their events, and compare every sample.
+"""Verification: re-simulate a recording's runs from their events, and compare every sample.
 
 Samples must agree in every bit, or within TOLERANCE where this machine's sin differs.  And
 recovery: save the intact chunks of a damaged or unfinished recording as a complete one.
@@ -50,7 +50,7 @@ class Verification:
     reason: str | None = None  # why not, a clause
     runs: int = 0
     samples: int = 0
-    numerics: int = NUMERICS  # the version of the numbers
+    numerics: int = NUMERICS  # the version of the numerics
     methods: tuple[str, ...] = ()  # keys
     other_functions: tuple[str, ...] = ()  # that this machine computes differently
     changed_sources: tuple[str, ...] = ()  # keys of own methods whose file is not as recorded

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from pendu_tui.engine.models.model import Model, Offer, Phase, Sine
 
 Phases = Callable[[Any, Phase, float], Iterator[Phase]]
-"""(force, phase, h) -> the phases after one step of h [s], after two, and so on without end.
+"""(force, phase, h) -> the phases after one step of h [s], after two, and so on endlessly.
 
 In place of the force, some take another `Offer` of the model.
 """
@@ -76,7 +76,7 @@ class Method:
     first_same_as_last: bool = False
     symplectic: bool = False  # the step's Jacobian has determinant 1
     reversible: bool = False  # a step with -omega undoes a step
-    # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
+    # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no single number
     linear_limit: float | None = None
     other_names: tuple[str, ...] = ()
     reference: str

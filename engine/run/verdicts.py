@@ -110,7 +110,7 @@ class Judgement(NamedTuple):
     share: float | None = None  # what the slope adds up to so far, over the width of the band
     reason: str = ""  # of `undecided`: what is missing, and whether a longer record helps
     is_evident: bool = False  # the slope stands out from 0
-    rests: bool = False  # the energy has left its start and stays in another band
+    rests: bool = False  # the energy stays in another band than at first
     independent: float = 0.0  # samples
     fluctuation: float | None = None  # standard deviation about a line
 

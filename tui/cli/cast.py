@@ -75,7 +75,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
         raise InputError(f"{text!r} is not FILE.py:FUNCTION.")
     if not (key.isidentifier() and key.isascii() and len(key) <= 30):
         raise InputError(
-            f"{key!r} cannot be a method's name; use a function's with at most 30 ASCII letters."
+            f"{key!r} cannot be a method's name; name the function in at most 30 ASCII letters."
         )
     taken = (*METHODS, *others)
     if key in [method.key for method in taken]:

@@ -139,7 +139,7 @@ class _Grammar:
         example = f"any.{LARGEST.name} > 1e-2 or any.{word} != {right}"
         if self.fields:
             example = f"{self.fields[0]} > 1e-2 or {word} != {right}"
-        return InputError(f"{_quoted(text)} is not understood; use for example '{example}'.")
+        return InputError(f"{_quoted(text)} is not understood; use, for example, '{example}'.")
 
 
 def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> str:
@@ -156,7 +156,7 @@ def _number(node: ast.expr) -> float:
     with suppress(ValueError):
         value = float(text)
     if not math.isfinite(value):
-        raise InputError(f"{_quoted(text)} is not a finite number; use for example 1e-2.")
+        raise InputError(f"{_quoted(text)} is not a finite number; use, for example, 1e-2.")
     return value
 
 

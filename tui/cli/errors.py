@@ -56,7 +56,7 @@ def explained(error: BaseException) -> UserError:
         case RecordingError() | OwnMethodError():
             return unreadable(str(error))
         case MemoryError():
-            return unreadable("not enough memory; use less of it, or smaller input.")
+            return unreadable("not enough memory; make the run or the input smaller.")
         case OSError():  # also DiskError
             why = (error.strerror or str(error)) + ADVICE.get(error.errno or 0, "")
             return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)

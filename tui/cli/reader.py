@@ -81,7 +81,7 @@ def read_sheets(stream: io.BufferedReader, wanted: Wanted, file: str = "") -> li
                 unpacked = io.BufferedReader(unpack(stream))
                 return read_sheets(unpacked, wanted, file.rpartition(".")[0])
             except (EOFError, OSError, lzma.LZMAError, zlib.error):
-                raise unreadable("it cannot be unpacked; is it whole?") from None
+                raise unreadable("it cannot be unpacked; is it complete?") from None
     if start.startswith((b"PK\x03\x04", b"\x93NUMPY")):
         return _Text(wanted, file).read(_document(_arrays(stream)))
     encoding = "utf-8-sig"

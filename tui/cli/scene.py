@@ -209,7 +209,7 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
         _check("front", "method", key, (method.key for method in scene.cast))
     if shot.moment is None and (shot.question or shot.returns):
         name = "question" if shot.question else "returns"
-        raise _FieldError(f"{name} needs a moment; use for example moment = 12.5.", name)
+        raise _FieldError(f"{name} needs a moment; use, for example, moment = 12.5.", name)
     count = len(shot.answers)
     if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
         raise _FieldError(
@@ -238,7 +238,7 @@ def _values(given: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, Any
                     value = _READERS[name](str(value))
                 found[name] = msgspec.convert(value, types[name])
             except msgspec.ValidationError as error:
-                raise InputError(f"{name}: {error}; use for example {_example(name)}.") from None
+                raise InputError(f"{name}: {error}; use, for example, {_example(name)}.") from None
             except ValueError as error:  # of a reader
                 raise InputError(f"{name}: {error}") from None
     return found

@@ -480,7 +480,7 @@ class Series:
         begin -= ROUNDING * abs(begin)
         last += ROUNDING * abs(last)
         if not begin <= last:
-            raise UserError(f"there is no time from {begin:g} to {last:g}.")
+            raise UserError(f"there are no times from {begin:g} to {last:g}.")
         step, _ = self.sheet.wanted.step or (1.0, "")
         times = self.times * step
         is_later = times > np.fmax.accumulate(np.append(-np.inf, times[:-1]))
@@ -512,7 +512,7 @@ class Series:
         in_turn = ((np.diff(times) == 0) & (np.abs(np.diff(self.energies)) > 0)).sum()
         if in_turn > len(times) / 3:
             raise unreadable(
-                f"{in_turn} of {len(times)} rows have the time of the row before, but another "
+                f"{in_turn} of {len(times)} rows repeat the time of the row before, with another "
                 "energy; keep one body or method, for example with grep, or print more digits."
             )
         if (~is_later).sum() > len(times) / 2 and not self.has_ended:

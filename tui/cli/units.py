@@ -123,7 +123,7 @@ def moment(text: str) -> Moment:
     number = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
     match = re.fullmatch(rf"{number}\s*([^\W\d]\S*)?", text.strip())
     if match is None or math.isinf(float(match[1])):
-        raise ValueError(f"{text!r} is not a time; use for example 2 or 0.5fs")
+        raise ValueError(f"{text!r} is not a time; use, for example, 2 or 0.5fs")
     return float(match[1]), _unit_of_time(match[2]) if match[2] else ""
 
 
@@ -131,14 +131,14 @@ def quantity(text: str) -> Moment:
     """Return a time above zero, and its unit."""
     value, unit = moment(text)
     if value <= 0:
-        raise ValueError(f"{text!r} is not a step; use for example 2 or 0.5fs")
+        raise ValueError(f"{text!r} is not a step; use, for example, 2 or 0.5fs")
     return value, unit
 
 
 def _unit_of_time(unit: str) -> str:
     """Return a unit of time.  Raises ValueError if it is not known."""
     if not plain("time", unit):
-        raise ValueError(f"{unit!r} is not a known unit of time; use for example fs, ps or ns")
+        raise ValueError(f"{unit!r} is not a known unit of time; use, for example, fs, ps or ns")
     return unit
 
 
@@ -152,6 +152,6 @@ def assignments(text: str) -> dict[str, str]:
         _unit_of_time(found["time"])
     if is_of_another_kind(found.get("energy", "")):
         raise ValueError(
-            f"{found['energy']!r} is not a unit of energy; use for example eV or kJ/mol"
+            f"{found['energy']!r} is not a unit of energy; use, for example, eV or kJ/mol"
         )
     return found

@@ -148,5 +148,5 @@ def _end_if_silent(pulse: Any, process: int) -> None:
                 silence += 1
         system.restore_terminal(terminal)
         why = "a call in C in your method does not return; a recording is kept as a .part"
-        _tell(f"ended, for {why}.")
+        _tell(f"ended: {why}.")
         system.kill(process, 3)

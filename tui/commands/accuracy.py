@@ -56,7 +56,7 @@ Row = dict[str, Any]
 
 def run(options: argparse.Namespace) -> int:
     if options.all and options.methods is not None:
-        raise UserError("--all and --methods exclude each other; choose one of them.")
+        raise UserError("--all and --methods exclude each other; choose one.")
     if options.cost == "seconds" and (options.workers > 1 or options.dask):
         raise UserError("seconds are measured in this process; use workers for evaluations only.")
     check_output(options)
@@ -213,7 +213,7 @@ class Results:
         attempts = list(map(self._attempt_fields, self.attempts))
         best = attempts[0]
         if not self.attempts[0].reached:
-            best = dict.fromkeys(best) | {"why_not": "no method gets there"}
+            best = dict.fromkeys(best) | {"why_not": "no method reaches the target"}
         return {"time": self.time, "target": self.options.target, **best, "attempts": attempts}
 
 

@@ -52,7 +52,7 @@ def _findings() -> Iterator[tuple[str, str, str]]:
         advice = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
     yield "encoding", encoding, advice
     known = environment()
-    advice = "if it has true colour, set COLORTERM=truecolor; if it has none, set TERM"
+    advice = "if it has true colour, set COLORTERM=truecolor; if it has no colour, set TERM"
     if known.get("NO_COLOR") or colours(known) > 256:
         advice = ""
     yield "colours", f"{colours(known)}, TERM={known.get('TERM', '')}", advice

@@ -355,7 +355,7 @@ def _title(fields: dict[str, Any]) -> str:
         text += f", table {fields['table']} of {fields['tables']}"
     if fields["skipped"]:
         rows = counted(fields["skipped"], "row")
-        text += f"; skipped: {rows} without numbers or a later time"
+        text += f"; skipped: {rows} without numbers or out of time order"
     return text
 
 

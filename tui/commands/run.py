@@ -49,7 +49,7 @@ RECORDED = [each.name for each in quantities.RECORDED if each.recorded == "alway
 def run(options: Namespace) -> int:
     scenes = scenes_of(options)
     if options.time is None:
-        raise UserError("--time is missing; use for example --time 60.")
+        raise UserError("--time is missing; use, for example, --time 60.")
     gate = parse(options.fail_if, cast=scenes[0].cast)
     coarsest = max(scenes, key=lambda scene: scene.h)
     if steps_for(coarsest, options.time) == 0:

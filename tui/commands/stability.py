@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     grid = axes(scene, options.theta_values, options.z_values, options.steps)
     cells = grid.unknown()
     parts = grid.parts()
-    with work_of(options, "swings", len(parts)) as work:
+    with work_of(options, "runs", len(parts)) as work:
         for part, computed in zip(parts, work.run(Part.cells, parts), strict=True):
             cells[part.z, part.method] = computed
             work.step()

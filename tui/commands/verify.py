@@ -83,7 +83,9 @@ def _sentence(row: dict[str, Any]) -> str:
     if row["numerics"] != NUMERICS:
         text += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
     if row["changed_sources"]:
-        text += f"; the source of {' and '.join(row['changed_sources'])} is not the recorded one"
+        text += (
+            f"; the source of {' and '.join(row['changed_sources'])} differs from the recorded one"
+        )
     verdict = "damaged"
     if first := row["first_difference"]:
         verdict = "different"

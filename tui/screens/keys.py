@@ -76,7 +76,7 @@ KEYS: list[BindingType] = [
         _key(f"{n}", f"show({n - 1})", f"show or hide method {n}", group=_METHODS)
         for n in range(1, MAX_METHODS + 1)
     ),
-    _key(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "the exact motion"),
+    _key(f"{MAX_METHODS + 1}", f"show({MAX_METHODS})", "show the exact motion"),
     *(
         _key(f"f{n}", f"view({name!r})", f"view: {title}", shown=f"F{n}", group=_VIEWS)
         for n, (name, title) in enumerate(VIEWS.items(), 2)

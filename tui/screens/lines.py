@@ -194,7 +194,7 @@ class LessonPanel(Pane):
         forward = "enter continue"
         if lesson.is_astray(source):
             text = (ASTRAY,)
-            forward = "enter again"
+            forward = "enter restart"
         elif lesson.stage == "asked":
             numbers = range(1, len(lesson.shot.answers) + 1)
             forward = f"{' '.join(map(str, numbers))} answer  enter show answer"

@@ -39,7 +39,7 @@ def cells(text: str) -> tuple[int, int]:
     rows = int(match[2])
     if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
         limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
-        raise ValueError(f"{text!r} is not a size; use for example 120x40, from {limits}")
+        raise ValueError(f"{text!r} is not a size; use, for example, 120x40, from {limits}")
     return columns, rows
 
 

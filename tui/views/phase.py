@@ -188,7 +188,7 @@ class SectionPane(PhasePane):
     """The portrait or, after key x, a section of one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "screen.switch('section')", "Map", tooltip="a method's own map")
+        Binding("x", "screen.switch('section')", "Map", tooltip="a method's map")
     ]
     EVERY = 4
 
@@ -223,7 +223,7 @@ class SectionPane(PhasePane):
         h = abs(source.stepping.own[self.index])
         model = source.scene.equations
         section = self._section(self.viewport, model, method, inks(self.cast)[self.index], h)
-        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
+        title = f"Map of {method.label}: h {h:g} s, z {h * model.w0:.4g}"
         if section.orbits < STARTS:
             title += f", computing {10 * section.orbits // STARTS / 10:.0%}"
         self.write_titles(title, "wheel: zoom, tab: next method, x: back")

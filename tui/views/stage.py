@@ -201,8 +201,8 @@ def _wanted(canvas: Canvas, places: Lanes, bob: Bob, radius: float) -> Iterator[
     yield from ((column + across, row + down) for across, down in _AROUND)
 
 
-TITLES = ("One pendulum, a lane for each method", "Pendulum, in lanes", "In lanes")
-SPRINGS = ("One bob on a spring for each method", "Bobs on springs")
+TITLES = ("One pivot, a lane for each method", "Pendulum, in lanes", "In lanes")
+SPRINGS = ("A bob on a spring for each method", "Bobs on springs")
 HARDEST = 5.0  # w0 of a throw: 6 times the energy that takes a pendulum over the top
 MAGNIFIED = (0.4, 0.8)  # rad, between which the widest of small swings is enlarged
 

@@ -229,12 +229,12 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     """A pane with a cursor to choose a start or a step from, and words about one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "move(-1, 0)", "cursor, to choose", False, "arrows"),
+        Binding("left", "move(-1, 0)", "move the cursor", False, "arrows"),
         Binding("right", "move(1, 0)"),
         Binding("up", "move(0, 1)"),
         Binding("down", "move(0, -1)"),
         Binding("enter", "choose", "Use", tooltip="use what is at the cursor"),
-        Binding("tab", "method(1)", "the next method in words", show=False),
+        Binding("tab", "method(1)", "describe the next method", show=False),
         Binding("escape", "cancel", "leave the cursor", False, "esc"),
     ]
 

@@ -168,10 +168,10 @@ def test_any_other_expression_is_refused_and_never_evaluated(text):
     [
         ("rk4.verdict == lose", "there is no verdict 'lose': did you mean loses?"),
         ("rk4.verdict > loses", "verdict is a word: compare it with == or !=."),
-        ("rk4.energy > loses", "'loses' is not a finite number; use for example 1e-2."),
+        ("rk4.energy > loses", "'loses' is not a finite number; use, for example, 1e-2."),
         (
             "verdict != bounded",
-            "for example 'any.max_energy_error > 1e-2 or any.verdict != bounded'",
+            "for example, 'any.max_energy_error > 1e-2 or any.verdict != bounded'",
         ),
         ("rk4.energy > 1e999", "'1e309' is not a finite number"),
         ("x" * 60, f"'{'x' * 60}' is not understood"),
@@ -189,7 +189,7 @@ def test_an_error_is_one_sentence_that_helps(text, sentence):
 
 
 def test_of_a_record_the_example_names_no_method():
-    with pytest.raises(InputError, match="example 'order > 1e-2 or verdict != bounded'"):
+    with pytest.raises(InputError, match="example, 'order > 1e-2 or verdict != bounded'"):
         parse("any.order > 1", ["order"])
 
 

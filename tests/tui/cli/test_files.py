@@ -175,7 +175,7 @@ def test_no_output_replaces_an_input_even_with_force(here, command):
     if "link.mcap" in command:
         link(Path("link.mcap"), "one.mcap")
     before = {path.name: path.read_bytes() for path in here.iterdir()}
-    assert pendu(*command.split()).refused(2, "is read by this command")
+    assert pendu(*command.split()).refused(2, "is an input of this command")
     assert {path.name: path.read_bytes() for path in here.iterdir()} == before
 
 

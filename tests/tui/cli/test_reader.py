@@ -576,7 +576,7 @@ MISUSED = (
     ("t,E [J]\n" + rows("{t},{e}"), {"units": {"energy": "eV"}}, "E is in J, not in eV"),
     (TABLE, {"step": (0.5, "fs"), "time": "t"}, "t is a time already"),
     (TABLE, {"span": ((5.0, "fs"),)}, "the unit of time is not known"),
-    (TABLE, {"span": ((5.0, ""), (4.0, ""))}, "no time from 5 to 4"),
+    (TABLE, {"span": ((5.0, ""), (4.0, ""))}, "no times from 5 to 4"),
     ("T (ps),E\n" + rows("{t},{e}"), {"step": (0.5, "fs")}, "T is a time already"),
 )
 

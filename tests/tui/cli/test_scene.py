@@ -74,11 +74,11 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ),
         (
             "[shot]\nseconds = 9\nlog = 1",
-            "line 3: log: Expected `bool`, got `int`; use for example log = ",
+            "line 3: log: Expected `bool`, got `int`; use, for example, log = ",
         ),
         (
             "h = 0.1\nshot = 1",
-            "line 2: shot: Expected `object`, got `int`; use for example [shot]",
+            "line 2: shot: Expected `object`, got `int`; use, for example, [shot]",
         ),
         ("[shot]\nvew = 'phase'", "line 2: there is no field 'vew': did you mean view?"),
         ("[shot]\nquantity = 'eror'", "line 2: there is no quantity 'eror'"),
@@ -90,8 +90,8 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
         ("from = 'drfit'", "line 1: there is no scene 'drfit': did you mean drift?"),
         ("[shot]\nmoment = -1", "line 2: moment: '-1' is out of range; use 0 to 3600 s"),
-        ("[shot]\nreturns = true", "line 2: returns needs a moment; use for example"),
-        ("[shot]\nquestion = 'Why?'", "line 2: question needs a moment; use for example"),
+        ("[shot]\nreturns = true", "line 2: returns needs a moment; use, for example,"),
+        ("[shot]\nquestion = 'Why?'", "line 2: question needs a moment; use, for example,"),
         *(
             (
                 f"[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = {answers}\nright = {right}",

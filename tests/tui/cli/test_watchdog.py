@@ -110,4 +110,4 @@ def test_a_process_that_is_silent_for_5_s_is_ended_unless_it_is_stopped(monkeypa
     monkeypatch.setattr(watchdog.system, "kill", lambda *given: ended.append((second, *given)))
     watchdog._end_if_silent(SimpleNamespace(poll=poll, recv=bool), 123)
     assert ended == [(signal.SIGINT, signal.SIG_IGN), "restored", (5 + 2 + 5, 123, 3)]
-    assert capfd.readouterr().err.startswith("pendu-tui: ended, for a call in C")
+    assert capfd.readouterr().err.startswith("pendu-tui: ended: a call in C")

@@ -58,7 +58,7 @@ def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code
     ("command", "rows", "share", "field", "count"),
     [
         (RUNS, 4, "17 % of the runs", "runs", 4),
-        (STABILITY, 6, "6 % of the swings", "pendulum", 2),
+        (STABILITY, 6, "6 % of the runs", "pendulum", 2),
         (ACCURACY, 1, "4 % of", "points", 1),
     ],
 )

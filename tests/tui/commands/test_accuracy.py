@@ -40,7 +40,7 @@ def test_a_target_that_no_method_reaches_is_reported():
     assert (outcome.code, outcome.err) == (1, missed)
     answer = outcome.json["recommendation"]
     found = (answer["method"], answer["h"], answer["why_not"])
-    assert found == (None, None, "no method gets there")
+    assert found == (None, None, "no method reaches the target")
     assert "not within 20,000,000 evaluations" in pendu(*asked).out
 
 

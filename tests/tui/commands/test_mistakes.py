@@ -54,7 +54,7 @@ MISTAKES = {
         "--time 1 --fail-if rk5.theta>1": "--fail-if … rk5",
         "": "--time is missing",
         "--h 0": "h = 0 s",
-        "--h small": "--h: 'small' is not a time; use for example 0.05",
+        "--h small": "--h: 'small' is not a time; use, for example, 0.05",
         "--theta inf": "theta = inf",
         "--theta -170": "--theta: -170 is 27.1 turns; write -170deg or -170rad",
         f"--time 1 --methods {','.join(each.key for each in GENERAL)}": "at most 6",

@@ -124,7 +124,7 @@ def test_without_utf_8_all_is_ascii_and_reduced_motion_is_fewer_frames():
 @pytest.mark.parametrize("text", ["59x16", "60x15", "401x200", "400x201", "80", "80x24x2"])
 def test_a_screen_has_60x16_to_400x200_cells(text):
     assert [cells("60x16"), cells("400×200")] == [(60, 16), (400, 200)]
-    with pytest.raises(ValueError, match="is not a size; use for example 120x40, from 60x16"):
+    with pytest.raises(ValueError, match="is not a size; use, for example, 120x40, from 60x16"):
         cells(text)
 
 

@@ -259,7 +259,7 @@ async def section_of(theatre, *keys: str) -> SectionPane:
 async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(size):
     async with lab(RESONANT, size=size) as theatre:
         pane = await section_of(theatre, "x")
-        assert pane.border_title == "Own map of Velocity Verlet: h 0.348011 s, z 1.09"
+        assert pane.border_title == "Map of Velocity Verlet: h 0.348011 s, z 1.09"
         words = "start: A chain of islands: 1 turn in every 6 steps, 1:6."
         assert pane.text.splitlines()[-1] == words
         assert pane._section.result._near.any()  # other orbits, too

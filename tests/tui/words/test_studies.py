@@ -1,4 +1,4 @@
-"""Orbits of a method's own map, in words."""
+"""Orbits of a method's map, in words."""
 
 from dataclasses import replace
 from fractions import Fraction
