@@ -170,7 +170,7 @@ YOSHIDA_6 = _method(
     reference="Yoshida, Phys. Lett. A 150 (1990) 262, solution A",
     used="Hamiltonian systems: OrdinaryDiffEq.jl, Yoshida6 [docs.sciml.ai, Dynamical, Hamiltonian, "
     "and 2nd Order ODE Solvers]",
-    note="Here because it is well known: BM6 needs fewer evaluations at every accuracy.",
+    note="Included because it is well known: BM6 needs fewer evaluations at every accuracy.",
 )
 
 FAMILY = (FOREST_RUTH, YOSHIDA_6, BLANES_MOAN_4, BLANES_MOAN_6)

@@ -196,7 +196,7 @@ VERLET_FLOAT32 = _verlet(
     letter="n",
     numbers="all numbers rounded to 32 bits",
     keeps_area=False,
-    note="Rounding is not symplectic: the modified energy walks at random, 1e-5 in 10,000 steps.",
+    note="Rounding is not symplectic: the modified energy does a random walk, 1e-5 in 10000 steps.",
     epsilon=2.0**-24,
     used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions "
     "and Units]",
@@ -278,7 +278,7 @@ HALVING_RICHARDSON = _halving(
     letter="a",
     other_names=("extrapolated Verlet",),
     richardson=True,
-    ends="both extrapolate to h = 0",
+    ends="both are extrapolated to h = 0",
     order=4,
     force_evaluations=7,
 )

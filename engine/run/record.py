@@ -70,21 +70,21 @@ class Fluctuation(NamedTuple):
 
 
 class Order(NamedTuple):
-    """The power of the step size with which a fluctuation goes, with its standard error."""
+    """The power of the step size with which a fluctuation scales, with its standard error."""
 
     power: float
     uncertainty: float
 
     @property
     def highest(self) -> float | None:
-        """The highest power that the runs allow; None: they do not tell one order from the next."""
+        """The highest power that the runs allow; None: they allow more than one order."""
         if 2 * self.uncertainty >= 1:
             return None
         return self.power + 2 * self.uncertainty
 
     @property
     def doubt(self) -> str:
-        """A sentence for an order without a highest power, and how long runs would help."""
+        """A sentence for an order without a highest power, and how long the runs should be."""
         longer = math.ceil((2 * self.uncertainty) ** 2 + 1)
         why = f"runs about {longer} times as long would distinguish one order from the next"
         return f"cannot tell: the energy fluctuates as {self}; {why}"

@@ -70,7 +70,7 @@ class Point:
 
     @property
     def steps_per_swing(self) -> float:
-        """How many steps a small swing takes."""
+        """Steps per small-amplitude period."""
         return math.tau / self.z
 
 

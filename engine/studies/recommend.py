@@ -25,7 +25,7 @@ REFINED = 1.1  # times the steps must reach the target, too: an error may cross 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A method's cheapest run that reaches the target, or why none does and perhaps its last."""
+    """A method's cheapest run that reaches the target, or why none does, with its last."""
 
     method: Method
     point: Point | None  # None: there was no usable h, or too many steps to try
@@ -61,7 +61,7 @@ def least_cost(
     size = study.sizes[kind]
     if target >= size:
         raise InputError(
-            f"a target of {target:g} is as large as the swing; use less than {size:g}."
+            f"a target of {target:g} is as large as the swing itself; use less than {size:g}."
         )
     attempts: list[Attempt] = []
     for attempt in reach(study, kind, target):

@@ -143,7 +143,7 @@ A verdict of `failed` exits with 1.
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
 
-A folder stands for all recordings below it, golden for the bundled ones.
+A folder means all recordings below it; golden, the bundled ones.
 Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
 3 one cannot be read.
 """,

@@ -213,8 +213,8 @@ def _shot(given: Mapping[str, Any], scene: Scene) -> Shot:
     count = len(shot.answers)
     if shot.question and not (2 <= count <= MAX_ANSWERS and 1 <= shot.right <= count):
         raise _FieldError(
-            f"a question has 2 to {MAX_ANSWERS} answers, and the number of the right one; use "
-            'for example answers = ["Verlet.", "RK4."] and right = 1.',
+            f"a question has 2 to {MAX_ANSWERS} answers, and the number of the right one; "
+            'use, for example, answers = ["Verlet.", "RK4."] and right = 1.',
             "question",
         )
     return shot

@@ -261,7 +261,7 @@ def _orders(steps: Sequence[float], answers: Sequence[Answer]) -> list[Order | N
 
 def _goes_as(name: str, order: Order | None) -> str:
     """Return a line on the power of h with which something goes."""
-    text = f"goes as {order}" if order else "no clear power of h"
+    text = f"scales as {order}" if order else "no clear power of h"
     if order and order.power < -2 * order.uncertainty:
         text += "; are the steps in the order of the files?"
     return _line(name, text)
@@ -296,7 +296,7 @@ def lines_of(answer: Answer) -> list[str]:
     is_around_zero = fields["lowest_energy"] < 0 < fields["highest_energy"]
     hint = ""
     if is_of_first and is_around_zero:
-        hint = "the energies lie around zero; --scale std compares errors with their spread"
+        hint = "the energies straddle zero; --scale std compares errors with their spread"
     distances = np.abs(answer.series.energies - np.median(answer.series.energies))
     far = (distances > FAR * np.quantile(distances, 0.98)).sum()
     if far and fields["verdict"] in LEAVES and not fields["rests"]:

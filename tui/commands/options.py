@@ -80,7 +80,7 @@ def with_suffix(*suffixes: str) -> Callable[[str], Path]:
         path = Path(text)
         if path.suffix.lower() not in suffixes and not is_stream(path):
             named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
-            raise ValueError(f"{text!r} has another suffix; use {named}")
+            raise ValueError(f"{text!r} has the wrong suffix; use {named}")
         return path
 
     return read
@@ -158,7 +158,7 @@ OPTIONS: dict[str, Settings] = {
     "--start-at": option(
         "S", "start S seconds into the recording (%(default)g)", number, default=0.0
     ),
-    "--loop": flag("start again at the end"),
+    "--loop": flag("restart at the end"),
     "--paused": flag("start paused"),
     "--size": option("CxR", "columns x rows (120x40)", cells, default=(120, 40)),
     "--port": option(
