@@ -7,6 +7,7 @@ import math
 import struct
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pendu_tui.engine.methods import Method, method_of
@@ -189,7 +190,8 @@ def simulate(
     every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
     if record:
         record(Event("start", 1, 0, 0.0, scene=scene), 0.0)
-    while True:
+    for step in chain(range(0, last, every), (last,)):
+        lockstep.advance(step - lockstep.step)
         sample = lockstep.sample()
         if record:
             record(sample, sample.t)
@@ -197,6 +199,3 @@ def simulate(
                 record(noticed(1, milestone), sample.t)
             recorded = len(lockstep.milestones)
         yield sample
-        if lockstep.step >= last:
-            return
-        lockstep.advance(min(every, last - lockstep.step))
