@@ -182,8 +182,9 @@ def test_no_more_than_a_hundred_steps_a_sample_are_simulated_or_what_the_user_al
     verified, monkeypatch, steps, limit, passes
 ):
     monkeypatch.setattr("pendu_tui.recordings.verification.MAX_STEPS", 1)
-    far = Entry(99.0, Event("set_h", 1, 10**15, 30.0, h=0.1))
-    entries = [*run_of(SCENE, 0, 1, steps - 1), far]
+    far = Entry(99.0, Event("set_h", 2, 10**15, 30.0, h=0.1))
+    other = [value._replace(run=2) for _, value in run_of(SCENE, 9)]
+    entries = [*run_of(SCENE, 0, steps - 9), *(Entry(99.0, each) for each in other), far]
     if passes:
         assert verified(entries, lambda *_: None, limit).identical
     else:
