@@ -16,6 +16,9 @@ def scene_from(*arguments: str) -> Scene:
     return scene_of(parser_of("snapshot").parse_args(list(arguments)))
 
 
+JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
+
+
 @pytest.mark.parametrize(
     ("read", "text", "value"),
     [
@@ -38,6 +41,7 @@ def scene_from(*arguments: str) -> Scene:
         *((scale, text, None) for text in ("kinetic:", "first:1")),
         (step_sizes, "1,2", [1.0, 2.0]),
         *((units.is_unit, text, True) for text in ("fs", "eV")),
+        *((lambda text: bool(re.fullmatch(units.UNIT, text)), each, True) for each in JOULES),
         (lambda text: {units.shown("time", text)}, "Myr", {"Myr"}),
         (lambda text: [units.shown(kind, text) for kind in ("time", "energy")], "S", ["s", "S"]),
         (lambda text: units.size("time", text), "lj", "the unit of time is not known"),

@@ -69,7 +69,7 @@ def columns(series: Series) -> str | None:
         ("Time (ps) Total E (eV)", "{t} {e}", "Time ps, Total E eV"),
         ("# [1] = time [2]=dt [10]=tot-E", "{t} 1 {e}", "time, tot-E"),
         (
-            "# Col. 1: time\n# cols 2-9 = x\n# 10: energy",
+            "# Col. 1: time\n# cols 2-9: x\n# 10 = energy",
             *("{t} 1 2 3 4 5 6 7 8 {e}", "time, energy"),
         ),
         ("keywords: ['Time', 'TotEng', ]\ndata:", "  - [{t}, {e}, ]", "Time, TotEng"),
@@ -458,6 +458,7 @@ def pages(head: str, form: str, again: int) -> str:
     return "".join(head + rows(form, max(at - again, 0), at + 18) for at in range(0, 90, 18))
 
 
+NAMD = ("ETITLE: TS C E\n", "ENERGY: {s} 1 {e}")
 CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
 
 
@@ -466,6 +467,8 @@ CP2K = ("#   Step Nr.   Time[fs]   Cons Qty[a.u.]\n", "{n} {t} {e}", "")
     [
         (runs(HEAD, "{s} {k} {e}", LOOP, 39), [40, 51]),
         (runs(HEAD, "{s} {k} {e}", "# now NVE\n", 39), [40, 51]),
+        (runs(*NAMD, "TCL: Running for 9\n", 40), [40, 50]),
+        (runs(*NAMD, "TCL: Minimizing for 9\n", 40), [40, 50]),
         (runs(*CP2K, 30), [90]),
         (runs(*CP2K, 39), [90]),
         (rows("{e}", 0, 70) + "-1.0-1.0\n1\n1 2\n" + rows("{e}", 70), [71, 1, 20]),
@@ -667,11 +670,16 @@ def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
 
 
 def test_few_rows_do_not_tell_what_belongs_to_an_energy_but_where_it_ended():
-    samples = [(0, 1), (1, 2), (-1, -3), (5, 6)]
-    assert choose(("t", "KE", "PE", "x"), 4 * ("",), samples, Wanted()).energy == (1, 2)
-    samples = [(0, 1, 2), (5, 6, 1), (345, 346, 344)]  # whole, but no count
-    assert choose(("t", "x", "E"), 3 * ("",), samples, Wanted()).energy == (2,)
-    samples[2] = (0, 2, 3)
-    assert choose(("t", "x", "E"), 3 * ("",), samples, Wanted()).energy == ()
+    for names, energy, *samples in (
+        (("KE", "PE", "x"), (1, 2), (1, 2), (-1, -3), (5, 6)),
+        (("KE", "PE", "x"), (1, 2), (0, 3, 0), (9, 9, 9), (0, -1.4, 0)),
+        (("KE", "PE", "x"), (), (0, 3, 0), (9, 9, 9), (0, -1.6, 0)),  # less than half is left
+        (("x", "E"), (2,), (5, 6, 1), (345, 346, 344)),  # whole, but no count
+        (("x", "E"), (), (5, 6, 1), (0, 2, 3)),
+        (("x", "E"), (2,), (5, 6, 1), 2 * (1, 1, -1)),
+        (("x", "E"), (), (5, 6, 1), 3 * (1, 1, -1)),  # a field
+    ):
+        columns = [range(len(samples[-1])), *samples]
+        assert choose(("t", *names), ["" for _ in columns], columns, Wanted()).energy == energy
     (series,) = tables("t,E\n" + rows("{t},{e}", 0, 9) + "4.5,\n5.0\n")
     assert (series.diverged_at, series.skipped) == (4.5, 0)

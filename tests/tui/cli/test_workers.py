@@ -35,17 +35,19 @@ def interrupted(error: BaseException, done: int, output: Path | None = None) -> 
 
 
 @pytest.mark.parametrize(
-    ("error", "code"),
+    ("error", "code", "why"),
     [
-        (KeyboardInterrupt(), 130),
-        (OwnMethodError("mine fails."), 3),
-        (UserError("lost.", Exit.INPUT_UNREADABLE), 3),
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (OwnMethodError("mine fails."), 3, "mine fails"),
+        (UserError("lost.", Exit.INPUT_UNREADABLE), 3, "lost"),
     ],
 )
-def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(error, code, tmp_path, capsys):
+def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(
+    error, code, why, tmp_path, capsys
+):
     assert interrupted(error, done=1).conclude() == code
     assert interrupted(error, done=1, output=tmp_path / "new.csv").conclude() == code
-    assert capsys.readouterr().err.endswith(": 33 % of the runs are done and kept.\n")
+    assert capsys.readouterr().err.endswith(f" {why}: 33 % of the runs are done and kept.\n")
     with pytest.raises(type(error)):
         interrupted(error, done=0)
     older = tmp_path / "older.csv"
