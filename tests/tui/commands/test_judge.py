@@ -53,7 +53,7 @@ FILES = {
     + lines("{t},{e}", [(t, e + 99 * math.exp(-9 * t)) for t, e in ROWS]),
     "failed.csv": TABLE + "30.0,-1e999\n31.0,nan\n32,100\n",
     "ended.csv": TABLE + TABLE + "nan,nan\n",
-    "huge.csv": "t,E\n" + lines("{t},{e}e200"),
+    "huge.csv": "t,E\n" + lines("{t},-{e}e200"),
     "steep.csv": "t,E\n" + lines("{t}e-99,{e}", [(t, 1e290 * (1 + t)) for t, _ in ROWS]),
     "tables.log": 31 * "Step TotEng\n1 2\n2 3\nLoop time\n",
     "columns.csv": ",".join(f"c{n}" for n in range(31)) + "\n" + 2 * (30 * "1," + "2\n"),

@@ -105,6 +105,7 @@ def test_of_many_scenes_the_first_is_named(names, listed, library):
 def test_export_to_stdout_is_the_file(tmp_path):
     pendu("export", "drift", "-o", tmp_path / "a.CSV")
     assert pendu("export", "drift").out == (tmp_path / "a.CSV").read_text()
+    assert pendu("export", "drift", "-o", tmp_path / "a.CSV").refused(5, "exists", "--force")
     assert pendu("export", "drift", "-o", os.devnull).code == 0
     assert pendu("export", "drift", "-o", tmp_path / "a.parquet").refused(2, "a.csv")
     assert pendu("export", "drift", "-o", tmp_path / "no" / "a.csv").refused(5, "does not exist")

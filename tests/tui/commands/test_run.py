@@ -19,26 +19,30 @@ from tests.tui.command_line import own_method, pendu
 
 
 @pytest.mark.parametrize(
-    ("command", "count", "whole"),
+    ("command", "count", "first", "whole"),
     [
-        ("run --time 2 --sample-every 10", 5, 40),
-        ("run --time 2 --method mine.py:mine", 4, 40),  # which may be slow
-        ("run --time 2 --h 0.001 --method mine.py:mine --record new.mcap", 126, 2000),
-        ("run --time 2 --h 0.1 --record new.mcap", 21, 20),
-        ("export a", 10, 4.0),
+        ("run --time 2 --sample-every 10", 5, 0, 40),
+        ("run --time 2 --method mine.py:mine", 4, 0, 40),  # which may be slow
+        ("run --time 2 --h 0.001 --method mine.py:mine --record new.mcap", 126, 0, 2000),
+        ("run --time 2 --h 0.1 --record new.mcap", 21, 0, 20),
+        ("export a", 10, 0, 4.0),
+        ("run --theta 1,2,3 --time 1", 3, 1, 3),
+        ("accuracy --time 2 --h-values 0.2:0.1:2 --json", 8, 10, 120),
+        ("stability --steps 9 --theta-values 1 --z-values 1,2 --methods rk4,heun", 2, 1, 2),
     ],
 )
-def test_the_progress_is_shown_to_the_end(command, count, whole, here, monkeypatch):
+def test_the_progress_is_shown_to_the_end(command, count, first, whole, here, monkeypatch):
     Path(own_method(here).removesuffix(":mine")).rename("mine.py")
     record(here / "a.mcap", two_runs())
     shown = []
     show = nullcontext(lambda *done: shown.append(done))
-    monkeypatch.setattr(f"pendu_tui.tui.commands.{command.split()[0]}.progress", lambda _: show)
+    for module in ("commands.run", "commands.export", "cli.workers"):
+        monkeypatch.setattr(f"pendu_tui.tui.{module}.progress", lambda _: show)
     kept = []
     monkeypatch.setattr(run, "_lines", lambda _, samples: kept.extend(samples))
     assert pendu(*command.split()).code == 0
-    assert len(kept) == command.startswith("run")  # one sample, unless a figure needs them all
-    assert (len(shown), shown[0], shown[-1]) == (count, (0, whole), (whole, whole))
+    assert len(kept) == command.startswith("run --time")  # one unless a figure needs them all
+    assert (len(shown), shown[0], shown[-1]) == (count, (first, whole), (whole, whole))
 
 
 EXTREME = ["--omega=1e8", "--theta=1e6rad", "--h=4.5", "--theta=0"]
