@@ -101,4 +101,7 @@ async def test_the_front_of_a_line_is_cut_off_where_textual_would_cut_it(monkeyp
         (line,) = cells.render_lines(Region(0, 0, 8, 1))
         assert line.text == "╭──────╮"
         cells.on_show()
-        assert cells.text == "6x1"
+        assert (cells.text, cells.drawable) == ("6x1", True)
+        cells.display = False
+        await pilot.pause()
+        assert not cells.drawable

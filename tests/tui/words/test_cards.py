@@ -13,7 +13,7 @@ from pendu_tui.tui.words.cards import (
 
 
 def test_cards_as_they_are_stored(snapshot):
-    keys = ("explicit_euler", "velocity_verlet", "backward_euler", "halving_verlet")
+    keys = ("explicit_euler", "forest_ruth", "backward_euler", "halving_verlet")
     cards = [method_card(each) for each in METHODS if each.key in keys]
     scene = SCENES["damped"].altered(gravity=5.0)
     scenes = (scene, SCENES["halving"], SCENES["mean-field"])
