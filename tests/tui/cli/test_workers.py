@@ -56,29 +56,6 @@ def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(
         interrupted(error, done=1, output=older)
 
 
-@pytest.mark.parametrize(
-    ("command", "rows", "share", "field", "count"),
-    [
-        (RUNS, 4, "17 % of the runs", "runs", 4),
-        (STABILITY, 6, "6 % of the runs", "pendulum", 2),
-        (ACCURACY, 1, "4 % of", "points", 1),
-    ],
-)
-def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, field, count):
-    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
-
-    def run(function, tasks):
-        yield function(next(iter(tasks)))
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(workers, "workers_of", lambda _: nullcontext(run))
-    outcome = pendu(*command, "--csv")
-    assert (outcome.code, outcome.out.count("\n")) == (130, 1 + rows)
-    assert share in outcome.err
-    answer = pendu(*command, "--json").json
-    assert (answer["interrupted"], len(answer[field])) == (True, count)
-
-
 def test_the_search_for_a_target_counts_in_the_progress_but_is_not_kept(monkeypatch):
     def least_cost(*_, show, **more):
         show(0.5)

@@ -64,6 +64,8 @@ MISTAKES = {
         "--theta-values 4": "--theta-values … 3.14159",
         "--z-values 1,1000": "--z-values … below 1000",
         "--steps 3000000000": "--steps … 2.14748e+09",
+        "--plain": "no option --plain … an option of live, tour, replay.",
+        "--thta 1": "no option --thta: did you mean --theta?",
         "--scene linear": "linear oscillator … pendu-tui methods",
     },
 }

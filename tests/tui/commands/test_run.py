@@ -27,7 +27,7 @@ from tests.tui.command_line import own_method, pendu
         ("run --time 2 --h 0.1 --record new.mcap", 21, 0, 20),
         ("export a", 10, 0, 4.0),
         ("run --theta 1,2,3 --time 1", 3, 1, 3),
-        ("accuracy --time 2 --h-values 0.2:0.1:2 --json", 8, 10, 120),
+        ("accuracy --time 1 --h-values 0.2:0.1:2 --target 0.1 --json", 21, 5, 255),
         ("stability --steps 9 --theta-values 1 --z-values 1,2 --methods rk4,heun", 2, 1, 2),
     ],
 )
@@ -127,6 +127,29 @@ def test_a_run_that_is_stopped_gives_what_it_has_and_replaces_no_file(tmp_path, 
     assert outcome.err.endswith("interrupted at t = 2 s, showing the results up to then.\n")
     assert pendu(*line, "-o", tmp_path / "new.csv").code == 130
     assert pendu(*line, "-o", tmp_path / "new.csv").refused(130, "is unchanged")
+
+
+@pytest.mark.parametrize(
+    ("command", "rows", "share", "field", "count"),
+    [
+        ("run --theta 10deg:170deg:3 --h 0.05,0.1 --time 2", 4, "17 %", "runs", 4),
+        ("stability --steps 300 --z-values 0.1:3:12 --theta-values 0.5,2", 6, "6 %", "pendulum", 2),
+        ("accuracy --time 5 --h-values 0.2:0.05:3", 1, "4 %", "points", 1),
+    ],
+)
+def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, field, count):
+    monkeypatch.setattr("pendu_tui.engine.studies.stability.PART", 6)
+
+    def run(function, tasks):
+        yield function(next(iter(tasks)))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pendu_tui.tui.cli.workers.workers_of", lambda _: nullcontext(run))
+    outcome = pendu(*command.split(), "--csv")
+    assert (outcome.code, outcome.out.count("\n")) == (130, 1 + rows)
+    assert share in outcome.err
+    answer = pendu(*command.split(), "--json").json
+    assert (answer["interrupted"], len(answer[field])) == (True, count)
 
 
 def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_failed():

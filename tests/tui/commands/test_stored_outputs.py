@@ -29,6 +29,7 @@ stability {FEW}
 stability --steps 1000 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4 --method {MINE}
 methods explicit_e symplectic rk4 heun forest_ruth backward_euler halving_verlet
 scenes crossover
+scenes crossover --json
 recordings
 recordings show a
 recordings show cut
@@ -42,6 +43,7 @@ verify {FOLDER}/killed.mcap.part a absent
 run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
 verify {FOLDER}/spring.mcap --methods s
 run --time 2 --methods rk4,verlet --json
+run halving --theta 1,2 --time 1 --methods halving_v --json
 accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
 stability --steps 50 --z-values 0.1,0.5 --theta-values 1 --methods explicit_euler,rk4 --json
 methods rk4 backward_euler --json
