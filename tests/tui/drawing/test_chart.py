@@ -74,7 +74,7 @@ def test_charts_as_they_are_stored(snapshot):
     series = [
         Series(0, "e", [1e2, 3e3, 2e4], [2e-1, 3e-2, 4e-4]),
         Series(2, "v", [2e2, np.inf, 1e1], [3e-5, 1, 2e-3]),
-        Series(FRAME, "slope 2", [1e1, 1e7], [1e-1, 1e-7], dotted=True),
+        Series(FRAME, "a slope of 2", [1e1, 1e7], [1e-1, 1e-7], dotted=True),
         Series(FRAME, "up", [1e3, 1e4], [1e-3, 1e-2], dotted=True),
     ]
     texts = [look(each.picture) for each in pictures]

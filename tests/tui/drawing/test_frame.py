@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pendu_tui.tui.drawing.frame import (
+    Axis,
+    Frame,
     linear_axis,
     log_axis,
     log_time_axis,
@@ -84,6 +86,13 @@ HOUR = 3600
 def test_the_most_common_labels_of_the_lab(axis, ends, text):
     found = axis(*ends)
     assert " ".join(getattr(found, "labels", found).values()) == text
+
+
+def test_what_is_off_an_axis_is_at_its_end():
+    axis = Axis(0.0, 10.0, {})
+    frame = Frame(axis, axis, columns=5, rows=4)
+    cells = [(frame.column(at), frame.row(at)) for at in (-9, 0, 5, 10, 99)]
+    assert cells == [(0, 3), (0, 3), (2, 1), (4, 0), (4, 0)]
 
 
 @st.composite

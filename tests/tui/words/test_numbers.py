@@ -19,6 +19,7 @@ from pendu_tui.tui.words.numbers import (
     regime,
     seconds,
     two_digits,
+    z_text,
 )
 
 ANY = st.floats(allow_nan=True, allow_infinity=True) | st.none()
@@ -76,6 +77,7 @@ TEXTS = {
     (energy_share, MODEL, math.acos(2 * 0.9e-3 - 1), 0.0): "1 - 9.0e-04",
     (energy_share, MODEL, math.acos(2 * 1.1e-3 - 1), 0.0): "0.9989",
     (motion_text, Scene(), Scene().exact()): "exact period 2.13914 s  E/Es 0.2298  libration",
+    (z_text, Scene(), 3): "z = h·w0 = 0.157",
     (regime, MODEL, NEAR_THE_TOP, 0.0): "libration",
     (regime, MODEL, NEAR_THE_TOP, 1e-5): "rotation",
     (regime, MODEL, 0.0, 2 * W0): "separatrix",

@@ -24,7 +24,7 @@ TEXTS = {
     (length, 12345): "12345 s",
     (few, 8.333): "8.33",
     (few, 99.94): "99.9",
-    (few, 100.4): "100",
+    (few, 999.6): "1000",
 }
 MAX = 1e-3  # relative drift of a slow spiral
 
