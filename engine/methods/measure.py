@@ -109,7 +109,7 @@ def is_reversible(phases: Phases) -> bool:
     for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0)):
         theta, omega = after(phases, force, start, LARGE_H, 50)
         theta, omega = after(phases, force, (theta, -omega), LARGE_H, 50)
-        if not max(abs(theta - start[0]), abs(omega + start[1])) < 1e-11:  # or nan
+        if not math.dist((theta, -omega), start) < 1e-11:  # or nan
             return False
     return True
 
