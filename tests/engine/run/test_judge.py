@@ -305,6 +305,7 @@ def test_a_run_with_a_certain_trend_is_not_bounded_however_small_the_trend():
     found = judge_of(wave[:4090] + 5).judgement
     assert found.fluctuation == pytest.approx(1 / math.sqrt(8), rel=0.01)
     assert found.reason == levels.SHORT
+    assert str(found.progress) in str(found)
 
 
 def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length():
@@ -425,6 +426,7 @@ def test_a_method_fails_once_and_for_good():
     lockstep = moved(Scene(model="linear", h=1.0), [600])
     assert [each.method for each in milestones(lockstep, "failed")] == [S, V, E, R]
     lockstep.set_stepping(Stepping(0.5, cast=USUAL_CAST))
+    lockstep.advance(100)
     assert words(lockstep) == ["failed"] * 4
 
     def jumping(force, phase, h):

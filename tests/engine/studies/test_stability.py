@@ -21,7 +21,7 @@ from pendu_tui.engine.methods import (
 from pendu_tui.engine.methods.tangent import at_bottom
 from pendu_tui.engine.models import Pendulum
 from pendu_tui.engine.scenes import SCENES, Scene
-from pendu_tui.engine.studies import stability
+from pendu_tui.engine.studies import LOST, stability
 from pendu_tui.engine.studies.stability import (
     FATES,
     GREENE_Z,
@@ -76,6 +76,7 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, step
         else:
             assert FATES[cell["fate"]] == expected
         assert (cell["steps"], cell["error"]) == (survived, worst)
+    assert " 50 %" in LOST
 
 
 def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monkeypatch):
@@ -124,7 +125,7 @@ def test_methods_fail_each_in_its_way(key, theta, expected, reason, steps):
     ladder = expected * np.linspace(0.8, 1.05, 51)
     grid = Grid(np.array([theta]), ladder, steps, (method_of(key),))
     cells = grid.cells()
-    (row,) = table(Scene(h=0.9999 * ladder[7] / Scene().w0), grid, cells)
+    (row,) = table(Scene(length=9.81, h=ladder[7]), grid, cells)
     assert (row.method.key, row.theta, row.here, row.reason) == (key, theta, cells[7], reason)
     assert row.z == pytest.approx(expected, rel=0.012)
     assert row.steps == cells["steps"][ladder == row.z]
