@@ -55,3 +55,5 @@ def test_what_is_no_such_number_is_refused(read, text, why):
 
 def test_a_suggestion_is_alike_in_any_case():
     assert did_you_mean("enrgy", ["Energy"]) == ": did you mean Energy?"
+    assert did_you_mean("nergy", ["energy"])  # much alike
+    assert not did_you_mean("xnexgy", ["energy"])

@@ -149,6 +149,10 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
     assert found.max_error < 10
 
 
+def still(force, phase, h):
+    yield phase
+
+
 @pytest.mark.parametrize(
     ("call", "word"),
     [
@@ -177,7 +181,10 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: simulate(time=1, every=1.5), "every = 1.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, tetha=2.0), "no number 'tetha': did you mean theta"),
-        (lambda: recommend(1e-20, time=1, methods="rk4"), "1e-20 over 1 s; RK4: rounding"),
+        (
+            lambda: recommend(1e-20, time=1, methods="explicit_euler,rk4"),
+            "1e-20 over 1 s; RK4: rounding",
+        ),
         (lambda: recommend(0), "target = 0 is not above zero"),
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
@@ -185,6 +192,7 @@ def test_the_first_energy_that_is_nan_infinite_or_too_large_has_failed(energy, a
         (lambda: limits("damped", methods="rk4"), "no friction"),
         (lambda: limits(steps=0), "steps = 0"),
         (lambda: measure(5), "step: it is not a generator function"),
+        (lambda: measure(still), r"test_library\.py, line \d+: still ends"),
         (lambda: fluctuation_order([(math.nan, TIMES, WAVE)]), "h = nan"),
         (lambda: fluctuation_order([(0.1, [0], [1])]), r"h = 0\.1: 1 energies are too few"),
         (

@@ -280,6 +280,7 @@ def test_a_method_says_what_it_is_for():
     assert marks(lambda method: method.hue is not None) == "esvr"
     assert [method.hue for method in USUAL_CAST] == [0, 1, 2, 3]
     assert [method.force_evaluations for method in learned.FAMILY] == [4, 4, 1, 1]
+    assert IMPLICIT_MIDPOINT.phases_for(EXAMPLES["spring"].equations)[0] == "parts"
 
 
 @pytest.mark.parametrize("method", METHODS, ids=str)
@@ -336,7 +337,7 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
     [
         ("moan", "may be blanes_moan_4 or blanes_moan_6"),
         ("verlt", "choose from explicit_euler, rk4, lagged_verlet, conformal_verlet"),
-        ("rk4 RK4", "rk4 is given twice"),
+        ("rk4 verlet RK4", "rk4 is given twice"),
         ("taylor", "see it with pendu-tui accuracy --cost seconds"),
         ("", "for example rk4"),
         ("conformally-symplectic-verlett", "did you mean conformal_verlet?"),

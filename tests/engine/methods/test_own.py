@@ -121,10 +121,10 @@ WRONG = {
     ),
     "an infinite force": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
     "an exception with a full stop": (
-        euler("raise ValueError('It is odd.')"),
-        "raises ValueError: It is odd.",
+        euler("odd()", "def odd(): raise ValueError('It is odd.')"),
+        "`def odd(): raise ValueError('It is odd.')` raises ValueError: It is odd.",
     ),
-    "a long exception": (euler("raise ValueError('long ' * 99)"), "raises ValueError: long long"),
+    "a long exception": (euler("raise ValueError('long ' * 99)"), f"raises {('ValueError: ' + 99 * 'long ')[:250]}."),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite"),
     "a memory": (
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),

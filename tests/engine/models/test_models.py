@@ -201,6 +201,7 @@ def test_the_spring_starts_stretched_by_4_percent_beyond_equilibrium():
     assert solution == pytest.approx(z + 0.01 * fast(solution))
     assert (solution / z).real > 0  # there is another beyond the pivot
     assert SPRING.spring_energy((z, w)) == pytest.approx(2500 / 2 * 0.04**2)
+    assert SPRING.spring_energy(SPRING.start(1.0, 5.0)) == pytest.approx(2, rel=0.03)
     assert SPRING.reference(1.0, 0.0).start == pytest.approx(6.5040, abs=1e-4)
 
 

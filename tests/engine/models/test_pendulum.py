@@ -78,6 +78,7 @@ def test_at_rest_it_stays_and_the_separatrix_climbs_forever():
     for model in (PENDULUM, LinearOscillator(9.81)):
         rest = model.exact(0.0, 0.0)
         assert (rest.regime, rest.period, rest.at(1e5)) == ("equilibrium", None, State(0.0, 0.0))
+        assert {model.exact(*start).regime for start in ((0, 1), (1, 0))} == {"libration"}
     exact = Scene(theta=0.0, omega=-4.0, gravity=4.0).exact()  # exactly on it
     assert (exact.regime, exact.period) == ("separatrix", None)
     for t in (-3.0, 0.5, 3.0):

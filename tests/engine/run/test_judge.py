@@ -230,6 +230,10 @@ def test_how_far_neighbours_part_tells_chaos_from_order(steps, parted, peak, ver
     assert orbit.verdict("undecided", peak, periods=100.0) == verdict
     if verdict != "chaotic":
         assert orbit.verdict("bounded", peak, periods=100.0) == "bounded"
+    for steps in (99_999, 100_000):  # neighbours are followed to here
+        orbit.steps = steps
+        orbit.look(start, start._replace(step=1))
+        assert orbit.steps == 100_000
 
 
 @pytest.mark.parametrize("sign", [1, -1])

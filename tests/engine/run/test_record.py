@@ -79,6 +79,8 @@ def test_what_has_left_its_start_and_rests_has_the_slope_of_the_rest(name):
         found = judge_record(T, 1000 + sign * RESTING[name])
         assert (found.verdict, found.rests) == (verdict, True)
         assert abs(found.slope) < 3 * found.uncertainty
+    decays = judge_record(T, 1000 + MAKES["exponential decay"][0])
+    assert decays.slope == pytest.approx(-0.01, rel=0.2)  # of the whole record
 
 
 @pytest.mark.parametrize("name", ["noise", "a line within noise", "a wobble", "a walk"])

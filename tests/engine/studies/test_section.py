@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST, method_of
+from pendu_tui.engine.methods.tangent import Stretching
 from pendu_tui.engine.models.pendulum import LinearOscillator, Pendulum
 from pendu_tui.engine.studies import section
 from pendu_tui.engine.studies.section import (
@@ -156,6 +157,9 @@ def test_an_orbit_ends_where_numbers_stop_being_finite():
         start = theta[: steps + 1], omega[: steps + 1]
         found = kind_of(EXPLICIT, LinearOscillator(1.0), 3.0, start)
         assert (found.steps, found.lyapunov) == (steps, pytest.approx(math.log(10) / 2))
+    apart = Stretching(VERLET, UNIT, 1.1)
+    apart.carry((2.3, 0.0), 8)
+    assert kind(VERLET, 2.3, 1.1, 8).lyapunov == apart.log / 8
 
 
 def test_the_nearest_fraction_is_a_small_one():

@@ -76,7 +76,7 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(method, swings, step
         else:
             assert FATES[cell["fate"]] == expected
         assert (cell["steps"], cell["error"]) == (survived, worst)
-    assert " 50 %" in LOST
+    assert "50 %" in LOST
 
 
 def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monkeypatch):
@@ -98,7 +98,7 @@ def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monke
         (0.5, 1.3, "holds"),
         (0.5, 1.43, "holds, wobbling"),  # beside z = 2 sin(pi/4) 10 % wider, and back
         (0.5, 1.6, "holds"),
-        (0.518, 2.092, "holds elsewhere"),  # beyond its linear limit, as in the scene
+        (0.73, 2.092, "holds elsewhere"),  # beyond its linear limit, from one of two places
     ],
 )
 def test_velocity_verlet_wobbles_at_a_resonance_and_is_held_elsewhere_beyond_its_limit(
