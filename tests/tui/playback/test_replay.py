@@ -85,7 +85,7 @@ def test_few_samples_in_between_are_shown_too_and_the_past_is_read_frame_by_fram
     assert table.replay.knows_past
     looks = itertools.count(0, 0.004)
     replay = Replay(Recording.open(sitting), clock=looks.__next__)
-    assert replay.stepping == replay.changes[0].stepping
+    assert (replay.sample.step, replay.stepping) == (0, replay.changes[0].stepping)
     replay.seek(replay.length)
     began = next(looks)
     assert not replay.fill()

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from pendu_tui.engine.scenes import SCENES, Scene
+from pendu_tui.engine.scenes import SCENES, Scene, Shot
 from pendu_tui.tui.playback.lesson import Lesson, tour
 from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
@@ -107,9 +107,12 @@ async def test_the_command_begins_with_it_unless_its_options_alter_the_scene():
         assert words(STEPS[0].shot.question) in panel(theatre)
 
 
-async def test_of_a_page_that_is_too_long_the_end_is_kept():
-    page = replace(STEPS[0], name=70 * "n", watch=100 * "too " + "long.")
-    async with guided(Lesson("Page", [page]), page, (60, 16)) as theatre:
-        assert panel(theatre).startswith("Page 1 of 1")
+async def test_of_a_page_that_is_too_long_the_end_is_kept_and_a_page_has_its_own_shot():
+    page = replace(STEPS[-1], name=70 * "n", watch=100 * "too " + "long.")
+    known = replace(SCENES["drift"], shot=Shot(log=False))
+    async with guided(Lesson("Page", [page, known]), page, (60, 16)) as theatre:
+        assert panel(theatre).startswith("Page 1 of 2")
         assert panel(theatre).endswith("long.")
         assert theatre.text(LessonPanel).count("\n") == 5
+        await theatre.press("enter")
+        assert not theatre.stage.shown.log
