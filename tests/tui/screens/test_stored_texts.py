@@ -11,7 +11,7 @@ from tests.tui.harness import Theatre, lab
 KEYS = (
     *("plus", "minus", "minus", "n", "n", "b", "b", "u", "space", "comma", "full_stop", "m", "m"),
     *("left_square_bracket", "right_square_bracket", "less_than_sign", "greater_than_sign"),
-    *("left", "right", "home", "end", "pageup", "pagedown", "1", "5", "1", "e", "y", "y", "w", "z"),
+    *("left", "right", "home", "pagedown", "end", "pageup", "1", "5", "1", "e", "y", "y", "w", "z"),
     *("escape", "o", "r", "f3", "x", "escape", "f4", "v", "v", "p", "S", "T", "plus", "enter"),
     *("enter", "backspace", "1", "enter", "escape", "u", "i", "9", "escape", "M", "space", "down"),
     *("space", "escape", "question_mark", "question_mark", "d", "d", "E", "E", "d", "q"),

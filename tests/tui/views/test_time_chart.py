@@ -1,5 +1,7 @@
 """The chart: how it answers to the mouse, and that it depends on the run alone."""
 
+import re
+
 import pytest
 from textual.events import MouseScrollDown, MouseScrollUp
 from textual.geometry import Size
@@ -67,27 +69,40 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
 
 
 def test_a_ghost_beyond_the_stretch_changes_no_axis():
-    looks = []
-    for seconds in (5, 60):
-        live = Live(WHOLE)
-        live.lay_under(2 * WHOLE.h, seconds)
-        live.step(round(seconds / WHOLE.h))
+    plots = []
+    damped = SCENES["damped"].altered(h=0.1)
+    damped = damped.with_cast(damped.cast[1:])
+    for seconds in (15, 30):
+        live = Live(damped)
+        live.lay_under(2 * damped.h, seconds)
+        live.step(round(seconds / damped.h))
         chart = TimeChart()
         chart.source = live
         chart.room = Size(70, 14)
-        stretch = Stretch(live.sample.run, 0.0, 5.0, log_time=False)
-        look = Shown(log=False, stretch=stretch)
-        looks.append(chart._charted(live.sample, look).picture)
-    assert looks[0] == looks[1]
+        stretch = Stretch(live.sample.run, 10.0, 15.0, log_time=False)
+        look = Shown(quantity="energy", log=False, stretch=stretch)
+        plots.append(chart._charted(live.sample, look))
+    assert plots[0].picture == plots[1].picture
+    assert plots[0].y_axis.high < live.ghost.window(0.0).high["energy"][0, 0]
 
 
-def test_where_every_method_has_a_shadow_energy_its_chart_has_keys_below():
+def test_below_a_chart_are_keys_or_the_values_that_are_known_and_fit():
     pane = TimeChart()
     pane.source = Live(WHOLE.with_cast(WHOLE.cast[1:3]))
     pane.room = Size(44, 12)
     pane.shown = Shown(quantity="shadow_error")
     pane.picture(pane.source, pane.source.sample)
     assert pane.border_subtitle == "e: quantity, w: window, z: zoom, y: axes"
+    pane.source = Live(WHOLE)
+    for steps, h in ((100, -0.05), (60, -0.1), (1, -0.1)):
+        pane.source.step(steps)
+        pane.source.change(Stepping(h))
+    pane.pointer = 20
+    for width, letters in ((30, "s"), (44, "sv")):  # what is known and fits
+        pane.room = Size(width, 12)
+        pane.picture(pane.source, pane.source.sample)
+        assert re.findall(" ([esvr]) ", str(pane.border_subtitle)) == [*letters]
+    assert re.findall(r"h (-\S+)", pane.plot.picture.text) == ["-0.05", "-0.1"]
 
 
 def charted(fps, scene, *, changes=False, returns=False):
