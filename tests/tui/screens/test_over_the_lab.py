@@ -13,7 +13,7 @@ from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.screens.app import PenduApp
 from pendu_tui.tui.screens.dialogs import TextScreen
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.screens.lines import StatusLine, TooSmall
+from pendu_tui.tui.screens.lines import InsightLine, LessonPanel, StatusLine, TooSmall
 from pendu_tui.tui.views.error_table import ErrorTable
 from tests.tui.drawn import looks, screen
 from tests.tui.harness import lab, until
@@ -103,6 +103,11 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
         assert not theatre.pane(TooSmall).is_on_screen
+        for size, heights in (((119, 23), [6, 1]), ((120, 24), [4, 2])):
+            await theatre.pilot.resize_terminal(*size)
+            await theatre.pilot.pause()
+            lines = map(theatre.pane, (LessonPanel, InsightLine))
+            assert [line.styles.height.value for line in lines] == heights
 
 
 async def test_ctrl_z_stops_the_program_while_the_terminal_is_the_shells_but_not_a_visitors(

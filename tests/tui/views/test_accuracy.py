@@ -160,6 +160,9 @@ async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
         assert all(letter in pane.text for letter in "fbm")
         charts = [pane._charted(Size(60, rows)).picture for rows in (8, 11, 14, 30)]
         assert [len(chart.rows) for chart in charts] == [8, 9, 9, 24]
+        pane.room = Size(60, 11)
+        pane.draw()
+        assert (pane.text.count("\n"), pane.text[-1]) == (10, "…")  # two rows of words
         await pilot.press(*["tab"] * 3, "left")
         assert pane.cast[pane.index] not in USUAL_CAST
         await pilot.press("enter", "asterisk")
