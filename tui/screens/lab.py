@@ -461,7 +461,9 @@ class LabScreen(SizedScreen[None]):
         self.change_shown(self.shown.alone(place, cast))
         if self.shown.places(cast) == [place]:
             label = cast[place].label
-            self.notify(f"{label} alone. Click it again, or press u, to see all.", timeout=4)
+            self.notify(
+                f"Only {label} is shown. Click it again, or press u, to see all.", timeout=4
+            )
 
     def action_quantity(self) -> None:
         quantity = self.shown.quantity_ahead(1, self.source.scene)

@@ -31,7 +31,7 @@ async def computed(
         while (result := await asyncio.to_thread(received, results, process)) is not None:
             yield result
     except EOFError:
-        raise UserError("The process that computes for this view was ended.") from None
+        raise UserError("The process that computes for this view was stopped.") from None
     finally:
         process.kill()
         process.join()

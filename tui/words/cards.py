@@ -18,9 +18,9 @@ GLOSSARY = {
     "z": "h·w0, the step in units of 1/w0; w0 = sqrt(g/L). Above its limit in z a method is "
     "unstable",
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
-    "E/Es": "the energy over the separatrix's: libration (it swings) below 1, rotation above",
+    "E/Es": "the energy over the separatrix energy: libration (swinging) below 1, rotation above",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
-    "colours": "each method keeps its colour and letter everywhere; its digit is its place, "
+    "colours": "each method keeps its colour and letter everywhere; its digit is its place "
     "and its key",
     "×": "in the chart: one error passes another for good",
     "dotted": "the exact motion",

@@ -33,7 +33,7 @@ async def faulty():
 @pytest.mark.parametrize(
     ("fails", "words", "keys"),
     [
-        (killed, "was ended.", ("f2", key_of(VIEW))),
+        (killed, "was stopped.", ("f2", key_of(VIEW))),
         (faulty, "This view cannot be computed: ZeroDivisionError: why.", ("asterisk",)),
     ],
 )
