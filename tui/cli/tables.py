@@ -509,7 +509,9 @@ class Series:
 
     def _check_order(self, times: Any, is_later: Any) -> None:
         """Raise UserError where rows of several bodies or runs are mixed."""
-        in_turn = ((np.diff(times) == 0) & (np.abs(np.diff(self.energies)) > 0)).sum()
+        with np.errstate(invalid="ignore"):  # inf - inf
+            has_changed = np.abs(np.diff(self.energies)) > 0
+        in_turn = ((np.diff(times) == 0) & has_changed).sum()
         if in_turn > len(times) / 3:
             raise unreadable(
                 f"{in_turn} of {len(times)} rows repeat the time of the row before, with another "

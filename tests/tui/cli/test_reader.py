@@ -260,6 +260,7 @@ def test_columns_of_inner_arrays_have_numbers():
     assert list(series.energies) == ENERGIES
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("head", "form", "ends"),
     [
