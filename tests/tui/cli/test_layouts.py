@@ -179,6 +179,12 @@ def test_columns_without_names_of_their_own_are_named_in_their_order():
     assert series.energies == pytest.approx(ENERGIES, abs=0.006)
 
 
+def test_names_above_a_line_of_values_are_not_those_of_the_next_line():
+    _, head, frame, _ = CASES["GROMACS md.log"]
+    (series,) = tables(head + rows(f"{frame}\n1 2 3 4"))
+    assert list(series.energies) == pytest.approx(ENERGIES, abs=0.006)
+
+
 @pytest.mark.parametrize("first", ["ERROR on proc 12: Lost atoms", "Fatal error:"])
 def test_of_the_errors_that_end_a_log_the_first_is_told(first):
     form = "t = {t}, E = {e}"
