@@ -58,6 +58,7 @@ _MARKED = re.compile(
     r"|(?<!\S)[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s;|]|$)"
 )
 _HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
+_IN_PARENTHESES = re.compile(r"\(\+?[\d.,]+\)")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
@@ -235,13 +236,16 @@ def _arrays(stream: io.BufferedReader) -> Any:
 def number(text: str) -> float | None:
     """Return the number in a field, nan if it ended, None if there is none.
 
-    It may have a decimal comma, Fortran's D, a unit or brackets.  A date counts in seconds since
-    1970, in UTC if it has no zone.
+    It may have a decimal comma, Fortran's D, a unit or brackets; but (42) is -42 to accountants,
+    so it is none.  A date counts in seconds since 1970, in UTC if it has no zone.
     """
     try:
         return float(text.replace(",", "."))
     except ValueError:
-        text = text.strip("()[] \t\r\n\"'")
+        text = text.strip(" \t\r\n\"'")
+    if _IN_PARENTHESES.fullmatch(text):
+        return None
+    text = text.strip("()[] \t\"'")
     with suppress(ValueError):
         return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):

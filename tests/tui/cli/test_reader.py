@@ -157,6 +157,7 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ("{t}ps {e}eV", "ps, eV"),
         ('{{"t": {t}, "energy": {{"total": {e}, "kinetic": {k}}}}}', ", "),
         ("[{t}, {e}]", ", "),
+        ("[{t}] ({e})", ", "),
     ],
 )
 def test_printed_values_are_rows(form, units):
@@ -306,6 +307,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         (TABLE + "45.0,\n", None, 1),  # cut while it is written
         (TABLE + '45.0,"-345.12,5"\n', None, 1),  # no numbers
         (TABLE + "45.0,10.000-344\n", None, 1),
+        (TABLE + "45.0,(344.9)\n", None, 1),  # negative to accountants
         (TABLE + "a note\n45.0\n45.5\n", None, 2),
         *((TABLE + f"{remark}\n51\n", None, 2) for remark in (3, 50)),
         (TABLE.replace("\n9.0", "".join(f"\n8.5,{n}" for n in range(20)) + "\n9.0"), None, 20),
