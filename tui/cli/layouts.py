@@ -145,7 +145,8 @@ LAYOUTS = (
     ),
     Layout(
         programs="JSON, an object a line",
-        line=rf'"(?P<name>(?!\d+")[^"]+)" *: *"?{VALUE}"?(?=\s*[,}}])',
+        line=rf'"(?P<name>(?!\d+")[^"]+)" *: *"?{VALUE}"?'
+        rf'(?: *, *"(?:\w+[_.])?units?" *: *"(?P<unit>{UNIT})"(?!.*"E))?(?=\s*[,}}])',
     ),
     Layout(
         programs="prints of name value",

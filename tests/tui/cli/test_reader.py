@@ -158,6 +158,9 @@ def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
         ('{{"t": {t}, "energy": {{"total": {e}, "kinetic": {k}}}}}', ", "),
         ("[{t}, {e}]", ", "),
         ("[{t}] ({e})", ", "),
+        ('{{"t": {t}, "E": {e}, "unit": "eV"}}', ", eV"),
+        ('{{"t": {t}, "E": {e}, "energy_unit": "kJ/mol", "x": 1}}', ", kJ/mol"),
+        ('{{"t": {t}, "unit": "eV", "E": {e}}}', ", "),  # not that of the time
     ],
 )
 def test_printed_values_are_rows(form, units):
