@@ -119,11 +119,13 @@ TOLD = (
 
 
 def shown(scene):
-    """Speed, edge [rad], seconds, pause, line; what is unusual; front; what it tells, in order."""
+    """Speed, edge [rad], seconds, pause, line; what is unusual; cast, front; what it tells."""
     shot, line = scene.shot, scene.shot.line or Line("", 0.0, "")
     numbers = scene.speed, shot.theta, shot.seconds, shot.moment, line.value
     words = [scene.name, *(f"{each:.4g}" for each in numbers if each), line.name, line.quantity]
     words += [shot.view, shot.quantity, shot.log or "linear", scene.often_said and "belief"]
+    if scene.cast != DEFAULT_SCENE.cast:
+        words += ["".join(method.letter for method in scene.cast)]
     words += ["".join(method_of(key).letter for key in shot.front)]
     words += re.findall(TOLD, scene.watch)
     return " ".join(word for word in words if word not in ("", True, "lab", "energy_error"))
@@ -146,21 +148,21 @@ rk4-limit 8 60 22.4 -0.5 half linear r below 2 2 RK4 energy 4 over
 rk4-limit-above 8 0.25 linear r above 2 2 RK4 gains energy holds 0.2
 chaos-fenced 64 3.142 3.223 pi/h omega phase sv 0.95 symplectic below
 chaos-loose 2048 3.142 5.991 2 pi/h omega phase sv 1.1 2
-resonance 16 linear belief v 4 Verlet energy
+resonance 16 linear belief vs v 4 Verlet energy
 structure:
-damped 2 belief Explicit gains energy
-halving 4 linear belief hav gains 19 energy 1 29.6 2 Verlet 8
+damped 2 belief elcr Explicit gains energy
+halving 4 linear belief havr hav gains 19 energy 1 29.6 2 Verlet 8
 stiffness:
-stiff-slow 0.5 spring_energy linear belief riu 1 RK4 IMEX
-stiff-limit 0.25 vriu 2.5 beyond Verlet 2 1 4
-stiff-resonance 0.5 belief RESPA implicit
+stiff-slow 0.5 spring_energy linear belief vrpiu riu 1 RK4 IMEX
+stiff-limit 0.25 vrpiu vriu 2.5 beyond Verlet 2 1 4
+stiff-resonance 0.5 belief vrpiu RESPA implicit
 precision:
-precision 1 theta_error 32 bits Verlet over 5.5 64 0.003
-precision-deep 4 theta_error 64 bits 35 3 4
+precision 1 theta_error nvk 32 bits Verlet over 5.5 64 0.003
+precision-deep 4 theta_error nvk 64 bits 35 3 4
 learning:
-learned 8 belief ztr 100 lose 60 energy 1
+learned 8 belief jzgtr ztr 100 lose 60 energy 1
 mean field:
-mean-field 4 probability_error linear RK4 energy 4 4 shrunk 15
+mean-field 4 probability_error linear rx RK4 energy 4 4 shrunk 15
 """
 
 

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -81,6 +82,10 @@ def test_neighbours_separate_by_the_derivative_of_all_steps(w0):
     step = np.reshape(at_bottom(VELOCITY_VERLET, 2.1), (2, 2))
     stretched = np.linalg.norm(np.linalg.matrix_power(step, 100)[:, 0])
     assert stretching.log == pytest.approx(math.log(stretched))
+    ends = replace(VELOCITY_VERLET, phases=lambda force, phase, h: iter([(0j, 0j)]))
+    nowhere = Stretching(ends, PENDULUM, 0.1)
+    nowhere.carry((1.0, 0.5), 1)
+    assert (nowhere.log, nowhere.steps) == (0, 0)
 
 
 EXACT = [PENDULUM.exact(2.0, 0.0).at(t + 1.0).theta for t in range(100)]
@@ -124,8 +129,13 @@ def test_taylors_series_follows_a_swing_of_20_s_in_200_steps(start, most):
 @pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=str)
 @given(theta=st.floats(-1e9, 1e9), omega=st.floats(-1e9, 1e9), h=st.floats(-100, 100))
 def test_where_nothing_looks_accurate_a_step_still_ends(method, theta, omega, h):
-    assert all(map(math.isfinite, method.step(FORCE, (theta, omega), h)))
-    assert count_evaluations(method, PENDULUM, (theta, omega), h, 1) <= 6 * (2**11 - 1)
+    left = iter(range(6 * (2**11 - 1)))
+
+    def force(theta):
+        next(left)
+        return FORCE(theta)
+
+    assert all(map(math.isfinite, method.step(force, (theta, omega), h)))
 
 
 @pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], ids=str)

@@ -349,6 +349,8 @@ def test_a_digit_is_a_jump_that_comes_three_times():
     energies[60:] = 1
     assert resolution(energies) == 1
     assert resolution(np.tile([0.0, 3.0, 1.0], 30)) == 1
+    found = [resolution(np.arange(100) // every) for every in (2, 1.9)]
+    assert (found[0], found[1] < 1e-14) == (1, True)  # half of them repeat, or fewer
     digits = judge_record(T, np.round(T))
     t = 100 * np.arange(64) / 64
     assert digits.uncertainty == pytest.approx(1 / math.sqrt(12) / t.std() / 8, rel=0.2)

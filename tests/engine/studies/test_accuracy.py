@@ -180,6 +180,7 @@ def test_a_point_knows_its_step_in_each_unit():
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
     assert cost_at(LINES[:4], "theta", "evaluations", 1.0) == 4 * 10
+    assert cost_at([at(R, 10, 0.1)], "theta", "seconds", 1.0) is None  # not timed
     for coarser, finer in ((0.1, 0.0), (math.inf, 1e-3)):
         assert cost_at([at(R, 10, coarser), at(R, 20, finer)], "theta", "evaluations", 0.01) == 80
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
