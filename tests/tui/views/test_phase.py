@@ -95,7 +95,7 @@ async def test_arrows_move_a_crosshair_from_the_start_enter_chooses_it_and_esc_l
         for size in ((40, 8), (120, 40)):  # too small for a moment
             await theatre.pilot.resize_terminal(*size)
             await theatre.pilot.pause()
-        assert pane.has_focus
+        await until(theatre.pilot, lambda: pane.has_focus)
         viewport = pane.viewport
         plain = plot(pane)
         keys = theatre.stage.active_bindings
