@@ -8,7 +8,7 @@ import pytest
 from pendu_tui.engine.methods import GENERAL, USUAL_CAST
 from pendu_tui.engine.run.loops import PlainLoops
 from pendu_tui.tui.views.accuracy import accuracy_chart
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 
@@ -61,7 +61,7 @@ def test_extreme_starts_print_numbers_and_no_nan(start):
 
 
 def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_the_fewest(
-    monkeypatch,
+    tmp_path, monkeypatch
 ):
     timed = []
 
@@ -80,6 +80,8 @@ def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_th
         return accuracy_chart(series, *rest)
 
     monkeypatch.setattr("pendu_tui.tui.commands.accuracy.accuracy_chart", chart)
+    pendu(*seconds, "--methods", "rk4", "--method", own_method(tmp_path), "--csv")
+    assert not timed  # all of them run without Numba, if one does
     out = pendu(*asked[:-2]).out
     assert all(0 < x < 1 for x in drawn)  # s, not evaluations
     assert timed == ["taylor_20", "velocity_verlet", "rk4"] * 2

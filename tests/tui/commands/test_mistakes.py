@@ -65,6 +65,7 @@ MISTAKES = {
         "--z-values 1,1000": "--z-values … below 1000",
         "--steps 3000000000": "--steps … 2.14748e+09",
         "--plain": "no option --plain … an option of live, tour, replay.",
+        "--theta=--": "-- is not a value",
         "--thta 1": "no option --thta: did you mean --theta?",
         "--scene linear": "linear oscillator … pendu-tui methods",
     },

@@ -7,7 +7,7 @@ import shlex
 import pytest
 
 from pendu_tui.tui.cli.commands import COMMANDS
-from pendu_tui.tui.commands.options import OPTIONS, parser_of
+from pendu_tui.tui.commands.options import OPTIONS, completion_parser, parser_of
 from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import own_method, pendu, shortened
@@ -115,4 +115,10 @@ def test_options(snapshot):
             members = group._group_actions
             names = [f"{each.dest} {getattr(each, 'complete', '')}".strip() for each in members]
             texts.append(f"{group.title} ({group.description}) {', '.join(names)}".strip())
+    completed = completion_parser()
+    (commands,) = completed._subparsers._group_actions
+    texts += ["\ncompleted", *completed._option_string_actions]
+    for each in commands._choices_actions:
+        names = commands.choices[each.dest]._option_string_actions
+        texts.append(f"{each.dest} ({each.help}) {' '.join(names)}")
     snapshot("options.txt", "\n".join(texts) + "\n")

@@ -82,7 +82,8 @@ def test_charts_as_they_are_stored(snapshot):
     chart = loglog_chart(series, 60, 18, x_label="cost", y_label="error")
     column, row = chart.cell(3e3, 3e-2)
     assert cells(chart.picture)[row, column] == ("e", 0)
-    snapshot("charts.txt", "\n".join([*texts, look(chart.picture)]))
+    small = loglog_chart(series, 20, 6, x_label="cost", y_label="error")  # no room for names
+    snapshot("charts.txt", "\n".join([*texts, look(chart.picture), look(small.picture)]))
 
 
 def test_stretches_levels_and_what_has_left_the_chart_as_they_are_stored(snapshot):
