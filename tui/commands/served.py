@@ -37,6 +37,11 @@ class BoundedDriver(WebDriver):
         self._asked = None
         super().on_meta("resize", dict[str, Any](asked or {}))
 
+    def stop_application_mode(self) -> None:
+        """Finish the recording before the server hears of the end and ends this process."""
+        self._app.finish()  # type: ignore[attr-defined]
+        super().stop_application_mode()
+
 
 def bounded(size: Any) -> dict[str, int]:
     sides = zip(("width", "height"), LARGEST, strict=True)

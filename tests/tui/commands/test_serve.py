@@ -179,6 +179,15 @@ def test_of_a_flood_of_sizes_a_tab_gets_the_last_and_that_of_a_terminal_at_most(
     assert len(waiting) == 2
 
 
+def test_a_recording_is_finished_before_the_server_ends_its_lab(monkeypatch):
+    told = []
+    monkeypatch.setattr(served.WebDriver, "stop_application_mode", lambda _: told.append("end"))
+    driver = object.__new__(served.BoundedDriver)
+    driver._app = SimpleNamespace(finish=lambda: told.append("finish"))
+    driver.stop_application_mode()
+    assert told == ["finish", "end"]
+
+
 def test_the_lab_of_a_tab_has_the_size_that_is_asked_for_and_may_record(tmp_path, monkeypatch):
     file = tmp_path / "settings"
     folder = tmp_path / "folder"
