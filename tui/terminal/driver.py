@@ -68,7 +68,7 @@ class CharacterSetFilter(LineFilter):
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         table = self._table
-        return [Segment(text.translate(table), style, control) for text, style, control in segments]
+        return [Segment(text.translate(table), style) for text, style, _ in segments]
 
 
 END_OF_PASTE = "\x1b[201~"
