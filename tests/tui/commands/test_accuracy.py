@@ -83,6 +83,7 @@ def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_th
     pendu(*seconds, "--methods", "rk4", "--method", own_method(tmp_path), "--csv")
     assert not timed  # all of them run without Numba, if one does
     out = pendu(*asked[:-2]).out
+    assert "(0/step)" not in out
     assert all(0 < x < 1 for x in drawn)  # s, not evaluations
     assert timed == ["taylor_20", "velocity_verlet", "rk4"] * 2
     assert re.search(r" in \d+(\.\d+)? [µm]s +\d", out)
@@ -98,3 +99,4 @@ def test_over_seconds_the_series_is_one_of_the_methods_and_the_cheapest_takes_th
     assert rows["taylor_20"]["force_evaluations"] is None
     steps = [rows[name]["steps_per_swing"] for name in ("taylor_20", "rk4", "velocity_verlet")]
     assert steps == sorted(steps)
+    assert len(timed) == 6 + 2 * (6 + 3)  # points, and those of the search

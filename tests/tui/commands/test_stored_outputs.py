@@ -24,7 +24,7 @@ run halving --time 20 --methods halving_v,verlet
 run --theta 1e-150 --time 1500 --methods explicit_euler --fail-if 'explicit_euler.theta < 0'
 run --theta 0.5,1 --h 0.05,0.1 --length 1 --time 9 --methods rk4,verlet --fail-if 'rk4.slope < -1e-5'
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
-accuracy --all --error energy --time 2 --h-values 0.2:0.05:2
+accuracy --all --error energy --time 2.5 --h-values 0.2:0.05:2
 stability {FEW}
 stability --steps 1000 --z-values 0.01,0.02 --theta-values 1 --h 0.005 --methods rk4 --method {MINE}
 methods explicit_e symplectic rk4 heun forest_ruth backward_euler halving_verlet

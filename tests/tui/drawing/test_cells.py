@@ -56,6 +56,7 @@ async def test_a_picture_fits_the_room_and_only_rows_that_changed_are_made_anew(
         await pilot.pause()
         assert cells.text == "a\nb\nC"
         assert [each.text for each in cells.painted] == ["a   ", "b   ", "C   ", "    "]
+        assert cells.painted[2].crop(0, 4).text == "C   "
         kept = [old is new for old, new in zip(before, cells.painted, strict=True)]
         assert kept == [True, True, False, False]
         # a row may bring its own style

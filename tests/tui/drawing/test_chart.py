@@ -51,6 +51,7 @@ def test_charts_as_they_are_stored(snapshot):
     limit = {"line": Line("energy_error", -2.0, "limit")}
     mixed = window(t, waves - 0.1, waves + 0.05, 1.1)
     long = window(60 * t, grows, repeats=1.1)
+    zeros = window(np.arange(43), [0, 1e-12, 1e-8, *[0.1] * 38, 0, 0])
     pictures = [
         plot(window(t, grows, repeats=1.1), ghost=ghost, changes=changes, seconds=20, **limit),
         plot(window(t, grows), 60, 9, names=NAMES),
@@ -62,9 +63,9 @@ def test_charts_as_they_are_stored(snapshot):
         plot(window(t, np.where(t < 8, 0, np.sin(40 * t))), 72, 9, log=False, names=NAMES),
         plot(window(t, grows[:, 2]), 40, 5),
         plot(window(t[-9:], grows[-9:]), 72, 9, names=NAMES, seconds=20),  # nothing before
-        # no error is torn by zeros, and neither the first nor the smallest fortieth is on the axis
+        # no error is torn by zeros, and neither zeros nor the smallest fortieth are on the axis
         plot(window(t, np.sin(6 * t) ** 2, repeats=1.0), 60, 8, places=[0], seconds=20),
-        plot(window(np.arange(41), [0, 1e-12, 1e-8, *[0.1] * 38]), 51, 8, places=[0], seconds=41),
+        plot(zeros, 53, 8, places=[0], seconds=43),
         # logarithmic time begins with half a swing, or two to three decades before its end
         *(plot(window(60 * t, grows, repeats=r), 60, 8, log_time=True) for r in (0.9, 500.0)),
         plot(window(t, grows), 59, 8, line=Line("theta_error", 0.011, "of another quantity")),
@@ -73,7 +74,7 @@ def test_charts_as_they_are_stored(snapshot):
     ]
     series = [
         Series(0, "e", [1e2, 3e3, 2e4], [2e-1, 3e-2, 4e-4]),
-        Series(2, "v", [2e2, np.inf, 1e1], [3e-5, 1, 2e-3]),
+        Series(2, "v", [2e2, np.inf, 1e1, 4e1], [3e-5, 1, 2e-3, 4e-3]),
         Series(FRAME, "a slope of 2", [1e1, 1e7], [1e-1, 1e-7], dotted=True),
         Series(FRAME, "up", [1e3, 1e4], [1e-3, 1e-2], dotted=True),
     ]
@@ -204,7 +205,7 @@ def test_a_pass_is_marked_that_is_half_as_clear_as_the_clearest(apart, crosses):
         np.full(100, 20.0),
         np.where(moments < 60, 15.0, 25.0),
         np.full(100, 90.0),
-        np.where(moments < 30, 90 - apart, 90 + apart),
+        np.where(moments < 30, 90 - apart, 90 + 3 * apart),
     ]
     found = _crossings(np.column_stack(heights), moments, 0.0)
     assert sorted(column for column, _ in found) == pytest.approx(crosses, abs=1)
