@@ -60,6 +60,7 @@ TODAY = (
         ("swing.csv", 2, "pendu-tui judge swing.csv"),
         ("swing.py", 2, "pendu-tui --method swing.py"),
         ("crosover", 2, "did you mean crossover?"),
+        ("jugde", 2, "did you mean judge?"),
         ("run --scene rift", 2, "there is no scene 'rift': did you mean drift?"),
         ("zzz", 2, "there is no command or scene 'zzz'; pendu-tui --help lists them."),
         (".", 2, "'.'; pendu-tui --help"),  # a folder
@@ -164,6 +165,8 @@ def test_the_parser_takes_the_examples():
         for example in examples:
             word, words = split(shlex.split(example.split("|")[0])[1:])
             parser_of(word).parse_args(words)
+    dark = [name for name in COMMANDS if parser_of(name).get_default("theme") == "dark"]
+    assert dark == ["snapshot", "serve"]
     assert counts == [23, 7, 13, 20, 20, 26, 23, 24, 15, 6, 4, 6, 3, 5, 2]  # of options
 
 

@@ -164,6 +164,7 @@ def test_a_text_has_the_same_bytes_on_every_system(tmp_path):
         "recordings recover one.mcap -o link.mcap --force",
         "recordings recover one.mcap -o hard.mcap --force",
         "run --time 1 --scene one.toml --record one.toml --force",
+        "run one.toml --time 1 --record one.toml --force",
         "run --time 1 --method one.py:mine --record one.py --force",
     ],
 )

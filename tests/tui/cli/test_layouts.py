@@ -177,6 +177,8 @@ def test_each_layout_reads_its_case(layout):
 def test_columns_without_names_of_their_own_are_named_in_their_order():
     (series,) = tables(rows("3e2 {t} {e} 0.1 10.0"), "thermo.out", energy="potential (eV)")
     assert series.energies == pytest.approx(ENERGIES, abs=0.006)
+    (other,) = tables(rows("3e2 {t} {e} 0.1 10.0"), "thermo.outer")
+    assert not any(other.sheet.names)
 
 
 def test_names_above_a_line_of_values_are_not_those_of_the_next_line():

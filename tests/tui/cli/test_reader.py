@@ -668,8 +668,9 @@ def test_a_name_may_have_a_plus_and_its_unit_counts_before_its_case_does_not():
 
 
 def test_a_column_that_is_named_as_the_energy_is_not_guessed_as_the_time():
-    table = (("a", "b"), ("", ""), [(0, 1, 2), (3, 4, 5)])
+    table = (("a", "b"), ("", ""), [(0, 1, 2), (3, 4, 5.0009)])
     assert choose(*table, Wanted(energy="1"))[:2] == ((1,), (0,))
+    assert choose(*table[:2], [(0, 1, 2), (3, 4, 5.0011)], Wanted(energy="1")).time == ()
     assert choose(*table, Wanted(step=(1.0, ""))).doubt == "the total energy"
     assert choose(*table, Wanted()).doubt == "the time and the total energy"
     assert [len(series.times) for series in tables(TABLE, energy="x")] == [90]

@@ -1,13 +1,14 @@
 """--scene FILE.toml: the fields of scenes --json, and errors that name line and field."""
 
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from pendu_tui.engine.scenes import SCENES, Line, Shot
-from pendu_tui.tui.cli.scene import read_scenes, scene_text
+from pendu_tui.tui.cli.scene import _SCENE, _SHOT, _example, read_scenes, scene_text
 from tests.tui.command_line import EULER, own_method, pendu
 
 
@@ -107,6 +108,11 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
 def test_an_error_names_the_line_and_the_field(mine, text, said):
     mine.write_text(text, encoding="utf-8")
     assert pendu("run", "--scene", mine, "--time", "1").refused(3, said)
+
+
+def test_the_example_of_each_field_is_a_whole_line():
+    for name in (*_SCENE, *_SHOT):
+        assert tomllib.loads(_example(name))
 
 
 def test_it_may_begin_with_a_byte_order_mark_and_give_angles_in_degrees(mine):

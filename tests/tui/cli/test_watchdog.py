@@ -40,6 +40,8 @@ def test_a_step_is_interrupted_after_3_s_and_if_it_goes_on_the_program_ends(
 def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_error_of_the_method(
     monkeypatch,
 ):
+    watchdog.watchdog()
+    assert signal.getsignal(ALARM) == watchdog._interrupt
     begun = []
     monkeypatch.setattr(watchdog, "watchdog", lambda: begun.append("watchdog"))
     line = compile("\nfound = find()", "mine.py", "exec")
