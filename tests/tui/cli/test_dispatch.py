@@ -65,6 +65,7 @@ TODAY = (
         ("zzz", 2, "there is no command or scene 'zzz'; pendu-tui --help lists them."),
         (".", 2, "'.'; pendu-tui --help"),  # a folder
         ("run spin --scene drift --time 1", 2, "spin and drift"),
+        ("run stiff-slow --methods x", 2, "explicit_euler, velocity_verlet"),  # for its model
         ("--print-completion ksh", 2, "--print-completion: "),
         ("stability --scene damped", 2, "no friction"),
         ("run --tim 10", 2, "there is no option --tim: did you mean --time?\n"),

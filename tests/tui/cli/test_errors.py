@@ -40,5 +40,5 @@ def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(m
     warn(sentence)
     lines = terminal.getvalue().splitlines()
     assert (len(lines), " ".join(lines)) == (5, f"pendu-tui: {sentence}")
-    say("\x1b[2J\n1")
-    assert capsys.readouterr().out == "\N{REPLACEMENT CHARACTER}[2J\n1\n"
+    say(f"\x1b[2J\n{1001 * '1'}")
+    assert capsys.readouterr().out == f"\N{REPLACEMENT CHARACTER}[2J\n{999 * '1'}…\n"

@@ -102,8 +102,9 @@ def columns(series: Series) -> str | None:
         ("t,Hartree [H],Total [H]", "{t},{k},{e}", "t, Total hartree"),
         ("t,e,dE/E", "{t},{k},{e}", None),
         ("t,e", "{t},{e}", "t, e"),
-        ("t,a,e", "{t},1,{e}", None),  # eccentricity
-        ("t,E,B", "{t},{e},{k}", None),  # fields
+        *((f"t,{other},e", "{t},1.5,{e}", None) for other in ("a", "i", "inc", "n")),
+        *((f"t,E,{other}", "{t},{e},1.5", None) for other in ("N", "B", "I", "nu", "loss")),
+        *((f"t,{count},e", "{t},2,{e}", "t, e") for count in "in"),
         ("t,x,E", "{t},{k},{w}", None),  # a field
         ("t,x,E", "{t},{k},{b}", None),  # a count
         ("time,t,E", "17327000{n:02},{t},{e}", "t, E"),  # on the wall
@@ -112,7 +113,6 @@ def columns(series: Series) -> str | None:
         ("", "t = {t} E = {e}×10^{f}", None),
         ("", "t = {t} E = -42 {k:07.3f}", None),
         ("", "t = {t} E = {e} 300 K", "t, E"),
-        ("t,N,E", "{t},{k},{e}", None),  # North and East
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t,E", "{t} ps , {e} eV", "t ps, E eV"),
         ("t,energy error (%)", "{t},{e}", None),
@@ -181,6 +181,7 @@ def test_a_printed_unit_may_begin_late_and_be_spelled_in_two_ways():
         "t = {s:,} E={e}",
         "t={s:,}.00, E={e}",
         "t;E\n{s:,};{e}",
+        "t|E\n{s:,}|{e}",
         "t\tE\n{s:,}\t{e}",
         't,E\n"{s:,}",{e}',
         "{s:,} {e}",
@@ -562,7 +563,9 @@ def test_fortran_leaves_out_the_e_of_three_digits(head, row):
 
 PICKLES = array(t=TIMES, E=np.array([{}, {}, {}], dtype=object))
 BROKEN = (
-    (b"\x1f\x8b\x08\x00rest", "cannot be unpacked"),
+    *((each, "cannot be unpacked") for each in (gzip.compress(b"1 2\n")[:-9], b"BZhrest")),
+    (b"\x1f\x8b\x08" + bytes(7) + b"\xff", "cannot be unpacked"),
+    (b"\xfd7zXZ" + bytes(9), "cannot be unpacked"),
     (b"\x89MCAP0\r\n\0", "not text"),
     (b"x" * (1 << 21), "longer than 1 MB"),
     (PICKLES, "arrays cannot be read"),
@@ -583,6 +586,7 @@ MISUSED = (
     (TABLE, {"energy": "E+t"}, "t is both the time and an energy"),
     ("t,K [J],P [eV]\n" + rows("{t},{k},{p}"), {"energy": "K+P"}, r"K\+P differ \(J, eV\)"),
     ("t,E [J]\n" + rows("{t},{e}"), {"units": {"energy": "eV"}}, "E is in J, not in eV"),
+    ("t,E [J],K [eV]\n" + rows("{t},{e},{k}"), {"kinetic": "K"}, r"K and the energy .* \(J, eV\)"),
     (TABLE, {"step": (0.5, "fs"), "time": "t"}, "t is a time already"),
     (TABLE, {"span": ((5.0, "fs"),)}, "the unit of time is not known"),
     (TABLE, {"span": ((5.0, ""), (4.0, ""))}, "no times from 5 to 4"),
@@ -629,7 +633,9 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
     assert [each.units for each in tables(text.replace("K", "eV"))] == [("ps", "")]
 
 
-def test_steps_and_units_of_the_owner_are_applied():
+def test_what_the_owner_says_is_applied():
+    (series,) = tables("t,E,K\n" + rows("{t},{e},{k}"), kinetic="k")
+    assert list(series.kinetic) == [k for *_, k in SAMPLES]
     (series,) = tables(rows("{e}"), step=(2.0, "ps"))
     assert (series.times[1], series.units) == (2.0, ("ps", ""))
     *_, series = tables(TABLE + "time,energy\n[ps],[eV]\n" + rows("{t},{e}"))
