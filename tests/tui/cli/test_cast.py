@@ -70,7 +70,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     ("text", "code", "words"),
     [
         ("mine.py", 3, "mine.py has no function 'mine'; it has kick_drift, rk4"),
-        ("mine", 2, "'mine' is not FILE.py:FUNCTION"),
+        ("mine", 2, "--method: 'mine' is not FILE.py:FUNCTION"),
         *((f"mine.py:{key}", 2, f"'{key}' cannot be") for key in ("größer", "1st", "a" * 31)),
         (f"mine.py:{'a' * 30}", 3, "has no function"),
         ("binary.py", 3, "it is not text in UTF-8"),

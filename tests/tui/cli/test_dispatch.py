@@ -152,6 +152,7 @@ def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
 def test_help_and_version():
     assert "what to do (list)" in pendu("recordings", "--help").out
     assert "\n  pendu-tui recordings show latest\n" in pendu("recordings", "--help").out
+    assert f"\n  live        {COMMANDS['live'].about}\n" in pendu("--help").out
     assert pendu("--help").out.endswith("\n  pendu-tui run crossover --time 100\n")
     assert pendu("--version").out == f"pendu-tui {version('pendu-tui')}\n"
 

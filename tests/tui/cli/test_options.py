@@ -49,7 +49,7 @@ JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
         (units.moment, "1e999", None),
         (units.quantity, "0fs", None),
         *((units.quantity, f"1{unit}", f"'{unit}' is not a known unit") for unit in ("kg", "eV")),
-        (units.assignments, "energy=eV,", {"energy": "eV"}),
+        (units.assignments, "energy=lj,", {"energy": "lj"}),
         (units.assignments, "time=ps, energy = kJ/mol", {"time": "ps", "energy": "kJ/mol"}),
         *((units.assignments, text, None) for text in ("time=ps,mass=u", "time=,energy=eV", ",")),
         (units.assignments, "time=lj", "'lj' is not a known unit of time"),

@@ -61,6 +61,7 @@ def columns(series: Series) -> str | None:
         ("T,energy", "{t},{e}", "T, energy"),  # it increases
         ("T,t,E", "300,{t},{e}", "t, E"),
         ("t,E,total,conserved", "{t},{k},{k},{e}", "t, conserved"),
+        ("t,sim time,ECons,econt", "{k},{t},{k},{e}", "sim time, econt"),
         ("t,E,dE/E", "{t},{e},{k}", "t, E"),
         ("t,E,p", "{t},{e},word", "t, E"),
         ("t, E, h", "{t}, {e}, {k}", "t, E"),  # h is no hour
@@ -318,6 +319,7 @@ def test_an_energy_that_ended_has_failed_however_it_is_written(head, form, ends)
         (TABLE + rows("3.0,{e}", 0, 8), None, 8),
         ("t E\n" + rows("{t} {e}") + "energy nan detected\n", None, 0),
         (TABLE + "45.0,\n45.5\n", 45.0, 0),
+        ("n t E\n" + rows("{n} {t} {e}") + "90 45.0\n91 45.5\n", 45.0, 0),
     ],
 )
 def test_rows_at_the_end_without_time_or_energy_have_failed_unless_they_are_rarer(
@@ -562,10 +564,14 @@ def test_fortran_leaves_out_the_e_of_three_digits(head, row):
 
 
 PICKLES = array(t=TIMES, E=np.array([{}, {}, {}], dtype=object))
+PACKED = (
+    gzip.compress(b"1")[:-9],
+    b"BZhx",
+    b"\x1f\x8b\x08" + bytes(7) + b"\xff",
+    b"\xfd7zXZ" + bytes(9),
+)
 BROKEN = (
-    *((each, "cannot be unpacked") for each in (gzip.compress(b"1 2\n")[:-9], b"BZhrest")),
-    (b"\x1f\x8b\x08" + bytes(7) + b"\xff", "cannot be unpacked"),
-    (b"\xfd7zXZ" + bytes(9), "cannot be unpacked"),
+    *((each, "cannot be unpacked") for each in PACKED),
     (b"\x89MCAP0\r\n\0", "not text"),
     (b"x" * (1 << 21), "longer than 1 MB"),
     (PICKLES, "arrays cannot be read"),
@@ -585,7 +591,11 @@ BROKEN = (
 MISUSED = (
     (TABLE, {"energy": "E+t"}, "t is both the time and an energy"),
     ("t,K [J],P [eV]\n" + rows("{t},{k},{p}"), {"energy": "K+P"}, r"K\+P differ \(J, eV\)"),
-    ("t,E [J]\n" + rows("{t},{e}"), {"units": {"energy": "eV"}}, "E is in J, not in eV"),
+    (
+        "t,E [J]\n" + rows("{t},{e}"),
+        {"units": {"energy": "eV"}},
+        "E is in J, not in eV; leave energy=",
+    ),
     ("t,E [J],K [eV]\n" + rows("{t},{e},{k}"), {"kinetic": "K"}, r"K and the energy .* \(J, eV\)"),
     (TABLE, {"step": (0.5, "fs"), "time": "t"}, "t is a time already"),
     (TABLE, {"span": ((5.0, "fs"),)}, "the unit of time is not known"),
@@ -634,8 +644,8 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
 
 
 def test_what_the_owner_says_is_applied():
-    (series,) = tables("t,E,K\n" + rows("{t},{e},{k}"), kinetic="k")
-    assert list(series.kinetic) == [k for *_, k in SAMPLES]
+    (series,) = tables("t,E,K\n" + rows("{t},{e},{k}") + "45.0,-345,nan\n", kinetic="k")
+    assert (list(series.kinetic), series.diverged_at) == ([k for *_, k in SAMPLES], 45.0)
     (series,) = tables(rows("{e}"), step=(2.0, "ps"))
     assert (series.times[1], series.units) == (2.0, ("ps", ""))
     *_, series = tables(TABLE + "time,energy\n[ps],[eV]\n" + rows("{t},{e}"))

@@ -73,6 +73,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
                 "scene = [{}, {h = 1}]",
             )
         ),
+        ("scene = [{h = 1}, {h = 2}, {h = 'x'}]", "line 1: h: 'x' is not a time"),
         (
             "[shot]\nseconds = 9\nlog = 1",
             "line 3: log: Expected `bool`, got `int`; use, for example, log = ",

@@ -80,8 +80,8 @@ class Lost:
     def map(self, *_):
         raise RuntimeError(f"the last of {self.count}.")
 
-    def shutdown(self, **_):
-        pass
+    def shutdown(self, wait=True):
+        assert wait
 
 
 def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monkeypatch):
@@ -94,6 +94,7 @@ def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monke
         outcome = pendu(*RUNS, "--workers", asked)
         assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
     assert ended == ["one"] * 4
+    assert os.environ["PYTHONSAFEPATH"] == "1"
     monkeypatch.setattr(Lost, "map", Mock(side_effect=OwnMethodError("mine fails.")))
     assert pendu(*RUNS, "--workers", 2).refused(3, "pendu-tui: mine fails.")
     assert pendu(*RUNS, "--workers", 1).code == 0
