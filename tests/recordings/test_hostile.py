@@ -10,8 +10,6 @@ from pendu_tui.recordings.recorder import Recorder
 from tests.recordings.examples import false_head, two_runs
 from tests.tui.command_line import pendu
 
-MAX_SECONDS = 10.0  # on a busy machine
-
 
 def test_a_huge_message_is_answered_in_time_with_a_sentence(tmp_path):
     path = tmp_path / "hostile.mcap"
@@ -27,7 +25,7 @@ def test_a_huge_message_is_answered_in_time_with_a_sentence(tmp_path):
     ):
         began = time.process_time()
         answer = pendu(*command)
-        assert time.process_time() - began < MAX_SECONDS
+        assert time.process_time() - began < 10.0  # s, on a busy machine
         assert answer.code in (0, 1, 3)
         assert (answer.out + answer.err).replace("\n", "").isprintable()
 

@@ -81,7 +81,6 @@ def test_a_failure_that_was_not_recorded_is_found(verified):
         (two_runs(), 3, 3, "rk4"),
         (run_of(SCENES["stiff-slow"], 0, 50), 2, 0, "velocity_verlet"),
     ],
-    ids=["first", "last", "plane"],
 )
 def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(
     verified, entries, at, method, key

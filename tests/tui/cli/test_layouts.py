@@ -177,8 +177,6 @@ def test_each_layout_reads_its_case(layout):
 def test_columns_without_names_of_their_own_are_named_in_their_order():
     (series,) = tables(rows("3e2 {t} {e} 0.1 10.0"), "thermo.out", energy="potential (eV)")
     assert series.energies == pytest.approx(ENERGIES, abs=0.006)
-    (other,) = tables(rows("3e2 {t} {e} 0.1 10.0"), "thermo.outer")
-    assert not any(other.sheet.names)
 
 
 def test_names_above_a_line_of_values_are_not_those_of_the_next_line():
@@ -198,28 +196,6 @@ def test_of_the_errors_that_end_a_log_the_first_is_told(first):
     )
     (series,) = tables(text)
     assert series.sheet.error == first
-
-
-@pytest.mark.parametrize(
-    ("row", "found"),
-    [
-        ("INFO step {s}, time {t}, energy {e}, kinetic energy {k}", "time, energy"),
-        (
-            "time {t} kinetic energy {k} potential energy {p}",
-            "time, kinetic energy+potential energy",
-        ),
-        ("step {s} wall time {n} with energy {e}", "step, energy"),
-        ("step {s}: energy = {e}", "step, energy"),
-        ("time {t}: total energy {e}", "time, total energy"),
-        ("time {t} s: total energy = {e}", "time s, total energy"),
-        ("time {t}\ntotal  energy {e} kinetic  energy {k}", None),
-        ("time {t}\nE = {k} (E = {e})", None),
-    ],
-)
-def test_the_words_before_a_number_are_its_name_which_is_not_certain_twice_in_a_line(row, found):
-    (series,) = tables(rows(row))
-    assert columns(series) == found
-    assert found is None or series.energies == pytest.approx(ENERGIES)
 
 
 MORE = [

@@ -16,6 +16,7 @@ def scene_from(*arguments: str) -> Scene:
     return scene_of(parser_of("snapshot").parse_args(list(arguments)))
 
 
+OTHERS = "ps bar kbar atm GPa MPa g/cm^3 A^3 nm^3 % m m/s rad rad/s deg N V V/m"
 JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
 
 
@@ -53,7 +54,10 @@ JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
         (units.assignments, "time=ps, energy = kJ/mol", {"time": "ps", "energy": "kJ/mol"}),
         *((units.assignments, text, None) for text in ("time=ps,mass=u", "time=,energy=eV", ",")),
         (units.assignments, "time=lj", "'lj' is not a known unit of time"),
-        (units.assignments, "energy=bar", "'bar' is not a unit of energy"),
+        *(
+            (units.assignments, f"energy={unit}", f"'{unit}' is not a unit of")
+            for unit in OTHERS.split()
+        ),
         *((units.moment, text, None) for text in ("ps", "")),
         (units.moment, "2", (2.0, "")),
         (units.moment, "2 ps", (2.0, "ps")),

@@ -42,7 +42,7 @@ def interrupted(error: BaseException, done: int, output: Path | None = None) -> 
         (UserError("lost.", Exit.INPUT_UNREADABLE), 3, "lost"),
     ],
 )
-def test_what_is_done_before_an_error_is_kept_if_it_replaces_no_file(
+def test_what_is_done_before_an_error_is_kept_unless_a_file_is_there(
     error, code, why, tmp_path, capsys
 ):
     assert interrupted(error, done=1).conclude() == code
