@@ -176,8 +176,6 @@ class Lockstep:
     def _restart(self) -> None:
         """Count look points, and judge, from here on."""
         self._stride = stride(self.period, self.stepping.h, self._model)
-        for track in self._tracks:
-            track.look_low = track.look_high = track.error
         self._judges: list[Judge] = []
         # (leaving, bounded) methods, of which the bounded one still has the larger error
         self._below: frozenset[tuple[int, int]] = frozenset()
@@ -262,7 +260,6 @@ class Lockstep:
                 continue
             previous = judge.judgement.verdict
             judge.look(self._look_point(track))
-            track.look_low = track.look_high = track.error
             now = judge.judgement
             if now.verdict != previous:
                 self._note(
@@ -294,8 +291,9 @@ class Lockstep:
         self.milestones.append(Milestone(kind, self.scene.cast[index], energy_error=error, **more))
 
     def _look_point(self, track: _Track) -> LookPoint:
+        """Return a method's look point; the extremes of the next one count from here."""
         theta, omega, _ = self._model.observe(track.phase)
-        return LookPoint(
+        point = LookPoint(
             step=(self.step - self._base_step) * track.parts,
             error=track.error,
             low=track.look_low,
@@ -304,6 +302,8 @@ class Lockstep:
             omega=omega,
             energy=track.energy,
         )
+        track.look_low = track.look_high = track.error
+        return point
 
     def _following_stop(self) -> int:
         """Return the next look point, or an earlier step where a method may be over the top."""
