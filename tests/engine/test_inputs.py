@@ -17,7 +17,7 @@ from pendu_tui.engine.inputs import angle, did_you_mean, number, seconds, start_
         (angle, "90deg", math.pi / 2),
         (angle, "90°", math.pi / 2),
         (angle, "30deg/s", math.pi / 6),
-        (angle, "pi/2", math.pi / 2),
+        (angle, "+pi/2", math.pi / 2),
         (angle, "-2pi/3", -2 * math.pi / 3),
         (angle, "-0.5*π", -math.pi / 2),
         (start_angle, "6.28", 6.28),
@@ -55,5 +55,5 @@ def test_what_is_no_such_number_is_refused(read, text, why):
 
 def test_a_suggestion_is_alike_in_any_case():
     assert did_you_mean("enrgy", ["Energy"]) == ": did you mean Energy?"
-    assert did_you_mean("nergy", ["energy"])  # much alike
+    assert did_you_mean("--heta", ["--theta"])  # much alike
     assert not did_you_mean("xnexgy", ["energy"])

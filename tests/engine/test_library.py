@@ -187,6 +187,7 @@ def still(force, phase, h):
             "1e-20 over 1 s; RK4: rounding",
         ),
         (lambda: recommend(0), "target = 0 is not above zero"),
+        (lambda: recommend(1e-3, time=0), "time = 0 is"),
         (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
         (lambda: limits("linear"), "a pendulum that swings"),

@@ -319,7 +319,7 @@ def test_a_method_is_found_by_its_names_or_the_start_of_a_word_of_its_key(typed,
 @pytest.mark.parametrize(
     ("share", "above", "kept"),
     # rad/s; ten swings lose a hundred times the share
-    [(1e-16, 0, True), (1e-10, 0, False), (1e-12, 0, False), (1e-10, 7.5, False)],
+    [(1e-16, 0, True), (1e-12, 0, False), (1e-10, 2.5, False), (1e-10, 7.5, False)],
 )
 def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, kept):
     def losing(force, phase, h):
@@ -329,7 +329,7 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
             yield phase
 
     assert measure.is_reversible(losing) == kept
-    assert above or measure.is_symplectic(losing) == kept
+    assert above > 4 or measure.is_symplectic(losing) == kept
 
 
 @pytest.mark.parametrize(

@@ -129,4 +129,4 @@ def test_the_level_keeps_its_digits_where_the_energy_has_lost_them():
 def test_errors_are_relative_to_the_start_or_to_the_separatrix():
     assert PENDULUM.reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
     assert PENDULUM.reference(0.0, 0.0) == EnergyReference(0.0, 2 * 9.81)
-    assert PENDULUM.reference(0.0, 2.0).errors(5.0, 3.0, 1.0) == [0.5, -0.5]
+    assert EnergyReference(2.0, 4.0).errors(5.0, 3.0, 1.0) == [0.25, -0.25]

@@ -112,6 +112,7 @@ def finite(reading):
 def test_a_spring_energy_is_relative_to_its_start_and_an_invariants_error_the_largest_so_far():
     stiff, *_ = Lockstep(SCENES["stiff-slow"]).sample().readings
     assert (stiff.extra["spring_energy"], stiff.max_invariant_error) == (1, None)
+    assert stiff.extra["y"] < 0  # not over its start
     scene = EXAMPLES["mean_field"]
     lockstep = Lockstep(scene)
     lockstep.advance(40)

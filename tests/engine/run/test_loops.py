@@ -178,13 +178,13 @@ def test_only_what_numba_can_take_is_compiled_and_has_the_same_bits():
 
 def test_where_the_compiled_sine_differs_plain_loops_are_used(monkeypatch):
     class OtherSine:
-        """Numba where one sine in two thousand is a bit off."""
+        """Numba where one of 20,000 sines is a bit off."""
 
         @staticmethod
         def njit(function):
             def sine(x):
                 right = function(x)
-                return math.nextafter(right, 2.0) if round(1000 * x) % 2000 == 7 else right
+                return math.nextafter(right, 2.0) if round(1000 * x) == 19_999 else right
 
             return sine
 

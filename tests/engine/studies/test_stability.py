@@ -173,6 +173,7 @@ def test_the_default_map_reaches_beyond_every_limit(cast):
     ("theta", "omega", "expected"),
     [
         (-0.7, 0.0, 0.7),
+        (4.0, 0.0, math.tau - 4),
         (0.0, 2 * Scene().w0 * math.sin(0.6), 1.2),
         (2 * math.asin(0.3), 0.8 * Scene().w0, math.pi / 3),
         (0.0, 1.999 * Scene().w0, 3.0784),  # 2 asin(0.9995)
@@ -191,7 +192,7 @@ def test_a_ladder_has_the_scenes_own_step_and_amplitude():
     assert Scene(h=0.123).z in own.z
     assert (own.z[0], own.z[-1]) == pytest.approx((1e-3, 3.2))
     assert np.max(own.z[1:] / own.z[:-1]) == pytest.approx(1.01, abs=1e-4)
-    near = ladder_of(Scene(theta=1.005), None, [0.1, 0.2], 100)
+    near = ladder_of(Scene(theta=-1.005), None, [0.1, 0.2], 100)
     assert near.theta.tolist() == [0.1, 0.5, 1.005, 2.0, 3.0]
     assert near.z.tolist() == sorted([0.1, 0.2, Scene().z])
 
