@@ -377,8 +377,7 @@ class LabScreen(SizedScreen[None]):
         """Go forward to the moment, the answer or the next page, or back."""
         lesson = self.lesson
         before = (lesson.index, self.source.sample.run)
-        if not await self.change(getattr(lesson, way)):
-            return
+        await self.change(getattr(lesson, way))
         if lesson.stage == "over":
             self._leave_lesson("That was the last page. T starts over.")
         elif (lesson.index, self.source.sample.run) != before:

@@ -146,7 +146,6 @@ class PhasePane(Chooser[State]):
 
     def choose(self, place: State) -> None:
         self.start_at(*place)
-        self.draw()
 
     def action_cancel(self) -> None:
         if self.cursor is None:
