@@ -118,11 +118,11 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     history = filled(1)
     history.add(sample(10, low=-9, high=10))
     history.add(sample(10))  # again
-    history.add(sample(13, 13, low=-99), is_row=False)
+    history.add(sample(13, -13, low=-99), is_row=False)
     low = history.window().low
-    assert low["energy_error"][:, 0].tolist() == [0, -9, 13]
+    assert low["energy_error"][:, 0].tolist() == [0, -9, -13]
     start = DEFAULT_SCENE.equations.reference(DEFAULT_SCENE.theta, DEFAULT_SCENE.omega).start
-    assert low["energy"][:, 0] == pytest.approx([start, -8 * start, 14 * start])
+    assert low["energy"][:, 0] == pytest.approx([start, -8 * start, -12 * start])
     assert len(history.trails()) == 3
     history.add(sample(20, 20))
     assert errors(history) == [0, 10, 20]

@@ -222,7 +222,7 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(replay, seconds):
     replay.set_speed(-2.0)
     live = replay.live()
     assert (live.kind, live.playhead.speed, live.recording_status) == ("LIVE", 2.0, None)
-    assert live.knows_past
+    assert (live.knows_past, live.playhead.position) == (True, live.history.window().x[-1])
     here = replay.sample
     assert (live.sample.step, live.sample.t) == (here.step, here.t)
     assert live.stepping.h == replay.stepping.h

@@ -1,6 +1,7 @@
 """What lies over the lab: dialogs that close once, notices that cover no number, and "too small"."""
 
 from contextlib import ExitStack
+from unittest.mock import Mock
 
 from textual.events import Resize
 from textual.geometry import Size
@@ -100,6 +101,7 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         await theatre.press("greater_than_sign")
         assert theatre.playhead.speed == 2
         await theatre.pilot.resize_terminal(80, 24)
+        await theatre.settled()
         await theatre.run(0.1)
         assert "2×" in theatre.text(StatusLine)
         assert not theatre.pane(TooSmall).is_on_screen
@@ -124,3 +126,7 @@ async def test_ctrl_z_stops_the_program_while_the_terminal_is_the_shells_but_not
             monkeypatch.setattr(PenduApp, "is_web", is_web)
             await theatre.press("i", "ctrl+z")
             assert acts == ["stopped", "back"]
+        theatre.app.refresh = Mock()
+        theatre.app.app_resume_signal.publish(theatre.app)
+        await theatre.pilot.pause()
+        theatre.app.refresh.assert_any_call()

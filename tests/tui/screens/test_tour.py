@@ -114,5 +114,8 @@ async def test_of_a_page_that_is_too_long_the_end_is_kept_and_a_page_has_its_own
         assert panel(theatre).startswith("Page 1 of 2")
         assert panel(theatre).endswith("long.")
         assert theatre.text(LessonPanel).count("\n") == 5
-        await theatre.press("enter")
+        await theatre.press("P")
+        texts = [each.text.partition(" ")[0] for each in theatre.app.screen.entries]
+        assert texts.count("scene") == 2
+        await theatre.press("down", "enter")
         assert not theatre.stage.shown.log

@@ -270,6 +270,9 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         pane._section.result.orbits = 15
         pane.draw()
         assert str(pane.border_title).endswith(", computing 50%")
+        for _ in range(4):
+            pane.action_method(1)
+        assert [each.is_cancelled for each in pane.workers].count(False) == 1  # the last
         await theatre.press("n", "b")
         pane.draw()
         own = -theatre.source.stepping.own[2]

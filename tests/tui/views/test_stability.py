@@ -213,8 +213,10 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
 
 
 async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
-    async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, _live):
+    async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, live):
         assert pane.text.startswith("3 v held elsewhere\n")
+        said = drawing.verdict(pane.grid, pane.cells, VERLET, pane.aim(VERLET), live.scene.w0)
+        assert said in " ".join(pane.text.split())  # on two rows
         titles = {}
         for columns in (9, *range(40, 120)):
             pane.room = Size(columns, 5)

@@ -9,6 +9,7 @@ from textual.geometry import Size
 
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import MAX_METHODS, SCENES
+from pendu_tui.tui.playback.live import Live
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.views.error_table import ErrorTable
 from pendu_tui.tui.views.stage import Bob, Lens, Look, Stage, lanes, stage_picture
@@ -73,6 +74,12 @@ def test_small_swings_are_enlarged_to_23_to_46_degrees_as_the_stage_is_wide(room
     assert stage._lens(3.0).times == times
     for stage.shown in (Shown(overview=True), Shown(held=half)):
         assert stage._lens(half).times == 1
+    live = stage.source = Live(SCENES["gentle"].altered(theta=0.05))
+    stage.shown = Shown(theta=half)
+    stage.picture(live, live.sample)
+    (bob, *_), look = stage._drawn
+    angles = look.exact, look.amplitude, bob.theta
+    assert angles == pytest.approx([0.05 * times] * 3)
 
 
 def on_lane(theatre, place):
@@ -96,7 +103,7 @@ async def grabbed(theatre, *moves, start=(12, 9), wait=0.3):
     await theatre.pilot.mouse_up(stage, offset=moves[-1])
     await theatre.pilot.hover(stage, offset=start)  # with no button down
     await theatre.pilot.pause()
-    assert theatre.stage.shown.held is None
+    assert theatre.stage.shown.held is theatre.app.mouse_captured is None
     return held, table
 
 
@@ -152,9 +159,9 @@ async def test_a_trail_has_gaps_where_steps_are_long_either_way_of_time():
 async def test_less_than_three_columns_is_a_click_that_shows_the_lanes_method_alone():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.click(Stage, *on_lane(theatre, 2)[1], button=3)
         for column in (6, 38):  # just beyond the outermost lane
             await theatre.click(Stage, column, 16)
+        await theatre.click(Stage, *on_lane(theatre, 2)[1], button=3)
         assert not theatre.stage.shown.hidden
         stage, cell = on_lane(theatre, 2)
         for place, at in ((2, cell), (0, (37, 16))):

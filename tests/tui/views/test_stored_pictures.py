@@ -33,7 +33,7 @@ from tests.tui.drawn import look
 from tests.tui.harness import after
 
 DRIFT = SCENES["drift"]
-SIZES = (60, 8), (60, 19), (60, 20), (81, 41), (99, 44), (120, 31), (200, 45)
+SIZES = (60, 8), (60, 19), (60, 20), (81, 41), (99, 44), (140, 31), (200, 45)
 
 
 def test_stages(snapshot):
