@@ -119,7 +119,7 @@ def test_a_sample_between_rows_leaves_with_its_frame():
     history.add(sample(10, low=-9, high=10))
     history.add(sample(10))  # again
     history.add(sample(13, -13, low=-99), is_row=False)
-    low = history.window().low
+    low = history.between(0.0, 99.0).low
     assert low["energy_error"][:, 0].tolist() == [0, -9, -13]
     start = DEFAULT_SCENE.equations.reference(DEFAULT_SCENE.theta, DEFAULT_SCENE.omega).start
     assert low["energy"][:, 0] == pytest.approx([start, -8 * start, -12 * start])

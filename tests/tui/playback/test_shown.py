@@ -30,6 +30,7 @@ def test_a_shot_sets_what_is_seen_and_is_found_in_it_again():
     assert Shown().through(recorded) == Shown().through(SCENES["spin"])
     again = shown.shot(replace(DEFAULT_SCENE, shot=Shot(moment=1.0)), "phase", equal_cost=True)
     assert again == replace(shot, moment=1.0, view="phase", equal_cost=True)
+    assert Shown().shot(DEFAULT_SCENE, "lab", equal_cost=False).front == ()
 
 
 def test_windows_axes_and_quantities_come_in_turn():

@@ -84,10 +84,7 @@ async def test_what_is_found_is_done_by_enter_or_by_a_click(here):
         stepping = theatre.source.stepping
         (scene,) = read_scenes(here / "scene.toml").values()
         assert (scene.h, scene.cast) == (stepping.smallest, SCENES["crossover"].cast)
-        assert scene.shot.equal_cost
-        front = [scene.cast[place].key for place in theatre.stage.shown.places(scene.cast)]
-        assert (scene.shot.quantity, [*scene.shot.front]) == ("theta_error", front)
-        assert len(front) < len(scene.cast)
+        assert scene.shot == theatre.stage.shown.shot(scene, "lab", equal_cost=True)
 
 
 async def test_keys_and_clicks_that_are_faster_than_the_list_do_no_harm(monkeypatch):

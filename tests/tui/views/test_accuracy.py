@@ -50,9 +50,7 @@ accuracy_view = partial(view_of, "f4", AccuracyPane, is_complete)
 async def test_the_points_fill_in_are_the_engines_and_the_cheapest_is_named():
     async with accuracy_view() as (_, pane, _live):
         for point in measured(SCENES["drift"], 5.0, RUNGS):
-            shown = pane.points[point.method.key, point.steps]
-            assert shown.errors["theta"] == point.errors["theta"]
-            assert shown.errors["energy"] == point.errors["energy"]
+            assert pane.points[point.method.key, point.steps].errors == point.errors
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
         assert pane.border_subtitle == "@ current h  x no correct digit  ~ limited by rounding"
         points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]

@@ -214,16 +214,16 @@ async def test_tab_goes_through_the_methods_and_hidden_ones_leave_their_panels_t
 
 async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
     async with stability_view(SCENES["verlet-limit-above"], (60, 16)) as (_, pane, live):
-        assert pane.text.startswith("3 v held elsewhere\n")
         said = drawing.verdict(pane.grid, pane.cells, VERLET, pane.aim(VERLET), live.scene.w0)
         assert said in " ".join(pane.text.split())  # on two rows
-        titles = {}
-        for columns in (9, *range(40, 120)):
+
+        def title(columns: int) -> str:
             pane.room = Size(columns, 5)
             pane.draw()
-            titles[(columns - 2) // 2] = pane.text.splitlines()[0]
-        label = "Velocity Verlet: "
-        texts = "3 v held elsewhere", titles[58].replace(label, ""), titles[58]
-        assert label in titles[58]
-        for width, title in [*titles.items()][1:]:
-            assert title == [each for each in texts if len(each) <= width][-1]
+            return pane.text.splitlines()[0]
+
+        title(9)
+        whole = title(118)
+        short = whole.replace("Velocity Verlet: ", "")
+        columns = [2 * len(each) + more for each in (whole, short) for more in (2, 1)]
+        assert [*map(title, columns)] == [whole, short, short, "3 v held elsewhere"]
