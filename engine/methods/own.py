@@ -195,7 +195,7 @@ def guarded(function: Phases, file: str) -> Phases:
 
 
 def _phase(value: Any, like: Any, who: str) -> Phase:
-    """Return the yielded value as a phase, in the kind of numbers of the start."""
+    """Return the yielded value as a phase, in the kind of numbers of the initial phase."""
     try:
         theta, omega = value
         if isinstance(like, float | complex):

@@ -254,7 +254,7 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
         formula="a step of velocity Verlet and two half steps: if they differ by more than "
         f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
-        note="Its force evaluations, also for equal cost, are the mean over a minute of the "
+        note="Its force evaluations, which equal cost uses, are the mean over a minute of the "
         "scene halving. An undivided step takes six, and has the order given here.",
         any_numbers=False,
         varies=True,

@@ -52,7 +52,7 @@ class MeanField(Model):
         Number(
             "level_frequency",
             "s⁻¹",
-            "transition frequency of the two-level system in s⁻¹",
+            "angular frequency of the two-level transition in s⁻¹",
             min=1e-3,
             max=1e4,
             default=20.0,

@@ -93,7 +93,7 @@ Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 
 
 class ExactMotion(NamedTuple):
-    """The exact motion from one start."""
+    """The exact motion from one initial state."""
 
     at: Callable[[float], State]  # at any time [s]
     regime: Regime

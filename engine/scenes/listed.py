@@ -21,7 +21,7 @@ _STIFF = 2500.0  # s⁻²: the spring vibrates at 50 rad/s, the swing at 3
 _FIRST_LOOK = (
     Scene(
         "drift",
-        watch="Explicit Euler gains energy, symplectic methods keep it, RK4 loses a little.",
+        watch="Explicit Euler gains energy, RK4 loses some, symplectic methods do neither.",
         shot=Shot(theta=math.pi),
     ),
     Scene(
@@ -104,7 +104,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.02,
         speed=16.0,
-        watch="Just above z = 2: Verlet's swing grows until nonlinearity turns it at 0.48 rad.",
+        watch="Just above z = 2: Verlet's swing grows until nonlinearity stops it at 0.48 rad.",
         shot=Shot(
             theta=0.6,
             log=False,
@@ -137,7 +137,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.86,
         speed=8.0,
-        watch="Just above z = 2√2: RK4 gains energy until nonlinearity holds it at 0.2 rad.",
+        watch="Just above z = 2√2: RK4's swing grows until nonlinearity holds it at 0.2 rad.",
         shot=Shot(theta=0.25, log=False, front=("rk4",)),
     ),
     Scene(
@@ -146,7 +146,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(0.95),
         speed=64.0,
-        watch="K = z² = 0.95: symplectic orbits are chaotic, yet |omega| stays below pi/h.",
+        watch="K = z² = 0.95: two methods are chaotic, yet |omega| stays below pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -191,8 +191,8 @@ _STRUCTURE = (
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
-        watch="Explicit Euler gains energy despite friction, and spins; the others slow down.",
-        often_said="“RK4 is better where energy is lost.” True for an accuracy of 0.1 % or better, "
+        watch="Explicit Euler gains energy despite friction, and spins; the others decay.",
+        often_said="“RK4 is better with friction.” True for an accuracy of 0.1 % or better, "
         "but at 1 % conformal Verlet costs half as much.",
     ),
     Scene(
@@ -201,8 +201,8 @@ _STRUCTURE = (
         h=0.2,
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
         speed=4.0,
-        watch="Step doubling gains 19 % energy in 1 min, 29.6 % in 2; Verlet stays within 8 %.",
-        often_said="“Adaptive steps are better.” But they make a symplectic method's energy drift.",
+        watch="Step doubling: energy up 19 % in 1 min, 29.6 % in 2; Verlet stays within 8 %.",
+        often_said="“Adaptive steps are better.” But step doubling makes Verlet's energy drift.",
         # RK4 lies on Richardson's line
         shot=Shot(log=False, front=("halving_verlet", "halving_richardson", "velocity_verlet")),
     ),
@@ -217,7 +217,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="h·omega_s = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
-        often_said="“IMEX Euler is stable at any h.” True, but it stops the swing as well as the "
+        often_said="“IMEX Euler is stable at any h.” True, but it damps the swing as well as the "
         "spring.",
         # Verlet and RESPA lie on implicit midpoint
         shot=Shot(
@@ -244,8 +244,8 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="One step per spring period: RESPA resonates, implicit midpoint stays bounded.",
-        often_said="“With impulses, only the slow motion limits h.” But h must not come near a "
-        "multiple of the spring's period.",
+        often_said="“With impulse methods, only the slow motion limits h.” But h must avoid "
+        "multiples of the spring's period.",
     ),
 )
 
@@ -282,9 +282,9 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="In 100 s the field and map lose 60 % of the energy; H and SympNet err by < 1 %.",
-        often_said="“A learned Hamiltonian conserves energy.” But only the learned one; the true "
-        "one is off by a percent.",
+        watch="Learned field and map lose 60 % of E0 in 100 s; H and SympNet err by < 1 %.",
+        often_said="“A learned Hamiltonian conserves energy.” But only the learned energy; "
+        "the true one is off by a percent.",
         # the field lies on the map, H on SympNet
         shot=Shot(front=("learned_map", "learned_symplectic_map", "rk4")),
     ),
@@ -296,7 +296,7 @@ _MEAN_FIELD = (
         model="mean_field",
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
-        watch="RK4's energy is accurate to 4e-4, but in a minute |s| has shrunk by 15 %.",
+        watch="RK4's energy is accurate to 4e-4, but in a minute the norm |s| shrinks by 15 %.",
         shot=Shot(quantity="probability_error", log=False),
     ),
 )

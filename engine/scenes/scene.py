@@ -126,7 +126,7 @@ class Scene:
         return {each.name: getattr(self, each.name) for each in COMMON} | dict(self.parameters)
 
     def exact(self) -> ExactMotion:
-        """The exact motion from this scene's start."""
+        """The exact motion from the scene's initial state."""
         return self.equations.exact(self.theta, self.omega)
 
     @property
@@ -157,7 +157,7 @@ class Scene:
 
     @property
     def why_no_ring(self) -> str:
-        """Why the cast cannot carry a ring of neighbouring starts, as a sentence; "" if it can."""
+        """Why the cast cannot carry a ring of neighbouring states, as a sentence; "" if it can."""
         if why := self.equations.without_ring:
             return why
         names = ", ".join(method.label for method in self.cast if not method.any_numbers)
