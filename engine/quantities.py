@@ -97,7 +97,7 @@ THETA_ERROR = Quantity(
     label="theta error [rad]",
     form=".2e",
     head=Head("th.err", 7, "theta error", 11),
-    sentence="the distance from the exact angle [rad]; after a change of h, its change since",
+    sentence="the distance from the exact angle [rad]; after a change of h, its change since then",
     chart=Chart("theta - exact theta [rad]", "theta error [rad]"),
 )
 SHADOW_ERROR = Quantity("shadow_error", chart=Chart("shadow energy error", "|shadow error|"))

@@ -127,7 +127,7 @@ def publish(part: Path, path: Path, force: bool) -> None:
         try:
             rename(part, path)
         except FileExistsError as error:
-            raise NameTakenError("a file of this name appeared meanwhile", path) from error
+            raise NameTakenError("a file of this name has just appeared", path) from error
 
 
 def folder() -> Path:

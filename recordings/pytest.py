@@ -153,7 +153,7 @@ def energy_drift(request: pytest.FixtureRequest) -> EnergyDrift:
 def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
     """Return a test of each recording below a folder: `test_... = verify_recordings(FOLDER)`.
 
-    It fails if a recording is damaged or is not reproduced to the bit, and if there is none.
+    It fails if a recording is damaged or is not reproduced bit for bit, and if there is none.
     """
     names = sorted(path.relative_to(folder).as_posix() for path in Path(folder).rglob("*.mcap"))
 

@@ -240,7 +240,7 @@ class LiveRecorder(Recorder):
         A disk that blocks another thread for too long counts as failed.
         """
         if not self._lock.acquire(timeout=MAX_WAIT):
-            self._fail(DiskError("the disk does not answer", self.part))
+            self._fail(DiskError("the disk does not respond", self.part))
             return
         try:
             if self.failed is None and not self._file.closed:

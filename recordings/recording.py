@@ -157,7 +157,7 @@ class Recording:
         """Return a sample.  Raises RecordingError if the file has lost it since it was found."""
         entries = self._decode(place.chunk)
         if entries[-1].value is None:
-            raise RecordingError(f"{self.path}: it was changed while it was read.")
+            raise RecordingError(f"{self.path}: it was changed while being read.")
         return entries[place.entry]
 
     def beside(self, place: SamplePlace, direction: int) -> SamplePlace | None:

@@ -5,7 +5,7 @@ verdict depends on the scene, the stepping and the step alone.  The core judges 
 bins.  What is known of a method adds evidence:
 
 - A symplectic method can neither gain nor lose energy for good.  Its orbit is regular, and so
-  `bounded`, where a theorem says so or neighbouring starts separate no faster than in proportion
+  `bounded`, where a theorem says so or nearby trajectories separate no faster than in proportion
   to time, and `chaotic` where they separate exponentially.  A linear map is never chaotic.
 - The error of any other method is exactly 0 at the start, and drifts sooner or later: it is
   `bounded` only if it would stay in its band for ten times as long.
@@ -87,7 +87,7 @@ def _with_look(bins: list[_Bin], look: _Bin) -> list[_Bin]:
 
 
 class Judge:
-    """The judge of one method from a start on."""
+    """The judge of one method, from a given step onwards."""
 
     def __init__(
         self, h: float, period: float, method: Method, model: Model, start: LookPoint
@@ -112,7 +112,7 @@ class Judge:
             self._orbit = _Orbit(method, model, h, period)
 
     def copy(self) -> Self:
-        """Return another judge that goes on from here."""
+        """Return another judge that continues from here."""
         other = copy.copy(self)
         other._orbit = copy.copy(self._orbit)
         return other

@@ -39,8 +39,8 @@ RETURNS = "a symplectic method's energy should return, but has not yet"
 BEATS = "with so few steps per turn the error shows beats"
 NEAR = "the energy's band has shifted by less than half its width"
 SHORT = "a slow drift takes longer to show"
-LONGER = "a record {factor:.2g} times as long would decide"
-UNKNOWN = "a longer record may decide"
+LONGER = "a record {factor:.2g} times as long would settle it"
+UNKNOWN = "a longer record may help"
 
 # Only in a run.  z is h·w0 times the longest substep; errors are relative energy errors.
 # Theorems:

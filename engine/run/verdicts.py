@@ -44,15 +44,15 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the mean energy has risen for good; if it then levelled off, "
-            "the slope is taken after that",
+            meaning="the mean energy has risen for good; if it has levelled off, "
+            "the slope is that since then",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the mean energy has fallen for good; if it then levelled off, "
-            "the slope is taken after that",
+            meaning="the mean energy has fallen for good; if it has levelled off, "
+            "the slope is that since then",
         ),
         Verdict(
             CHAOTIC,
@@ -171,5 +171,5 @@ def not_within(
     if excess:
         longer = math.ceil((margin / abs(excess)) ** (2 / 3))
         if longer <= LONGEST:
-            advice = f"a record about {longer} times as long would decide"
+            advice = f"a record about {longer} times as long would settle it"
     return f"cannot tell: {name} is {slope:.3g} ± {margin:.1g} at 99 %; {advice}"

@@ -171,7 +171,7 @@ def test_a_writer_that_waits_for_the_disk_does_not_hang_the_close(tmp_path):
     lock = recorder._lock
     recorder._lock = SimpleNamespace(acquire=lambda timeout: timeout != 2.0)  # s
     recorder.close()
-    assert recorder.failed.endswith("live\ufffd.mcap.part: the disk does not answer")
+    assert recorder.failed.endswith("live\ufffd.mcap.part: the disk does not respond")
     recorder._lock = lock
     recorder.add(stepped(2), 0.1)
     assert recorder.samples == 1  # it has ended

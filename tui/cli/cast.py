@@ -84,7 +84,7 @@ def own_method_at(text: str, others: Sequence[Method]) -> OwnMethod:
     free = [each for each in (*key.upper(), *string.ascii_uppercase) if each not in letters]
     letter = next(filter(str.isalpha, free), None)
     if letter is None:
-        raise InputError(f"no letter is left for {key}; leave out another --method.")
+        raise InputError(f"no letter is left for {key}; leave one --method out.")
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(MAX_SOURCE + 1)

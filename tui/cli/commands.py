@@ -38,7 +38,7 @@ COMMANDS = {
         """\
   pendu-tui tour
 
-Enter continues, 1 or 2 answers, Backspace goes back, Esc leaves; T in the lab resumes the tour.
+Enter continues, 1 and 2 answer, Backspace goes back, Esc leaves; T in the lab resumes the tour.
 """,
         place="lab:tour",
     ),
@@ -144,8 +144,8 @@ A verdict of `failed` exits with 1.
   pendu-tui verify golden
 
 A folder means all recordings below it; golden, the bundled ones.
-Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete);
-3 one cannot be read.
+Exit codes: 0 all are identical; 1 any differs or is incomplete (a .part may be); 3 any cannot be
+read.
 """,
     ),
     "export": Command(

@@ -24,8 +24,8 @@ ROOM = "pendu_tui.tui.commands"
 USAGE = """\
 usage: pendu-tui [COMMAND | SCENE | FILE] [OPTIONS]
 
-Integrators simulate the same pendulum side by side in your terminal, live: see which gain energy,
-which conserve it and which lose it.
+Integrators simulate the same pendulum side by side in your terminal, live: see whose
+energy grows, stays bounded or falls.
 
 commands (pendu-tui COMMAND --help shows details):
 {commands}

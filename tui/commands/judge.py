@@ -100,7 +100,7 @@ def judge(name: str, options: argparse.Namespace) -> Answer:
         series = table_to_judge(seen, options.table)
         if doubt := series.choice.doubt:
             publish(Report(name="judge", version=2, notes=_listed(fields), fields=fields), options)
-            raise UserError(f"it is not certain which column is {doubt}; {CHOOSE}.")
+            raise UserError(f"it is not clear which column is {doubt}; {CHOOSE}.")
         series.finish(options.start, options.end)
         judged = _judged(series, options.scale[0])
         table = tables[seen.index(series)]

@@ -120,7 +120,7 @@ OPTIONS: dict[str, Settings] = {
     "--method": file(
         "FILE.py:FUNCTION",
         "add a method of your own: a generator function (force, phase, h), see "
-        ".github/docs/methods.md; the file runs with your rights (repeatable)",
+        ".github/docs/methods.md; the file runs with your permissions (repeatable)",
         str,
         action="append",
         default=[],
@@ -257,7 +257,7 @@ OPTIONS: dict[str, Settings] = {
         scale,
         default=(None, None),
     ),
-    "--atoms": option("N", "also print the trend per ns and atom", count),
+    "--atoms": option("N", "also print the trend per ns per atom", count),
     "--temperature": option("K", "with --atoms: also give the trend in kT", positive),
     "judge --steps": option(
         "H,H",

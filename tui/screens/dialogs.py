@@ -170,7 +170,7 @@ class Finder(Form[str]):
     def compose(self) -> ComposeResult:
         with Container(id="finder") as form:
             form.border_title = "Find a scene, a theme, a key …"
-            form.border_subtitle = "Enter does it, Esc cancels"
+            form.border_subtitle = "Enter chooses, Esc cancels"
             yield Input(self._typed, select_on_focus=False)
             yield Choices()
 

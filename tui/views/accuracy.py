@@ -198,7 +198,7 @@ class AccuracyPane(Chooser[Point]):
         return accuracy_chart(series, self.chart, "evaluations", *size)
 
     def _sentences(self) -> list[str]:
-        words = ["the current h is not on this chart; the arrows choose another"]
+        words = ["the current h is not on this chart; the arrows choose a point"]
         if self.missing:
             words = []
         if self.aim is not None:

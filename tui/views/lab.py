@@ -142,7 +142,7 @@ class TimeChart(Pane):
             return _read_out(reading, plot.letters, room)
         known = [method.letter for method in self.cast if method.modified_energy]
         if look.quantity == "shadow_error" and len(known) < len(self.cast):
-            return f"shadow energy is known for {' and '.join(known)} only"
+            return f"shadow energy is known only for {' and '.join(known)}"
         if source.ghost is not None:
             return source.ghost.label
         if not source.knows_past:

@@ -175,11 +175,11 @@ def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     if not found:
         return None
     *others, last = map(short_name, found)
-    names = f"{last} stays"
+    names = f"{last} has"
     if others:
-        names = f"{', '.join(others)} and {last} stay"
+        names = f"{', '.join(others)} and {last} have"
     change = change_before(source.changes, source.sample.step)  # judging began there
-    return Insight(BOUNDED, f"{names} bounded over {about(abs(source.sample.t - change.t))}.")
+    return Insight(BOUNDED, f"{names} stayed bounded for {about(abs(source.sample.t - change.t))}.")
 
 
 def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:

@@ -331,7 +331,7 @@ def test_samples_are_as_independent_as_the_noise_forgets(seed, times, least, mos
     ],
 )
 def test_an_open_trend_says_how_much_longer_would_decide(energies, factor):
-    assert told(energies).endswith(f"; a record {factor} times as long would decide")
+    assert told(energies).endswith(f"; a record {factor} times as long would settle it")
 
 
 def test_nobody_is_told_to_compute_a_hundred_times_as_long():

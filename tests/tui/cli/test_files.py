@@ -145,7 +145,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
     file = tmp_path / "data"
-    with pytest.raises(OSError, match="appeared meanwhile"):
+    with pytest.raises(OSError, match="has just appeared"):
         write(file, lambda: file.write_text("precious"))
     assert file.read_text() == "precious"
     assert list(tmp_path.iterdir()) == [file]
