@@ -92,7 +92,7 @@ async def test_a_picture_shows_its_time_when_all_panes_are_done(monkeypatch):
 @pytest.fixture
 def asking(tmp_path):
     path = tmp_path / "asking.toml"
-    shot = "[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\n"
+    shot = "speed = 0.5\n[shot]\nmoment = 1\nquestion = 'Why?'\nanswers = ['So.', 'No.']\n"
     path.write_text(shot, encoding="utf-8")
     return path
 
@@ -131,7 +131,7 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     assert (given.playhead.speed, usual.playhead.speed) == (2.0, 1.0)
     assert (usual.looping, usual.playhead.paused, usual.playhead.position) == (False, False, 0.0)
     assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
-    assert (equal.playhead.speed, live.playhead.speed) == (3.0, 1.0)
+    assert (equal.playhead.speed, live.playhead.speed) == (3.0, 0.5)
     assert not library.exists()  # a replay is not recorded
     for outside in (-0.01, usual.length + 0.02):
         refused = pendu("replay", "drift", "--start-at", outside)

@@ -12,7 +12,7 @@ from tests.recordings.examples import record, two_runs
 from tests.recordings.test_verify import altered
 from tests.tui.command_line import own_method, pendu, shortened
 
-QUICK = "--time 5 --h-values 0.2:0.01:4"
+QUICK = "--time 5 --h-values 0.2:0.02:4"
 FEW = "--steps 300 --z-values 0.1:3:12 --theta-values 0.5,2"
 PRINTED = """\
 --help
@@ -44,7 +44,7 @@ run stiff-slow --time 0.1 --methods rk4 --record {FOLDER}/spring.mcap
 verify {FOLDER}/spring.mcap --methods s
 run --time 2 --methods rk4,verlet --json
 run halving --theta 1,2 --time 1 --methods halving_v --json
-accuracy {QUICK} --methods rk4,explicit_euler --target 1e-3 --json
+accuracy {QUICK} --methods rk4,explicit_euler --error energy --target 1e-3 --json
 stability --steps 50 --z-values 0.1,0.5 --theta-values 1 --methods explicit_euler,rk4 --json
 methods rk4 backward_euler --json
 recordings show cut --json
