@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 from types import SimpleNamespace
@@ -68,24 +69,25 @@ async def test_a_lab_is_for_pages_of_this_computer_while_one_is_free(
 
 @pytest.mark.parametrize(("host", "warning"), [("127.0.0.1", ""), ("0.0.0.0", "0.0.0.0 can open")])
 async def test_its_pages_are_where_it_says_and_load_nothing_from_elsewhere(
-    host, warning, capsys, monkeypatch
+    host, warning, monkeypatch
 ):
     handlers = {}
     warned = []
     monkeypatch.setattr(logging.root.manager, "disable", 0)
     monkeypatch.setattr(serve, "warn", warned.append)
+    monkeypatch.setattr(serve, "print", printed := Mock(), raising=False)
     monkeypatch.setattr(serve.signal, "signal", handlers.__setitem__)
     server = server_at(host)
     lab = f"{sys.executable} -P -m pendu_tui.tui.commands.served settings"
     assert server.command.endswith(lab)
     running = asyncio.create_task(server.run())
-    told = ""
     async with asyncio.timeout(50):
-        while not (told or running.done()):
+        while not (printed.called or running.done()):
             await asyncio.sleep(0.01)
-            told = capsys.readouterr().out
+    (told,), more = printed.call_args
     address, _, limits = told.partition(" ")
-    assert (address[:-5], limits) == (f"http://{host}:", "serves up to 2 labs; Ctrl+C ends it.\n")
+    assert (address[:-5], limits) == (f"http://{host}:", "serves up to 2 labs; Ctrl+C ends it.")
+    assert more == {"flush": True}
     assert warning in "".join(warned)
     assert len(warned) == bool(warning)
     texts = []
@@ -285,8 +287,11 @@ def serving(*arguments: str, **environment: str):
     env = {**os.environ, **environment}
     pipe = subprocess.PIPE
     process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=env)
+    late = threading.Timer(PATIENCE, process.kill)
+    late.start()
     try:
         line = process.stdout.readline()
+        late.cancel()
         assert line.startswith("http://"), process.stderr.read()
         yield Server(process, line.split()[0])
     finally:
