@@ -3,7 +3,6 @@
 import argparse
 import os
 import sys
-from contextlib import nullcontext
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +18,6 @@ from tests.tui.command_line import pendu
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 2)
-ACCURACY = ("accuracy", "--time", 5, "--h-values", "0.2:0.05:3")
 
 
 def test_the_answer_is_the_same_to_the_bit_in_other_processes():
@@ -29,7 +27,9 @@ def test_the_answer_is_the_same_to_the_bit_in_other_processes():
 def interrupted(error: BaseException, done: int, output: Path | None = None) -> Work:
     options = argparse.Namespace(workers=1, dask=None, output=output)
     with work_of(options, "runs", 3) as work:
+        work.show = Mock()
         work.step(done)
+        work.show.assert_called_once_with(done, 3)
         raise error
     return work
 
@@ -54,21 +54,6 @@ def test_what_is_done_before_an_error_is_kept_unless_a_file_is_there(
     older.touch()
     with pytest.raises(UserError, match="is unchanged"):
         interrupted(error, done=1, output=older)
-
-
-def test_the_search_for_a_target_counts_in_the_progress_but_is_not_kept(monkeypatch):
-    def least_cost(*_, show, **more):
-        show(0.5)
-        raise KeyboardInterrupt
-
-    shown = []
-    bar = nullcontext(lambda *done: shown.append(done))
-    monkeypatch.setattr(workers, "progress", lambda _: bar)
-    monkeypatch.setattr("pendu_tui.tui.commands.accuracy.least_cost", least_cost)
-    outcome = pendu(*ACCURACY, "--target", "1e-3", "--methods", "rk4,verlet", "--json")
-    assert (outcome.code, outcome.json["recommendation"]) == (130, None)
-    assert "50 % of the steps are done and kept" in outcome.err
-    assert [done / whole for done, whole in shown[-2:]] == [0.5, 0.75]
 
 
 class Lost:
