@@ -209,6 +209,9 @@ def test_a_pass_is_marked_that_is_half_as_clear_as_the_clearest(apart, crosses):
     ]
     found = _crossings(np.column_stack(heights), moments, 0.0)
     assert sorted(column for column, _ in found) == pytest.approx(crosses, abs=1)
+    for last, passes in ((1, 0), (2, 1)):  # columns of 20
+        heights = np.repeat([[1, 9], [9, 1]], [20 - last, last], axis=0)
+        assert len(_crossings(heights, np.arange(20.0), 0.0)) == passes
 
 
 @given(st.lists(st.floats(-2, 25), max_size=8), st.integers(1, 20))
