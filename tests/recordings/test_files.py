@@ -20,7 +20,9 @@ from pendu_tui.recordings import files, system
 from pendu_tui.recordings.files import DiskError, RecordingError, listing, new_path
 from pendu_tui.recordings.recorder import Recorder
 from tests.recordings.examples import record, start, two_runs
-from tests.tui.command_line import IS_WINDOWS
+from tests.tui.command_line import IS_WINDOWS, link
+
+pytestmark = pytest.mark.timeout(20)
 
 
 @pytest.fixture(autouse=True)
@@ -89,8 +91,10 @@ def test_the_list_is_newest_first_without_files_of_others_or_those_being_made(li
 
 def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypatch):
     taken = record(tmp_path / "a.mcap", two_runs())
+    link(tmp_path / "link", tmp_path / "nowhere")
     for path, why, *force in (
         (taken, "--force"),
+        (tmp_path / "link", "--force"),
         (taken, "name$", None),
         (tmp_path, "name$", True),
         (tmp_path / "no" / "a.mcap", "does not exist", True),

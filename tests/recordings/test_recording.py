@@ -140,9 +140,9 @@ def test_a_step_of_no_length_is_refused(tmp_path):
 def test_the_way_of_a_run_grows_also_while_time_runs_back():
     run = Run(1, SCENE, arithmetic_here(), 0.0, 9.0)
     for step, t, h in ((20, 2.0, -0.05), (60, 0.0, 0.1)):
-        run.add(9.0, Event("set_h", 1, step, t, h=h))
+        run.add(9.0, Event("set_h", 1, step, t, h=h, equal_cost=True))
     assert [change.x for change in run.changes] == [0.0, 2.0, 4.0]  # s on the way
-    assert not run.changes[0].stepping.equal_cost
+    assert [change.stepping.equal_cost for change in run.changes] == [False, True, True]
 
 
 def test_a_recording_of_another_format_is_refused(tmp_path, monkeypatch):

@@ -43,7 +43,7 @@ CASES = {
     "NAMD": (
         "TS, TOTAL kcal/mol",
         "ETITLE:      TS           BOND         TOTAL          TEMP\n",
-        "ENERGY: {s:7}       1.5     {e:14.4f}       302.7\nInfo: a remark with 1 number",
+        "ENERGY: {s:7}       1.5     {e:14.4f}       302.7\nInfo: {s} 1 2 3",
         "1 remark with a number\n",
     ),
     "CHARMM": (

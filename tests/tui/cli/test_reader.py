@@ -116,7 +116,7 @@ def columns(series: Series) -> str | None:
         ("", "t = {t} E = -42 {k:07.3f}", None),
         ("", "t = {t} E = {e} 300 K", "t, E"),
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
-        ("t,E", "{t} ps , {e} eV", "t ps, E eV"),
+        ("t (fs),E", "{t} ps , {e} eV", "t ps, E eV"),
         ("t,energy error (%)", "{t},{e}", None),
         ("t,E (V/m)", "{t},{e}", None),
         ('"t" "E"', '"{n}" {t} {e}', "t, E"),  # R
@@ -640,8 +640,8 @@ def test_a_unit_in_a_list_of_several_is_that_of_energies_alone():
 def test_what_the_owner_says_is_applied():
     (series,) = tables("t,E,K\n" + rows("{t},{e},{k}") + "45.0,-345,nan\n", kinetic="k")
     assert (list(series.kinetic), series.diverged_at) == ([k for *_, k in SAMPLES], 45.0)
-    (series,) = tables(rows("{e}"), step=(2.0, "ps"))
-    assert (series.times[1], series.units) == (2.0, ("ps", ""))
+    (series,) = tables(rows("{e}"), step=(2.0, "ps"), units={"energy": "eV"})
+    assert (series.times[1], series.units) == (2.0, ("ps", "eV"))
     *_, series = tables(TABLE + "time,energy\n[ps],[eV]\n" + rows("{t},{e}"))
     assert (series.units, series.skipped) == (("ps", "eV"), 0)
 

@@ -59,15 +59,18 @@ def test_the_line_that_takes_too_long_is_named_and_work_between_steps_is_an_erro
 
 def test_the_recording_is_closed_and_the_terminal_restored_before_the_end(monkeypatch):
     done = []
+    leave = done.append
     dog = Watchdog()
-    dog.close = lambda: done.append("closed")
-    dog.tell = done.append
-    monkeypatch.setattr(watchdog.os, "_exit", done.append)
-    monkeypatch.setattr(watchdog.system, "restore_terminal", lambda _: done.append("restored"))
-    timer = SimpleNamespace(start=lambda: done.append("in 3 s"))
-    monkeypatch.setattr(watchdog, "Timer", lambda seconds, *_: seconds == 3.0 and timer)
+    dog.close = lambda: leave("closed")
+    dog.tell = leave
+    monkeypatch.setattr(watchdog.os, "_exit", leave)
+    monkeypatch.setattr(watchdog.system, "restore_terminal", lambda _: leave("restored"))
+    timer = SimpleNamespace(start=lambda: leave("later"))
+    monkeypatch.setattr(watchdog, "Timer", lambda *given: leave(given) or timer)
     dog.end(3, "why.")
-    assert done == ["in 3 s", "closed", "restored", "why.", 3]
+    dog.end(130)
+    assert done[:6] == [(3.0, leave, (3,)), "later", "closed", "restored", "why.", 3]
+    assert done[6:] == [(3.0, leave, (130,)), "later", "closed", "restored", 130]
 
 
 def test_a_lab_is_asked_to_leave_once_its_terminal_is_gone_and_ended_5_s_later(monkeypatch):

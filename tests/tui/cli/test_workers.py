@@ -52,8 +52,9 @@ def test_what_is_done_before_an_error_is_kept_unless_a_file_is_there(
         interrupted(error, done=0)
     older = tmp_path / "older.csv"
     older.touch()
-    with pytest.raises(UserError, match="is unchanged"):
+    with pytest.raises(UserError, match="is unchanged") as kept:
         interrupted(error, done=1, output=older)
+    assert kept.value.code == 130
 
 
 class Lost:
