@@ -164,7 +164,7 @@ def test_each_role_has_many_names_and_the_best_comes_first():
         assert {role(name) for name in names.split(", ")} == {(kind, rank)}
 
 
-@pytest.mark.parametrize("layout", LAYOUTS, ids=lambda layout: layout.programs)
+@pytest.mark.parametrize("layout", LAYOUTS)
 def test_each_layout_reads_its_case(layout):
     found, head, row, *foot = CASES[layout.programs]
     text = "".join([head, rows(row), *foot])

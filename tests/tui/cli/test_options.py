@@ -17,7 +17,6 @@ def scene_from(*arguments: str) -> Scene:
 
 
 OTHERS = "ps bar kbar atm GPa MPa g/cm^3 A^3 nm^3 % m m/s rad rad/s deg N V V/m"
-JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
 
 
 @pytest.mark.parametrize(
@@ -42,7 +41,10 @@ JOULES = ("kJ", "mJ", "nJ", "uJ", "µJ", "μJ")  # micro sign, and mu
         *((scale, text, None) for text in ("kinetic:", "first:1")),
         (step_sizes, "1,2", [1.0, 2.0]),
         *((units.is_unit, text, True) for text in ("fs", "eV")),
-        *((lambda text: bool(re.fullmatch(units.UNIT, text)), each, True) for each in JOULES),
+        *(
+            (lambda text: bool(re.fullmatch(units.UNIT, text)), f"{each}J", True)
+            for each in "kmnuµμ"
+        ),
         (lambda text: {units.shown("time", text)}, "Myr", {"Myr"}),
         (lambda text: [units.shown(kind, text) for kind in ("time", "energy")], "S", ["s", "S"]),
         (lambda text: units.size("time", text), "lj", "the unit of time is not known"),

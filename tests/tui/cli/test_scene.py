@@ -68,7 +68,6 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
         ("scene = [{h = 1}, {h = 2}, {h = 'x'}]", "line 1: h: 'x' is not a time"),
         ("[shot]\n\nlog = 1", "line 3: log: Expected `bool`, got `int`; use, for example, log = "),
         ("shot = 1", "line 1: shot: Expected `object`, got `int`; use, for example, [shot]"),
-        ("[shot]\nvew = 'phase'", "line 2: there is no field 'vew': did you mean view?"),
         ("[shot]\nquantity = 'eror'", "line 2: there is no quantity 'eror'"),
         ("[shot]\nview = 'phse'", "line 2: there is no view 'phse': did you mean phase?"),
         (
@@ -89,7 +88,6 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
             for answers, right in ((["a", "b"], 3), (["a", "b"], 0), (["a"], 1), ([*"abcde"], 1))
         ),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
-        (f"theta = {'9' * 5000}", "is not TOML"),
         ("theta = = 1", "is not TOML: Invalid value (at line 1"),
     ],
 )
