@@ -113,7 +113,7 @@ def test_a_file_that_is_emptied_while_it_is_read_is_one_sentence(tmp_path):
         recording._decode.cache_clear()
         copy.write_bytes(b"")
         for place in places:
-            with pytest.raises(RecordingError, match="it was changed while it was read"):
+            with pytest.raises(RecordingError, match="it was changed while"):
                 recording.sample(place)
 
 
