@@ -113,7 +113,9 @@ def columns(series: Series) -> str | None:
         ("step,t,E", "{s},31536000{n:02},{e}", "t, E"),  # 100 years
         ("step,t [fs],E", "{s},17327000{n:02},{e}", "t fs, E"),
         ("", "t = {t} E = {e}×10^{f}", None),
+        ("", "t = {t} E = {e} x 10^{f}", None),
         ("", "t = {t} E = -42 {k:07.3f}", None),
+        ("", "t = {t} E = -42\u202f{k:07.3f}", None),
         ("", "t = {t} E = {e} 300 K", "t, E"),
         ("t,N,E", "{t},100,{e}", "t, E"),  # particles
         ("t (fs),E", "{t} ps , {e} eV", "t ps, E eV"),
@@ -550,11 +552,12 @@ def test_columns_are_named_or_numbered_and_added(head, asked, found):
         ("{t},rk4,{e},NaN", "1", "3", []),
         ("t = {t}\nE1 = {k}\nE2 = {e}", "t", "E2", ["the total energy"]),
         ("t = {t}\nE.1 = {k}\nE.2 = {e}", "t", "E.2", ["the total energy"]),
+        ("t = {t} E[1][1] = {k} E[1][2] = {e}", "t", "E[1][2]", ["the total energy"]),
     ],
 )
 def test_what_is_not_certain_is_read_by_number_or_name(form, time, energy, doubts):
     (series,) = tables(rows(form), time=time, energy=energy)
-    assert list(series.energies) == ENERGIES
+    assert (list(series.energies), series.units) == (ENERGIES, ("", ""))
     assert [each.choice.doubt for each in tables(rows(form))] == doubts
 
 
