@@ -430,7 +430,6 @@ def test_a_method_fails_once_and_for_good():
     lockstep = moved(Scene(model="linear", h=1.0), [600])
     assert [each.method for each in milestones(lockstep, "failed")] == [S, V, E, R]
     lockstep.set_stepping(Stepping(0.5, cast=USUAL_CAST))
-    lockstep.advance(100)
     assert words(lockstep) == ["failed"] * 4
 
     def jumping(force, phase, h):

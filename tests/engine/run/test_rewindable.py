@@ -68,6 +68,7 @@ def test_a_branch_shares_the_past_and_forgets_the_future():
     course.change(stepping(0.1))
     for _ in range(5):
         course.forward(1000)  # each of which leaves a copy
+    course.change(stepping(0.3))
     course.sample()
     assert not course.in_past
     course.go_to(2000)

@@ -11,6 +11,7 @@ from pendu_tui.engine.scenes import SCENES, Scene
 from pendu_tui.engine.studies.ring import Neighbourhood
 
 DRIFT = SCENES["drift"]
+pytestmark = pytest.mark.timeout(20)  # a ring that cannot follow would try for ever
 
 
 def test_area_is_counted_also_where_a_step_turns_it_over():
@@ -65,7 +66,7 @@ def test_neighbours_take_the_steps_of_the_run_whenever_they_follow():
         run.forward(steps)
         assert followed(early, run) is early
         run.change(Stepping(h))  # counts for the next step
-        followed(early, run)
+        assert followed(early, run) is early
     run.forward(3)
     for ring in (early, Neighbourhood(DRIFT, 0.1)):
         assert has_taken(followed(ring, run), (7, 0.05), (5, 0.02), (3, -0.02))
