@@ -293,15 +293,19 @@ def test_every_method_has_its_names_a_reference_and_a_use_with_its_source(method
         assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9-]+(\.[a-z0-9-]+)+, [^\[\]]+\]", method.used)
 
 
+OTHERS = {
+    "velocity_verlet": "Störmer, stormer, Störmer Verlet, leapfrog, kick-drift-kick",
+    "symplectic_euler": "semi-implicit Euler, Euler-Cromer",
+    "heun": "RK2, improved Euler, explicit trapezoidal rule",
+    "forest_ruth": "Yoshida 4, triple jump",
+    "respa": "impulse method, IVI",
+}
+
+
 @pytest.mark.parametrize(
     ("typed", "keys"),
     [
-        *((name, ["velocity_verlet"]) for name in ("Störmer", "stormer", "Störmer Verlet")),
-        *((name, ["velocity_verlet"]) for name in ("leapfrog", "kick-drift-kick")),
-        *((name, ["symplectic_euler"]) for name in ("semi-implicit Euler", "Euler-Cromer")),
-        *((name, ["heun"]) for name in ("RK2", "improved Euler", "explicit trapezoidal rule")),
-        *((name, ["forest_ruth"]) for name in ("Yoshida 4", "triple jump")),
-        *((name, ["respa"]) for name in ("impulse method", "IVI")),
+        *((name, [key]) for key, names in OTHERS.items() for name in names.split(", ")),
         ("rk", ["rk4"]),  # those for one scene match only if no general one does
         ("BM4", ["blanes_moan_4"]),
         ("single", []),  # a label is matched whole
