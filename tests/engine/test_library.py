@@ -198,8 +198,8 @@ def still(force, phase, h):
         (lambda: fluctuation_order([(math.nan, TIMES, WAVE)]), "h = nan"),
         (lambda: fluctuation_order([(0.1, [0], [1])]), r"h = 0\.1: 1 energies are too few"),
         (
-            lambda: fluctuation_order([(0.1, TIMES, [math.inf, *WAVE[1:]])]),
-            r"energies at h = 0\.1\[0\] is inf",
+            lambda: fluctuation_order([(0.1, TIMES, [1, math.inf, *WAVE[2:]])]),
+            r"energies at h = 0\.1\[1\] is inf",
         ),
     ],
 )

@@ -344,7 +344,7 @@ def test_a_tiny_loss_is_seen_also_where_only_fast_motion_has_one(share, above, k
         ("rk4 verlet RK4", "rk4 is given twice"),
         ("taylor", "see it with pendu-tui accuracy --cost seconds"),
         ("", "for example rk4"),
-        ("conformally-symplectic-verlett", "did you mean conformal_verlet?"),
+        ("forward-eulr", "did you mean explicit_euler?"),
     ],
 )
 def test_a_name_of_no_or_of_several_methods_is_refused(names, why):

@@ -31,6 +31,7 @@ def phases(sample):
 def test_the_way_home_is_of_whole_steps_that_lie_ahead():
     course = RewindableRun(SCENE)
     assert course.home == math.inf  # it is there
+    assert course.changes[0].stepping == stepping(SCENE.h)
     course.forward(10)
     assert course.home == math.inf
     course.change(stepping(-SCENE.h))
