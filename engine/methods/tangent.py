@@ -68,10 +68,11 @@ class Stretching:
         """Advance the displacement from this phase, by few enough steps not to overflow."""
         try:
             _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
-        except (ArithmeticError, ValueError):  # the sine of a large imaginary number
+            length = math.hypot(theta, omega / self._w0)
+            growth = math.log(length)
+        except (ArithmeticError, ValueError):  # of the sine of a large imaginary number, or of 0
             return
-        length = math.hypot(theta, omega / self._w0)
-        if 0 < length < math.inf:
+        if growth < math.inf:
             self._along = theta / length, omega / length
-            self.log += math.log(length)
+            self.log += growth
             self.steps += steps

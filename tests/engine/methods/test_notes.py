@@ -2,7 +2,6 @@
 
 import cmath
 import math
-from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -82,10 +81,6 @@ def test_neighbours_separate_by_the_derivative_of_all_steps(w0):
     step = np.reshape(at_bottom(VELOCITY_VERLET, 2.1), (2, 2))
     stretched = np.linalg.norm(np.linalg.matrix_power(step, 100)[:, 0])
     assert stretching.log == pytest.approx(math.log(stretched))
-    ends = replace(VELOCITY_VERLET, phases=lambda force, phase, h: iter([(0j, 0j)]))
-    nowhere = Stretching(ends, PENDULUM, 0.1)
-    nowhere.carry((1.0, 0.5), 1)
-    assert (nowhere.log, nowhere.steps) == (0, 0)
 
 
 EXACT = [PENDULUM.exact(2.0, 0.0).at(t + 1.0).theta for t in range(100)]
