@@ -321,7 +321,10 @@ def test_a_run_is_bounded_if_it_stays_in_its_band_for_ten_times_its_length():
     assert [each.verdict for each in found] == ["bounded", "undecided"]
 
 
-@pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
+each_way = pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
+
+
+@each_way
 def test_a_band_has_left_the_start_by_half_its_width(sign, word):
     step = np.arange(6000)
     near = "undecided", levels.NEAR
@@ -340,7 +343,7 @@ def test_a_band_has_left_the_start_by_half_its_width(sign, word):
     assert (str(found), found.rests) == (word, True)
 
 
-@pytest.mark.parametrize(("sign", "word"), [(1, "grows"), (-1, "loses")])
+@each_way
 @pytest.mark.parametrize("share", [0.24, 0.26])
 def test_a_word_is_kept_until_a_quarter_of_its_band_is_beyond_the_start(share, sign, word):
     rise = 3e-3 * np.arange(640)

@@ -177,18 +177,22 @@ def test_a_point_knows_its_step_in_each_unit():
     assert point.steps_per_swing == pytest.approx(math.tau / 1.5)
 
 
+def cost(line, target, of="evaluations"):
+    return cost_at(line, "theta", of, target)
+
+
 def test_an_error_that_no_useful_point_reaches_has_no_cost():
-    assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
-    assert cost_at(LINES[:4], "theta", "evaluations", 1.0) == 4 * 10
-    assert cost_at([at(R, 10, 0.1)], "theta", "seconds", 1.0) is None  # not timed
+    assert cost(LINES[:4], 1e-13) is None
+    assert cost(LINES[:4], 1.0) == 4 * 10
+    assert cost([at(R, 10, 0.1)], 1.0, "seconds") is None  # not timed
     for coarser, finer in ((0.1, 0.0), (math.inf, 1e-3)):
-        assert cost_at([at(R, 10, coarser), at(R, 20, finer)], "theta", "evaluations", 0.01) == 80
+        assert cost([at(R, 10, coarser), at(R, 20, finer)], 0.01) == 80
     lost = [at(R, 10, 1e-5, flaw="lost"), at(R, 20, 1e-3), at(R, 40, 1e-7, flaw="rounding")]
-    assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
-    assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
-    assert cost_at(lost, "theta", "evaluations", 1e-2) == 4 * 20  # not between lost and found
+    assert cost(lost, 1e-4) > 4 * 20
+    assert cost(lost, 1e-7) == 4 * 40
+    assert cost(lost, 1e-2) == 4 * 20  # not between lost and found
     lucky = [at(R, 10, 1e-5), at(R, 20, 1e-2)]
-    assert cost_at(lucky, "theta", "evaluations", 1e-3) == 4 * 10  # not between first and last
+    assert cost(lucky, 1e-3) == 4 * 10  # not between first and last
 
 
 def test_the_order_decides_which_method_is_cheapest_and_by_how_much():
