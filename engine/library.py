@@ -80,7 +80,7 @@ SCENES: Mapping[str, Scene] = MappingProxyType(scenes.SCENES)
 """The scenes by name, in the order of `pendu-tui scenes`."""
 
 Methods = str | Iterable[str | Method]
-"""Keys or the starts of keys, such as "rk4,verlet", or methods."""
+"""Keys or prefixes of keys, such as "rk4,verlet", or methods."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Track:
 
 
 class Run(ByMethod[Track]):
-    """The methods' tracks, by any name or the start of a key, at the times `t` [s]."""
+    """The methods' tracks, by any name or the prefix of a key, at the times `t` [s]."""
 
     def __init__(self, scene: Scene, t: "Floats", tracks: Iterable[Track]) -> None:
         super().__init__(scene.cast, tracks)
@@ -148,7 +148,7 @@ def _stops(scene: Scene, time: float, every: int) -> list[int]:
 
 @dataclass(frozen=True)
 class Judged:
-    """The verdict on a series of energies; a word of `pendu-tui judge --help`."""
+    """The verdict on a series of energies; `pendu-tui judge --help` explains its word."""
 
     verdict: str
     reason: str  # of `undecided`: what is missing, and whether a longer record helps

@@ -121,7 +121,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.80,
         speed=8.0,
-        watch="Just below z = 2√2 RK4 halves its energy in 4 steps; others go over the top.",
+        watch="Just below z = 2√2: RK4 halves its energy in 4 steps; the rest go over the top.",
         shot=Shot(
             log=False,
             seconds=60.0,

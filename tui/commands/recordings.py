@@ -80,7 +80,7 @@ def _contents(recording: Recording) -> Report:
     samples = counted(recording.samples, "sample")  # reads them all
     notes = []
     if len(runs) > MAX_RUNS:
-        notes = [f"and {len(runs) - MAX_RUNS} runs more; --json has them all"]
+        notes = [f"and {len(runs) - MAX_RUNS} more runs; --json has them all"]
     return Report(
         name="recordings-show",
         title=f"{recording.path}: {health}\n"

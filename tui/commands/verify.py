@@ -81,7 +81,7 @@ def _sentence(row: dict[str, Any]) -> str:
         others = " and ".join(f"{name}()" for name in row["other_functions"])
         text += f"; within tolerance only: this machine computes {others} differently"
     if row["numerics"] != NUMERICS:
-        text += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
+        text += f"; made with version {row['numerics']} of the numerics, not {NUMERICS}"
     if row["changed_sources"]:
         text += (
             f"; the source of {' and '.join(row['changed_sources'])} differs from the recorded one"

@@ -41,7 +41,7 @@ def test_show_tabulates_so_many_runs_at_most(most, more, whole, monkeypatch):
     monkeypatch.setattr("pendu_tui.tui.commands.recordings.MAX_RUNS", most)
     out = pendu("recordings", "show", whole).out
     assert out.count("\n  1  test ") + out.count("\n  2  test ") == most
-    assert (f"\nand {more} runs more; --json" in out) == bool(more)
+    assert (f"\nand {more} more runs; --json" in out) == bool(more)
 
 
 def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(

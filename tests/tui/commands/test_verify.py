@@ -61,7 +61,7 @@ def test_other_functions_of_the_machine_and_a_changed_source_are_told(whole):
     )
     assert told == (
         f"different   {whole}: 10 samples in 2 runs; within tolerance only: this machine computes "
-        "sin() and sqrt() differently; made with version 1 of the numerics, this is version "
+        "sin() and sqrt() differently; made with version 1 of the numerics, not "
         f"{verify.NUMERICS}; the source of mine differs from the recorded one\n"
         "  first in t at run 2, step 3, t = 0.25 s, all methods:\n"
         "    recorded nothing\n"
