@@ -23,7 +23,7 @@ class Command(NamedTuple):
 STILL = {"theme": "dark", "pixels": "braille"}
 COMMANDS = {
     "live": Command(
-        "the lab: methods side by side, their errors, a recording",
+        "the lab: methods and their errors side by side, recorded",
         "SCENE --speed --equal-cost RECORDING TERMINAL",
         """\
   pendu-tui
