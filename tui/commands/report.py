@@ -170,9 +170,8 @@ class Report:
             print(text, file=out)
         elif form == "csv":
             records = list(self.rows if self.records is None else self.records)
-            if records:
-                names = list(records[0])
-                write_csv(out or sys.stdout, names, map(itemgetter(*names), records))
+            names = list(records[0])
+            write_csv(out or sys.stdout, names, map(itemgetter(*names), records))
         else:
             self._show_table()
 

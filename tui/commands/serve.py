@@ -104,7 +104,7 @@ class LabServer(Server):  # type: ignore[misc]
             raise web.HTTPForbidden(text="Wrong page.\n")
         if self._labs >= self._max_labs and request.path in ("/", "/ws"):
             raise web.HTTPServiceUnavailable(text="All labs are in use; reload later.\n")
-        self.public_url = f"{request.scheme}://{request.host}"
+        self.public_url = pages[0]
         return await handler(request)
 
     async def _process_messages(self, websocket: Any, app_service: Any) -> None:

@@ -55,7 +55,7 @@ async def test_a_lab_is_for_pages_of_this_computer_while_one_is_free(
     server = server_at("127.0.0.1")
     server._labs = labs
     headers = {"Origin": origin} if origin else {}
-    request = SimpleNamespace(path=path, host=host, headers=headers, scheme="http")
+    request = SimpleNamespace(path=path, host=host, headers=headers)
 
     async def handler(request):
         return "a page"
