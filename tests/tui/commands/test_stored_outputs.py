@@ -22,7 +22,7 @@ run damped --time 20 --h 0.2 --fail-if 'rk4.verdict != bounded or any.theta_erro
 run stiff-slow --time 5
 run halving --time 20 --methods halving_v,verlet
 run --theta 1e-150 --time 1500 --methods explicit_euler --fail-if 'explicit_euler.theta < 0'
-run --theta 0.5,1 --h 0.05,0.1 --length 1 --time 9 --methods rk4,verlet --fail-if 'rk4.slope < -1e-5'
+run --theta 0.5,1.2345 --h 0.05,0.1 --length 1 --time 9 --methods rk4,verlet --fail-if 'rk4.slope < -1e-5'
 accuracy {QUICK} --target 1e-4 --methods rk4,verlet,euler-cromer
 accuracy --all --error energy --time 2.5 --h-values 0.2:0.05:2
 stability {FEW}
