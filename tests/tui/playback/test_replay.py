@@ -66,6 +66,7 @@ def test_it_shows_the_last_sample_recorded_before_and_begins_again_after_the_end
     assert (replay.kind, replay.recording_status) == ("REPLAY", ("eventful.mcap", 12.0, None))
     while not replay.playhead.paused:
         assert table.run(0.2) == table.due
+        assert table.now < 13
     assert replay.sample == table.samples[-1].value
     replay.pause(False)
     replay.set_speed(4.0)
@@ -105,6 +106,7 @@ def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table
         sample = table.run(1 / FPS)
         assert sample == table.due
         runs.append(sample.run)
+        assert table.now < 13
     assert sample == table.samples[0].value
     assert list(dict.fromkeys(runs)) == [3, 2, 1]
     replay.pause(False)
