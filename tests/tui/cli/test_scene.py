@@ -54,7 +54,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(mine):
     ("text", "said"),
     [
         ("h = 0.1\nthetta = 1", "line 2: there is no field 'thetta': did you mean theta?"),
-        ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
+        ("h = 0.1\n\nspeed = '2s'", "line 3: speed: '2s' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("theta = 170", "line 1: theta: 170 is 27.1 turns; write 170deg or 170rad"),
         ("model = 'cubic'", "line 1: there is no model 'cubic'; choose from pendulum"),
