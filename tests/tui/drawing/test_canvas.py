@@ -210,6 +210,7 @@ def test_a_line_from_far_away_is_drawn_where_it_is_visible():
         (13, 6, 4, False, "     ⢀\n     ⣿\n     ⠙"),
         (6, -2, 4, False, " ⠈⠛⠛⠋\n\n"),
         (6, 14, 4, False, "\n\n  ⣀⣀⡀"),
+        (6, np.nan, 4, False, "\n\n"),
     ],
 )
 def test_a_disc_is_round_because_dots_are_square(x, y, radius, hollow, text):
