@@ -456,6 +456,7 @@ class _Text:
         return any(
             self._take(layout, match)
             for layout in LAYOUTS
+            if "name" not in layout.pattern.groupindex  # of a value
             for match in layout.pattern.finditer(line)
         )
 
@@ -529,7 +530,7 @@ class _Text:
                 return False
             return is_comment or numbers[0] is None
         ways = _ways(bare)
-        if not any(map(self._worth, chain(ways, *self._heads.values()))):
+        if self._table.names and not any(map(self._worth, chain(ways, *self._heads.values()))):
             is_row = bool(is_like and delimiter and not is_comment)
             self._table.skipped += is_row
             return not is_row
