@@ -121,7 +121,7 @@ class Slope:
     def bound(self) -> float:
         """|slope| is below it with a probability of levels.CERTAIN."""
         high = abs(self.mean) + self.uncertainty
-        while not self._is_within(high) and high < math.inf:
+        while not self._is_within(high) and math.isfinite(high):
             high *= 2
         low = 0.0
         for _ in range(_HALVINGS):
