@@ -130,9 +130,9 @@ verdicts:
 """,
         more="""\
 FILE is a log or table from any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
-.npz, …, also compressed.  Without options its tables and columns are listed, and the energy is
+.npz, …, compressed or not.  Without options its tables and columns are listed, and the energy is
 judged if it is clear which column holds it.  Results have the units of the file's headers.
-A verdict of `failed` exits with 1.
+If the verdict is `failed`, it exits with 1.
 """,
     ),
     "verify": Command(
@@ -144,8 +144,8 @@ A verdict of `failed` exits with 1.
   pendu-tui verify golden
 
 A folder means all recordings below it; golden, the bundled ones.
-Exit codes: 0 all are identical; 1 any differs or is incomplete (a .part may be); 3 any cannot be
-read.
+Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete); 3 one
+is unreadable.
 """,
     ),
     "export": Command(

@@ -1,7 +1,7 @@
 """Judge the energies of another program: does its integrator gain or lose energy?
 
 FILE is a log or table of any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
-.npz, …, also compressed.  Alone, it lists its tables and columns, and judges the energy if it is
+.npz, …, compressed or not.  Alone, it lists its tables and columns, and judges the energy if it is
 certain which it is.  Results have the units of its heads.  A verdict of failed is exit code 1.
 """
 

@@ -171,7 +171,7 @@ OPTIONS: dict[str, Settings] = {
     "--at-most": option("N", "maximum number of open labs (%(default)s)", count, default=20),
     # times and steps
     "run --time": option(
-        "S", "simulated time, which is required: 60 (s) or 1min", above_zero(seconds, MAX_TIME)
+        "S", "simulated time (required): 60 (s) or 1min", above_zero(seconds, MAX_TIME)
     ),
     "accuracy --time": option(
         "S", "simulated time (ten small-amplitude periods)", above_zero(seconds)
