@@ -58,5 +58,5 @@ def test_no_two_quantities_share_a_name():
 
 def test_the_charted_quantities_are_those_with_a_title():
     assert {each for each in QUANTITIES if each.chart.title} == {*CHARTED}
-    names = [each.name for each in CHARTED]  # from key to key
+    names = [each.name for each in CHARTED]
     assert names == ["energy_error", "theta_error", "shadow_error", "energy"]

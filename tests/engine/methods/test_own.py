@@ -130,7 +130,7 @@ WRONG = {
         euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
         "mine gives different numbers when restarted after 37 of 80 steps",
     ),
-    "a count to ten": (euler("n = n + 1; omega = omega * (1 + 1e-5 * (n % 10 == 0))", "n = 0"), "numbers when restarted"),
+    "a count to ten": (euler("n = n + 1; omega = omega + 1e-5 * (n % 10 == 0)", "n = 0"), "numbers when restarted"),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "different numbers from those for floats; this was with complex numbers"),
     "a control character": ("A#\x1b", "line 1: `A#` raises NameError: name 'A' is not defined."),
     "a character that ends a text": ("\0", "source code string cannot contain null bytes."),
