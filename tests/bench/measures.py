@@ -20,11 +20,11 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 838_300,
-    "characters_of_engine": 255_200,
-    "characters_of_recordings": 68_100,
-    "characters_of_tui": 514_900,
-    "characters_of_tests": 767_500,
+    "characters": 839_000,
+    "characters_of_engine": 255_000,
+    "characters_of_recordings": 68_400,
+    "characters_of_tui": 515_500,
+    "characters_of_tests": 782_800,
     "characters_of_bench": 60_000,
     "files": 127,
     "parallel_assignments": 8,
